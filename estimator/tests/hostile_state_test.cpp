@@ -116,8 +116,8 @@ struct Streaming {
 template <class Kind>
 class HostileState : public testing::Test {};
 using Kinds =
-    testing::Types<Tumbling, Rolling, Streaming<RateStream>, Streaming<RegimeStream>, Streaming<CarriedStream>,
-                   Streaming<CarriedLive>, Streaming<RollingFilter>, Streaming<RollingSmoother>>;
+    testing::Types<Tumbling, Rolling, Streaming<RateStream>, Streaming<RegimeStream>, Streaming<HandHeldStream>,
+                   Streaming<HandHeldPipeline>, Streaming<RollingFilter>, Streaming<RollingSmoother>>;
 TYPED_TEST_SUITE(HostileState, Kinds);
 
 TYPED_TEST(HostileState, CutAnywhereIsRefused) {
@@ -125,7 +125,7 @@ TYPED_TEST(HostileState, CutAnywhereIsRefused) {
   typename TypeParam::Estimator estimator(TypeParam::params());
   for (std::size_t length = 0; length < saved.size(); length += length < 200 ? 1 : saved.size() / 61) {
     const Status status = estimator.load(std::span(saved).first(length));
-    EXPECT_EQ(status.trouble, Trouble::too_few) << length << ": " << status.message();
+    EXPECT_EQ(status.error_code, ErrorCode::too_few) << length << ": " << status.message();
     Bytes resealed(saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(length));
     reseal(resealed);
     EXPECT_FALSE(estimator.load(resealed).ok()) << length;
@@ -218,15 +218,16 @@ TYPED_TEST(HostileState, MadeUpNumbersNeverHurt) {
 
 /// Of a log that says readings again: their age is a place in the window.
 TEST(HostileHeldReadings, BeyondWhatIsHeldAreRefused) {
-  const CarriedLive::Params params = test::params_of_stream<CarriedLive>();
-  const CarriedLive stream(params);
-  CarriedLive::State good = stream.start();
+  const HandHeldPipeline::Params params = test::params_of_stream<HandHeldPipeline>();
+  const HandHeldPipeline stream(params);
+  HandHeldPipeline::State good = stream.start();
   std::optional<RateState> out;
   for (std::size_t k = 0; k < 30; ++k) ASSERT_TRUE(stream.push(test::thrown_samples()[k], good, out).ok());
   const auto field_with = [&](auto spoil) {
-    CarriedLive::State spoiled = good, loaded = good;
+    HandHeldPipeline::State spoiled = good, loaded = good;
     spoil(spoiled.stream.readings.back().gyro, spoiled.repeat_state.memory[0]);
-    return std::string(load_state<CarriedLive>(save_state<CarriedLive>(params, spoiled), params, loaded).field);
+    return std::string(
+        load_state<HandHeldPipeline>(save_state<HandHeldPipeline>(params, spoiled), params, loaded).field);
   };
   using Memory = RepeatDetector::Memory;
   EXPECT_EQ(field_with([](RepeatedReading&, Memory&) {}), "") << "negative control";
@@ -234,7 +235,7 @@ TEST(HostileHeldReadings, BeyondWhatIsHeldAreRefused) {
   EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.age_samples = -1.0; }), "held.age_samples");
   EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.period_samples = 11.0; }), "held.period_samples");
   EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.period_samples = 0.0; }), "held.period_samples");
-  EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.run_samples = -1e300; }), "hold.run_samples");
+  EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.equal_samples = -1e300; }), "hold.run_samples");
   EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.moving = 1e300; }), "hold.moving");
   EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.repeated = memory.moving + 1.0; }),
             "hold.repeated");

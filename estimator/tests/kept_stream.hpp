@@ -116,7 +116,7 @@ class Kept {
 
  private:
   Status push(const ImuSample& sample, std::optional<RateState>& out) {
-    if constexpr (std::same_as<Stream, CarriedStream>) {
+    if constexpr (std::same_as<Stream, HandHeldStream>) {
       const ClipSigns signs;
       return stream_.push(sample, {Eigen::Matrix3d::Identity(), {&signs, 1}}, *state_, out);
     } else {

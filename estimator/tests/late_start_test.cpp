@@ -143,7 +143,7 @@ TEST(LateLidar, SweepsWithoutPointsDoNotStartTheMap) {
       ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
     while (auto sweep = odometry.take()) {
       without_pose += sweep->report.trajectory.empty();
-      EXPECT_EQ(sweep->status.trouble, sweep->report.trajectory.empty() ? Trouble::too_few : Trouble::none);
+      EXPECT_EQ(sweep->status.error_code, sweep->report.trajectory.empty() ? ErrorCode::too_few : ErrorCode::none);
       if (sweep->report.verdict == SweepVerdict::first) first = sweep->report;
       last = sweep->report;
     }
@@ -187,7 +187,7 @@ TEST(AccelerometerUnit, IsReportedByTumblingOdometryWithinTwoSeconds) {
     TumblingOdometry odometry(test::params_of(test::ThrownBody()));
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) ASSERT_TRUE(odometry.add_imu(sample).ok());
     const Status status = odometry.health();
-    EXPECT_EQ(status.trouble, Trouble::out_of_range);
+    EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
     EXPECT_STREQ(status.field, kUnit);
     EXPECT_NEAR(status.value * unit_m_s2, 1.0, 0.01);
     EXPECT_NEAR(status.bound, unit_m_s2 > 1.0 ? 0.85 : 1.15, 1e-9);
@@ -203,7 +203,7 @@ TEST(AccelerometerUnit, IsReportedByRollingOdometryWithinTwoSeconds) {
     params.units.front().sheet.rate_hz = 100.0;
     RollingOdometry odometry(params);
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) (void)odometry.add_imu(sample);
-    EXPECT_EQ(odometry.health().trouble, Trouble::out_of_range);
+    EXPECT_EQ(odometry.health().error_code, ErrorCode::out_of_range);
     EXPECT_STREQ(odometry.health().field, kUnit);
   }
 }

@@ -62,9 +62,9 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   TumblingOdometry far(params);
   run(body, 0.0, 0.0, far);
   const Status health = far.health();
-  EXPECT_EQ(health.trouble, Trouble::out_of_range);
+  EXPECT_EQ(health.error_code, ErrorCode::out_of_range);
   EXPECT_NE(health.message().find("change of the lidar-IMU calibration"), std::string::npos) << health.message();
-  EXPECT_GT(health.value, StatedCalibration::kMaxDeviations);
+  EXPECT_GT(health.value, StatedCalibration::kDistanceMax_sigmas);
 }
 
 }  // namespace

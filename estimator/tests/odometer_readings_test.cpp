@@ -205,7 +205,7 @@ Eigen::Vector3d after_second_pass(bool with_readings) {
     }
   }
   again.complete(first);
-  EXPECT_TRUE(again.taken());
+  EXPECT_TRUE(again.applied());
   PoseState pose;
   EXPECT_TRUE(first.newest(pose, nullptr).ok());
   return pose.p_WA_m;
@@ -249,26 +249,26 @@ TEST(OdometerReadings, ErrorsAreValuesAndChangeNothing) {
   const ThrownBody body;
   const TimeNs now_ns = 800'000'000;
   TumblingOdometry odometry(single_pass(body));
-  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::empty);
+  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.1}).error_code, ErrorCode::empty);
   Course run;
   hand_over(body, body.sweeps(), 0, 80, nothing, odometry, run);
   ASSERT_GT(run.sweeps.size(), 3u);
   const TimeNs done_ns = run.sweeps.back().report.pose.time_ns;
   const std::vector<std::byte> before = odometry.save();
-  EXPECT_EQ(odometry.add_velocity({now_ns, {0.0, nan, 0.0}, 0.1}).trouble, Trouble::non_finite);
-  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.0}).trouble, Trouble::out_of_range);
-  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), -0.1}).trouble, Trouble::out_of_range);
-  EXPECT_EQ(odometry.add_velocity({done_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::time_order);
+  EXPECT_EQ(odometry.add_velocity({now_ns, {0.0, nan, 0.0}, 0.1}).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.0}).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), -0.1}).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({done_ns, Eigen::Vector3d::Zero(), 0.1}).error_code, ErrorCode::time_order);
   constexpr TimeNs kFar_ns = std::numeric_limits<TimeNs>::max();
   for (const TimeNs time_ns : {now_ns + 1'100'000'000, kFar_ns})
-    EXPECT_EQ(odometry.add_velocity({time_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::out_of_range);
-  EXPECT_EQ(odometry.add_velocity({-kFar_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::time_order);
+    EXPECT_EQ(odometry.add_velocity({time_ns, Eigen::Vector3d::Zero(), 0.1}).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({-kFar_ns, Eigen::Vector3d::Zero(), 0.1}).error_code, ErrorCode::time_order);
   const auto motion = [&](TimeNs from_ns, TimeNs to_ns) { return motion_of(body, from_ns, to_ns, 0.01, 0.01); };
-  EXPECT_EQ(odometry.add_motion(motion(now_ns, now_ns)).trouble, Trouble::time_order);
-  EXPECT_EQ(odometry.add_motion(motion(done_ns - 50'000'000, now_ns)).trouble, Trouble::time_order);
+  EXPECT_EQ(odometry.add_motion(motion(now_ns, now_ns)).error_code, ErrorCode::time_order);
+  EXPECT_EQ(odometry.add_motion(motion(done_ns - 50'000'000, now_ns)).error_code, ErrorCode::time_order);
   MotionReading reading = motion(done_ns, now_ns);
   reading.covariance(3, 3) = 0.0;
-  EXPECT_EQ(odometry.add_motion(reading).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_motion(reading).error_code, ErrorCode::out_of_range);
   for (const auto& [from_ns, to_ns] : {std::pair(-kFar_ns, now_ns), std::pair(done_ns, kFar_ns)}) {
     reading = motion(done_ns, now_ns);
     reading.from_ns = from_ns;
@@ -283,7 +283,7 @@ TEST(OdometerReadings, ErrorsAreValuesAndChangeNothing) {
   std::size_t waiting = 1;
   for (; status.ok() && waiting < 5000; ++waiting)
     status = odometry.add_velocity({done_ns + 500'000'000, Eigen::Vector3d::Zero(), 1.0});
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(status.field, "readings waiting");
   EXPECT_EQ(waiting, 1025u);
   EXPECT_NE(odometry.save(), before);
@@ -296,10 +296,12 @@ TEST(OdometerReadings, ErrorsAreValuesAndChangeNothing) {
 TEST(OdometerReadings, AReadingThatNoSweepUsesChangesNoBit) {
   const ThrownBody body;
   TumblingOdometry plain(single_pass(body)), asked(single_pass(body));
-  const AddReading straddling = [](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+  const AddReading spanning_two_sweeps = [](const ThrownBody& of, const ThrownBody::Sweep& sweep,
+                                            TumblingOdometry& odometry) {
     (void)odometry.add_motion(motion_of(of, sweep.end_ns - 50'000'000, sweep.end_ns + 50'000'001, 0.01, 0.01));
   };
-  expect_same(course_of(body, body.sweeps(), nothing, plain), course_of(body, body.sweeps(), straddling, asked));
+  expect_same(course_of(body, body.sweeps(), nothing, plain),
+              course_of(body, body.sweeps(), spanning_two_sweeps, asked));
   EXPECT_GT(asked.unused_odometer_readings(), 20u);
 }
 

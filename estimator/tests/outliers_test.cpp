@@ -188,9 +188,9 @@ TEST(Outliers, StampsBeyondAllClocksAreRefused) {
   ASSERT_TRUE(odometry.add_imu(sample).ok());
   constexpr TimeNs kLeast = std::numeric_limits<TimeNs>::min(), kMost = std::numeric_limits<TimeNs>::max();
   for (const auto& [start_ns, end_ns] : {std::pair{kLeast, kMost}, std::pair{kMost - 5, kMost}, std::pair{kLeast, 0l}})
-    EXPECT_EQ(odometry.add_sweep(start_ns, end_ns, {}).trouble, Trouble::out_of_range) << start_ns;
+    EXPECT_EQ(odometry.add_sweep(start_ns, end_ns, {}).error_code, ErrorCode::out_of_range) << start_ns;
   sample.time_ns = kMost;
-  EXPECT_EQ(odometry.add_imu(sample).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_imu(sample).error_code, ErrorCode::out_of_range);
 }
 
 TEST(Outliers, AHeldReadingIsSaved) {

@@ -154,30 +154,30 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
   for (const ImuSample& sample : frozen_y(test::noisy(unit_at(kPositions[0])))) {
     if (!(status = odometry.add_imu(sample)).ok()) break;
   }
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_NE(status.message().find("gyro y of IMU 1"), std::string::npos) << status.message();
   EXPECT_EQ(odometry.health().message(), status.message());
 }
 
 TEST(RollingOdometry, TroubleIsAValue) {
   RollingOdometry odometry(params_of(kPositions));
-  EXPECT_EQ(odometry.add_imu(unit_at(kPositions[0])[0]).trouble, Trouble::too_few);
+  EXPECT_EQ(odometry.add_imu(unit_at(kPositions[0])[0]).error_code, ErrorCode::too_few);
   RollingOdometry one(params_of({kPositions[0]}));
   const std::vector<ImuSample> samples = unit_at(kPositions[0]);
   ASSERT_TRUE(one.add_imu(samples[5]).ok());
-  EXPECT_EQ(one.add_imu(samples[4]).trouble, Trouble::time_order);
+  EXPECT_EQ(one.add_imu(samples[4]).error_code, ErrorCode::time_order);
   ImuSample late = samples[6];
   late.time_ns += 1'100'000'000;
-  EXPECT_EQ(one.add_imu(late).trouble, Trouble::gap);
+  EXPECT_EQ(one.add_imu(late).error_code, ErrorCode::gap);
   EXPECT_TRUE(one.add_imu(samples[6]).ok());
   one.finish();
-  EXPECT_EQ(one.add_imu(samples[7]).trouble, Trouble::out_of_range);
+  EXPECT_EQ(one.add_imu(samples[7]).error_code, ErrorCode::out_of_range);
   one.reset();
   EXPECT_TRUE(one.add_imu(samples[7]).ok());
   ImuSample weightless = samples[5];
   weightless.specific_force_m_s2.setZero();
   RollingOdometry fresh(params_of({kPositions[0]}));
-  EXPECT_EQ(fresh.add_imu(weightless).trouble, Trouble::degenerate);
+  EXPECT_EQ(fresh.add_imu(weightless).error_code, ErrorCode::degenerate);
   for (const ImuSample& sample : samples) ASSERT_TRUE(fresh.add_imu(sample).ok());
   EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m);
 }

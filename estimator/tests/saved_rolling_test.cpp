@@ -113,8 +113,8 @@ TEST(SavedRollingOdometry, PosesThatNobodyTookAndAnEndAreKept) {
     EXPECT_EQ(pose->pose.time_ns, same->pose.time_ns);
   }
   EXPECT_FALSE(other.take());
-  EXPECT_EQ(other.add_imus(std::vector{sphere.units[0][401], sphere.units[1][401], sphere.units[2][401]}).trouble,
-            Trouble::out_of_range)
+  EXPECT_EQ(other.add_imus(std::vector{sphere.units[0][401], sphere.units[1][401], sphere.units[2][401]}).error_code,
+            ErrorCode::out_of_range)
       << "the run has ended";
 }
 

@@ -16,7 +16,8 @@ using test::Kept;
 
 template <class Stream>
 class SavedStreams : public testing::Test {};
-using Streams = testing::Types<RateStream, RegimeStream, CarriedStream, CarriedLive, RollingFilter, RollingSmoother>;
+using Streams =
+    testing::Types<RateStream, RegimeStream, HandHeldStream, HandHeldPipeline, RollingFilter, RollingSmoother>;
 TYPED_TEST_SUITE(SavedStreams, Streams);
 
 TYPED_TEST(SavedStreams, GoOnFromAnywhere) {
@@ -59,7 +60,8 @@ TYPED_TEST(SavedStreams, BytesContainTheirParameters) {
     params.model.calibration.emplace().constants.lever_arm_m.x() = 0.1;
     params.calibrated_errors = std::make_shared<KnownSensorErrors>();
   }
-  if constexpr (std::is_same_v<TypeParam, CarriedLive>) params.rails.clipping.upright_rails.stated_gyro_rad_s = 10.0;
+  if constexpr (std::is_same_v<TypeParam, HandHeldPipeline>)
+    params.rails.clipping.axis_aligned_rails.stated_gyro_rad_s = 10.0;
   if constexpr (std::is_same_v<TypeParam, RollingFilter>) params.q_WI_start = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);
   Kept<TypeParam> first(params);
   for (const ImuSample& sample : test::samples_of_stream<TypeParam>()) (void)first.push(sample);
@@ -70,7 +72,7 @@ TYPED_TEST(SavedStreams, BytesContainTheirParameters) {
   ASSERT_TRUE(again.load(saved).ok());
   EXPECT_EQ(again.save(), saved);
   for (const std::size_t length : {0u, 39u, 100u})
-    EXPECT_EQ(saved_params<TypeParam>(std::span(saved).first(length), restored).trouble, Trouble::too_few);
+    EXPECT_EQ(saved_params<TypeParam>(std::span(saved).first(length), restored).error_code, ErrorCode::too_few);
 }
 
 /// Forces that wait for the rates of their instants are part of it.
@@ -98,7 +100,7 @@ TEST(SavedStreams, OtherParametersAndStreamsAreNamed) {
   const std::vector<std::byte> saved = Kept<RateStream>(params).save();
   params.lag_s = 0.2;
   EXPECT_STREQ(Kept<RateStream>(params).load(saved).field, "lag_s");
-  EXPECT_STREQ(Kept<CarriedStream>().load(saved).field, "kind of the saved state");
+  EXPECT_STREQ(Kept<HandHeldStream>().load(saved).field, "kind of the saved state");
   RateStream::Params restored;
   EXPECT_STREQ(saved_params<RateStream>(Kept<RegimeStream>().save(), restored).field, "kind of the saved state");
 }

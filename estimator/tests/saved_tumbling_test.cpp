@@ -183,8 +183,8 @@ TEST(SavedTumblingOdometry, GoesOnInAGapAndWithSweepsThatNobodyTook) {
   std::erase_if(gapped.imu, [](const ImuSample& s) { return s.time_ns > 1'500'000'000 && s.time_ns < 3'200'000'000; });
   // one sample after the gap is held back; the next will bear it out
   expect_splits(one_pass(body), gapped,
-                {{151, [](const TumblingOdometry& o) { return o.gaps() == 0; }},
-                 {152, [](const TumblingOdometry& o) { return o.gaps() == 1; }}});
+                {{151, [](const TumblingOdometry& o) { return o.restart_count() == 0; }},
+                 {152, [](const TumblingOdometry& o) { return o.restart_count() == 1; }}});
 
   TumblingOdometry first(one_pass(body)), second(one_pass(body));
   for (std::size_t k = 0; k < 100; ++k) ASSERT_TRUE(first.add_imu(gapped.imu[k]).ok());

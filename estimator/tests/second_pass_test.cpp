@@ -198,7 +198,7 @@ TEST(SecondPass, AGapOfTheImuEndsIt) {
   TumblingOdometry odometry(measured_badly(body, 0.9));
   for (const ImuSample& sample : imu) (void)odometry.add_imu(sample);
   odometry.finish();
-  EXPECT_EQ(odometry.gaps(), 1u);
+  EXPECT_EQ(odometry.restart_count(), 1u);
   EXPECT_FALSE(odometry.second_pass_applied());
 }
 

@@ -112,16 +112,16 @@ TEST_F(Stack, OfARollingSphereLiveAndSmoothed) {
   }
 }
 
-/// With `trouble` a segment of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
+/// With `error_code` a segment of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
 /// sweeps that were rejected.
-std::size_t tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdometry& odometry) {
+std::size_t tumble_over(const test::ThrownBody& body, bool error_code, TumblingOdometry& odometry) {
   std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0, rejected = 0;
   for (const ImuSample& sample : body.imu()) {
-    if (trouble && sample.time_ns > 1'300'000'000 && sample.time_ns < 1'700'000'000) continue;
+    if (error_code && sample.time_ns > 1'300'000'000 && sample.time_ns < 1'700'000'000) continue;
     EXPECT_TRUE(odometry.add_imu(sample).ok());
     for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next) {
-      if (trouble && next % 8 > 4) {
+      if (error_code && next % 8 > 4) {
         for (LidarPoint& point : sweeps[next].points) point.position_L_m *= 1.7f;
       }
       MotionReading motion{sweeps[next].start_ns, sweeps[next].end_ns, Eigen::Isometry3d::Identity(), {}};
@@ -137,13 +137,13 @@ std::size_t tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdom
 }
 
 TEST_F(Stack, OfATumblingBodyInTroubleAndWithASecondPass) {
-  for (const bool trouble : {false, true}) {
+  for (const bool error_code : {false, true}) {
     test::ThrownBody body;
     body.end_s = 4.2;
     TumblingOdometry::Params params;
     params.lever_arm_I_m = body.lever_arm_I_m;
     params.imu.rate_hz = body.imu_hz;
-    if (!trouble) {  // it has something to put right
+    if (!error_code) {  // it has something to put right
       params.lever_arm_I_m += Eigen::Vector3d(-0.006, -0.006, 0.006);
       params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(-1.0, -2.0, 2.0).normalized()).toRotationMatrix();
       params.expert.second_pass.after_s = 0.9;
@@ -152,12 +152,12 @@ TEST_F(Stack, OfATumblingBodyInTroubleAndWithASecondPass) {
     std::vector<std::byte> bytes;
     within("made", [&] { odometry = std::make_unique<TumblingOdometry>(params); });
     std::size_t rejected = 0;
-    within("samples and sweeps", [&] { rejected = tumble_over(body, trouble, *odometry); });
-    EXPECT_TRUE(trouble || odometry->second_pass_applied());
+    within("samples and sweeps", [&] { rejected = tumble_over(body, error_code, *odometry); });
+    EXPECT_TRUE(error_code || odometry->second_pass_applied());
     within("saved", [&] { bytes = odometry->save(); });
     within("loaded", [&] { ASSERT_TRUE(odometry->load(bytes).ok()); });
     within("finished", [&] { odometry->finish(); });
-    EXPECT_TRUE(!trouble || rejected > 0) << "negative control: nothing was in trouble";
+    EXPECT_TRUE(!error_code || rejected > 0) << "negative control: nothing was in trouble";
   }
 }
 

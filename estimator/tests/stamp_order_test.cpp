@@ -85,10 +85,10 @@ TYPED_TEST(StampOrderOf, AClockThatStepsBackRestartsTheRunAfterAStatedTime) {
       const Status status = odometry.add_imu(imu[k]);
       refused += !status.ok();
       if (!status.ok()) {
-        EXPECT_EQ(status.trouble, Trouble::time_order) << k;
+        EXPECT_EQ(status.error_code, ErrorCode::time_order) << k;
       }
     }
-    EXPECT_EQ(odometry.gaps(), 1u) << back_ms;
+    EXPECT_EQ(odometry.restart_count(), 1u) << back_ms;
     EXPECT_NEAR(double(refused * period_ns), 1e9 * StampOrder::kStepBack_s, 2.0 * double(period_ns)) << back_ms;
   }
 }
@@ -102,7 +102,7 @@ TYPED_TEST(StampOrderOf, ExtremeStampsAreRefused) {
                                  std::numeric_limits<TimeNs>::max()}) {
       ImuSample extreme = sample;
       extreme.time_ns = time_ns;
-      EXPECT_EQ(odometry.add_imu(extreme).trouble, Trouble::out_of_range) << time_ns;
+      EXPECT_EQ(odometry.add_imu(extreme).error_code, ErrorCode::out_of_range) << time_ns;
     }
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     ASSERT_TRUE(undisturbed.add_imu(sample).ok());
@@ -118,8 +118,8 @@ TEST(StampOrder, ExtremeStampsOfTheMapperAreRefused) {
   LidarInertialOdometry::SweepReport report;
   for (const TimeNs time_ns : {std::numeric_limits<TimeNs>::min(), std::numeric_limits<TimeNs>::max()}) {
     sample.time_ns = rate.time_ns = time_ns;
-    EXPECT_EQ(mapper.add_imu(sample, rate).trouble, Trouble::out_of_range);
-    EXPECT_EQ(mapper.add_sweep(time_ns, time_ns, {}, report).trouble, Trouble::out_of_range);
+    EXPECT_EQ(mapper.add_imu(sample, rate).error_code, ErrorCode::out_of_range);
+    EXPECT_EQ(mapper.add_sweep(time_ns, time_ns, {}, report).error_code, ErrorCode::out_of_range);
   }
 }
 
@@ -148,7 +148,7 @@ TEST(StampOrder, TheMapContinuesAtTheNewestPoseAfterAStepBack) {
   feed(body, kStep_ns, 10 * kStep_ns, kBack_ns, odometry, out);
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> done = odometry.take()) out.push_back(std::move(*done));
-  EXPECT_EQ(odometry.gaps(), 1u);
+  EXPECT_EQ(odometry.restart_count(), 1u);
   ASSERT_GT(out.size(), before + 30);
   const PoseState& last = out.back().report.pose;
   const Eigen::Isometry3d T_WI = body.T_WI(seconds(last.time_ns - kBack_ns));
@@ -225,7 +225,7 @@ TEST(StampOrder, ASphereContinuesAtItsNewestPoseAfterAGap) {
   }
   imu.insert(imu.end(), parked.begin(), parked.end());
   const std::vector<RollingOdometry::Pose> poses = roll(odometry, imu);
-  EXPECT_EQ(odometry.gaps(), 1u);
+  EXPECT_EQ(odometry.restart_count(), 1u);
   EXPECT_EQ(poses.size(), imu.size() - 1);
   EXPECT_NEAR(poses.back().pose.p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
   EXPECT_FALSE(poses.front().uncertain);

@@ -72,7 +72,7 @@ TEST(Stamps, ThatAreRefusedHaveNoPartInTheClock) {
     ImuSample wrong = sample;
     wrong.time_ns += 5'000'000'000;
     if (odometry.newest_ns()) {
-      EXPECT_EQ(odometry.add_imu(wrong).trouble, Trouble::gap);
+      EXPECT_EQ(odometry.add_imu(wrong).error_code, ErrorCode::gap);
     }
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     ASSERT_TRUE(undisturbed.add_imu(sample).ok());

@@ -119,9 +119,9 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   expect_whole(OdometryPass(rate, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
   expect_whole(TumblingOdometry::Sweep{}, "done");
   expect_whole(RateStream::Knot{}, "rate.window");
-  expect_whole(CarriedStream::Reading{}, "carried.readings");
-  expect_whole(CarriedStream::Knot{}, "carried.window");
-  expect_whole(CarriedLive::State{}, "live");
+  expect_whole(HandHeldStream::Reading{}, "carried.readings");
+  expect_whole(HandHeldStream::Knot{}, "carried.window");
+  expect_whole(HandHeldPipeline::State{}, "live");
   expect_whole(RateState{}, "smoothed");
   expect_whole(RateKnot{}, "left");
   expect_whole(RailPlane{}, "planes");
@@ -158,7 +158,7 @@ TEST(StateMembers, AllOfARollingOdometry) {
   expect_whole(ImuMerge::State{}, "merge");
   const auto state = std::make_unique<RollingSmoother::State>();
   expect_whole(*state, "rolling");
-  expect_whole(RollingSmoother::Step{}, "steps");
+  expect_whole(RollingSmoother::NodeModes{}, "steps");
   expect_whole(RollingEstimate{}, "done");
 }
 
@@ -167,8 +167,8 @@ TEST(StateMembers, AllOfTheParametersWithinAState) {
   expect_whole_params(RailDetector::Params{}, "upright_rails");
   expect_whole_params(RateStream::Params{}, "rate");
   expect_whole_params(RegimeStream::Params{}, "regimes");
-  expect_whole_params(CarriedStream::Params{}, "carried");
-  expect_whole_params(CarriedLive::Params{}, "live");
+  expect_whole_params(HandHeldStream::Params{}, "carried");
+  expect_whole_params(HandHeldPipeline::Params{}, "live");
   expect_whole_params(LidarInertialOdometry::Params{}, "mapping");
   expect_whole_params(TumblingOdometry::Params{}, "tumbling");
   expect_whole_params(ImuMerge::Params{}, "merge");

@@ -98,15 +98,15 @@ TEST(TumblingRecording, AnswersAfterFinishOnly) {
   const std::vector<ImuSample> imu = body.imu();
   record_all(imu, body.sweeps(), odometry);
   PoseState pose;
-  EXPECT_EQ(odometry.newest(pose).trouble, Trouble::empty);
+  EXPECT_EQ(odometry.newest(pose).error_code, ErrorCode::empty);
   EXPECT_FALSE(odometry.take());
   EXPECT_EQ(odometry.recording(), nullptr);
   ASSERT_TRUE(odometry.finish().ok());
   EXPECT_FALSE(take_recorded(odometry).empty());
   ImuSample later = imu.back();
   later.time_ns += 10'000'000;
-  EXPECT_EQ(odometry.add_imu(later).trouble, Trouble::out_of_range);
-  EXPECT_EQ(odometry.add_sweep(later.time_ns, later.time_ns, {}).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_imu(later).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_sweep(later.time_ns, later.time_ns, {}).error_code, ErrorCode::out_of_range);
   odometry.reset();
   EXPECT_EQ(odometry.recording(), nullptr);
   EXPECT_TRUE(odometry.add_imu(later).ok());
@@ -170,10 +170,10 @@ TEST(TumblingRecording, FindsTheOdometerReadingThatALiveRunTakes) {
     ASSERT_EQ(here.has_value(), expected.has_value()) << from;
     if (!here) continue;
     ++found;
-    EXPECT_EQ(begins_ns(*here), begins_ns(*expected));
+    EXPECT_EQ(reading_start_ns(*here), reading_start_ns(*expected));
   }
   EXPECT_GT(found, 2);
-  EXPECT_GT(taken.straddling(), 0u);
+  EXPECT_GT(taken.spanning_two_sweeps(), 0u);
 }
 
 TEST(TumblingRecording, AGapEndsTheRecording) {
@@ -182,7 +182,7 @@ TEST(TumblingRecording, AGapEndsTheRecording) {
   std::vector<ImuSample> imu = body.imu();
   for (std::size_t k = 200; k < imu.size(); ++k) imu[k].time_ns += 2'000'000'000;
   for (std::size_t k = 0; k < imu.size(); ++k)
-    EXPECT_EQ(odometry.add_imu(imu[k]).trouble, k < 200 ? Trouble::none : Trouble::gap) << k;
+    EXPECT_EQ(odometry.add_imu(imu[k]).error_code, k < 200 ? ErrorCode::none : ErrorCode::gap) << k;
   ASSERT_TRUE(odometry.finish().ok());
   EXPECT_EQ(odometry.recording()->rates.size(), 200u);
 }
@@ -231,7 +231,7 @@ TEST(TumblingRecording, RefusesALagBetweenAWindowAndARecording) {
 TEST(TumblingRecording, ARecordingWithoutSamplesIsAnError) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body));
-  EXPECT_EQ(odometry.finish().trouble, Trouble::empty);
+  EXPECT_EQ(odometry.finish().error_code, ErrorCode::empty);
   EXPECT_EQ(odometry.recording(), nullptr);
 }
 

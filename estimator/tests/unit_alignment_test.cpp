@@ -115,7 +115,7 @@ TEST(UnitAlignment, AStampThatGoesBackIsRejected) {
   UnitAlignment::State state;
   const std::vector<ImuSample> samples = ramp(0, 2);
   ASSERT_TRUE(alignment.push(1, samples[1], state).ok());
-  EXPECT_EQ(alignment.push(1, samples[0], state).trouble, Trouble::time_order);
+  EXPECT_EQ(alignment.push(1, samples[0], state).error_code, ErrorCode::time_order);
   EXPECT_TRUE(alignment.push(0, samples[0], state).ok()) << "the stamps of two units are independent";
 }
 
@@ -200,7 +200,7 @@ TEST(RollingOdometryUnits, LiveAndLaggedPosesDoNotDependOnLaterReadings) {
 
 TEST(RollingOdometryUnits, AUnitThatDoesNotExistIsRejected) {
   RollingOdometry odometry(params_of({kPositions[0]}));
-  EXPECT_EQ(odometry.add_imu(1, unit_at(kPositions[0]).front()).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_imu(1, unit_at(kPositions[0]).front()).error_code, ErrorCode::out_of_range);
 }
 
 }  // namespace

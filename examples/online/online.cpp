@@ -61,7 +61,7 @@ std::string_view Online::take(std::string_view line) {
   const tumble::Status status = filter_.step(sample, *state_);
   if (!status.ok()) {
     ok_ = false;
-    const int length = std::snprintf(text_, kLineMax, "%s: %s is %g, bound %g", tumble::to_string(status.trouble),
+    const int length = std::snprintf(text_, kLineMax, "%s: %s is %g, bound %g", tumble::to_string(status.error_code),
                                      status.field, status.value, status.bound);
     return {text_, std::min(static_cast<std::size_t>(std::max(length, 0)), kLineMax - 1)};
   }

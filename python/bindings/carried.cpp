@@ -16,26 +16,26 @@
 #include "results.hpp"
 #include "streams.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
-#include "tumble/attitude/carried_elements.hpp"
-#include "tumble/attitude/carried_smoother.hpp"
-#include "tumble/attitude/carried_stream.hpp"
-#include "tumble/attitude/detail/carried_live.hpp"
+#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/detail/hand_held_pipeline.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/hand_held_stream.hpp"
 
 namespace tumble::python {
 
 namespace {
 
-/// A CarriedSmoother with the ranges that the data sheet of the IMU states.
+/// A HandHeldSmoother with the ranges that the data sheet of the IMU states.
 struct Carried {
-  CarriedSmoother smoother;
-  RailDetector::Params upright_rails;
+  HandHeldSmoother smoother;
+  RailDetector::Params axis_aligned_rails;
 };
 
-std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& self, const ArrayLike& time_ns,
-                                                              const ArrayLike& gyro, const ArrayLike& accel,
-                                                              const ArrayLike& clip_flags) {
+std::tuple<Rates, Attitudes, HandHeldSmoother::Report> hand_held(const Carried& self, const ArrayLike& time_ns,
+                                                                 const ArrayLike& gyro, const ArrayLike& accel,
+                                                                 const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
-  std::tuple<Rates, Attitudes, CarriedSmoother::Report> out;
+  std::tuple<Rates, Attitudes, HandHeldSmoother::Report> out;
   std::vector<RateState>& rates = std::get<0>(out).rows;
   Status status;
   {
@@ -43,8 +43,8 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
     status = check_recording(samples, 2, 1.0);
     if (status.ok()) {
       ClippingFinder::Params finding;
-      finding.upright_rails = self.upright_rails;
-      const ClippedReadings known = carried_elements(samples, ClippingFinder(finding).find(samples));
+      finding.axis_aligned_rails = self.axis_aligned_rails;
+      const ClippedReadings known = to_clipped_readings(samples, ClippingFinder(finding).find(samples));
       status = self.smoother.estimate(samples, known.clipped(), rates, std::get<1>(out).rows, std::get<2>(out));
       if (status.ok()) known.mark_partly_saturated(rates);
     }
@@ -54,57 +54,58 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
 }
 
 void bind_smoother(nb::module_& m) {
-  using Report = CarriedSmoother::Report;
-  nb::class_<Report>(m, "CarriedReport", "Statistics of a run of CarriedSmoother.")
+  using Report = HandHeldSmoother::Report;
+  nb::class_<Report>(m, "HandHeldReport", "Statistics of a run of HandHeldSmoother.")
       .def_ro("iterations", &Report::iterations)
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
-      .def_ro("hand_mahalanobis", &Report::hand_mahalanobis,
+      .def_ro("hand_acceleration_ratio", &Report::hand_acceleration_ratio,
               "2 or more indicates a thrown body or violent hand-held motion")
-      .def_ro("revolutions_asked", &Report::revolutions_asked)
-      .def_ro("revolutions_taken", &Report::revolutions_taken)
-      .def_ro("revolutions_open", &Report::revolutions_open,
+      .def_ro("revolutions_tested", &Report::revolutions_tested)
+      .def_ro("revolutions_corrected", &Report::revolutions_corrected)
+      .def_ro("revolutions_ambiguous", &Report::revolutions_ambiguous,
               "clipped segments in which another number of turns remains possible");
   nb::class_<Carried>(
-      m, "CarriedSmoother",
+      m, "HandHeldSmoother",
       "Estimates attitude and angular velocity of a hand-held body (held, swung, twirled) over a whole recording,\n"
       "also where its gyro clips.\n\n"
-      "CarriedSmoother(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().")
+      "HandHeldSmoother(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().")
       .def(
           "__init__",
           [](Carried* self, const nb::kwargs& options) {
-            Keywords keywords("CarriedSmoother", options);
-            CarriedSmoother::Params params;
-            RailDetector::Params upright_rails;
-            read_ranges(keywords, upright_rails);
+            Keywords keywords("HandHeldSmoother", options);
+            HandHeldSmoother::Params params;
+            RailDetector::Params axis_aligned_rails;
+            read_ranges(keywords, axis_aligned_rails);
             read_fields(keywords, params);
             keywords.done();
-            new (self) Carried{CarriedSmoother(params), upright_rails};
+            new (self) Carried{HandHeldSmoother(params), axis_aligned_rails};
           },
           nb::arg("options"), takes_options())
-      .def("estimate", &carried, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+      .def("estimate", &hand_held, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
-           "Returns rates and attitudes (heading 0 at the start), one of each per sample, and a CarriedReport.")
-      .def_static("parameters", [] { return list_fields(CarriedSmoother::Params{}); });
+           "Returns rates and attitudes (heading 0 at the start), one of each per sample, and a HandHeldReport.")
+      .def_static("parameters", [] { return list_fields(HandHeldSmoother::Params{}); });
 }
 
 /// The stream makes one step per node and does not use these parameters.
 const std::vector<const char*> kUnusedParameters = {"iterations_max"};
 
 void bind_stream(nb::module_& m) {
-  using Live = Streaming<CarriedLive>;
+  using Live = Streaming<HandHeldPipeline>;
   using Object = Guarded<Live>;
-  nb::class_<Object> bound(m, "CarriedStream",
-                           "The streaming form of CarriedSmoother: returns each rate when its sample is lag_s old.\n"
-                           "The stream uses the rails detected in the readings so far.\n\n"
-                           "CarriedStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().");
+  nb::class_<Object> bound(
+      m, "HandHeldStream",
+      "The streaming form of HandHeldSmoother: returns each rate when its sample is lag_s old.\n"
+      "The stream uses the rails detected in the readings so far.\n\n"
+      "HandHeldStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().");
   bound
       .def(
           "__init__",
           [](Object* self, const nb::kwargs& options) {
-            Keywords keywords("CarriedStream", options);
-            CarriedLive::Params params;
-            read_ranges(keywords, params.rails.clipping.upright_rails);
+            Keywords keywords("HandHeldStream", options);
+            HandHeldPipeline::Params params;
+            read_ranges(keywords, params.rails.clipping.axis_aligned_rails);
             read_fields(keywords, params.stream, kUnusedParameters);
             keywords.done();
             new (self) Object(Live(params));
@@ -135,8 +136,8 @@ void bind_stream(nb::module_& m) {
       .def_prop_ro(
           "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
           "number of steps skipped because their equations were not positive definite")
-      .def_static("parameters", [] { return list_fields(CarriedStream::Params{}, kUnusedParameters); });
-  bind_keeping<CarriedLive>(bound);
+      .def_static("parameters", [] { return list_fields(HandHeldStream::Params{}, kUnusedParameters); });
+  bind_keeping<HandHeldPipeline>(bound);
 }
 
 }  // namespace

@@ -38,19 +38,21 @@ void bind_report(nb::module_& m) {
           "smoothed", [](const Report& r) { return Poses{r.smoothed}; },
           "final (smoothed) poses of the sweep that leaves the window when this one enters; empty while the window\n"
           "fills")
-      .def_ro("inlier_share", &Report::inlier_share)
-      .def_ro("conditioning", &Report::conditioning)
-      .def_ro("weakest_sigma_m", &Report::weakest_sigma_m,
+      .def_ro("inlier_ratio", &Report::inlier_ratio)
+      .def_ro("eigenvalue_ratio", &Report::eigenvalue_ratio)
+      .def_ro("least_constrained_sigma_m", &Report::least_constrained_sigma_m,
               "standard deviation in the direction that the surfaces constrain least")
-      .def_prop_ro("weakest_direction", [](const Report& r) { return whole<6>(r.weakest_direction.data()); })
+      .def_prop_ro("least_constrained_direction",
+                   [](const Report& r) { return whole<6>(r.least_constrained_direction.data()); })
       .def_ro("innovation", &Report::innovation,
               "correction divided by the standard deviation of the prior, per square root of the number of unknowns")
       .def_ro("iterations", &Report::iterations)
-      .def_ro("lost_sweeps", &Report::lost_sweeps, "number of consecutive rejected sweeps, including this one")
+      .def_ro("consecutive_rejected_sweeps", &Report::consecutive_rejected_sweeps,
+              "number of consecutive rejected sweeps, including this one")
       .def_prop_ro("saturation_deficit_rad_s",
                    [](const Report& r) { return whole<3>(r.saturation_deficit_rad_s.data()); })
       .def_ro("points_used", &Report::points_used)
-      .def_ro("lone_points", &Report::lone_points)
+      .def_ro("isolated_points", &Report::isolated_points)
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added)
       .def_ro("in_prior_map", &Report::in_prior_map, "whether the poses are in the frame of the prior map");

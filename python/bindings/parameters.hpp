@@ -54,12 +54,12 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// Calls `each(name, value, field)` for each field of a `Params`, except hidden ones (`is_among`), which are derived
+/// Calls `each(name, value, field)` for each field of a `Params`, except hidden ones (`matches_any`), which are derived
 /// from other numbers.
 template <class Params, class Each>
 void visit_shown(Params& params, const std::vector<const char*>& hidden, Each each) {
   visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
-    if (!is_among<const char*>(name, hidden)) each(name, value, field);
+    if (!matches_any<const char*>(name, hidden)) each(name, value, field);
   });
 }
 
@@ -96,7 +96,7 @@ std::vector<Parameter> list_fields(const Params& params, const std::vector<const
     } else {
       number = nb::int_(static_cast<long long>(value));
     }
-    out.push_back({name, field.unit, number, field.low, field.high, field.meaning, field.rank == Rank::first});
+    out.push_back({name, field.unit, number, field.low, field.high, field.meaning, field.rank == FieldRank::basic});
   });
   return out;
 }

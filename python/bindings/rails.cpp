@@ -35,7 +35,7 @@ Found find_rails(const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLik
                  const nb::kwargs& given) {
   Keywords keywords("find_rails", given);
   ClippingFinder::Params params;
-  read_ranges(keywords, params.upright_rails);
+  read_ranges(keywords, params.axis_aligned_rails);
   read_fields(keywords, params);
   keywords.done();
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
@@ -89,14 +89,14 @@ void bind_rails(nb::module_& m) {
           "accel", [](const Found& f) { return as_list(f.rails.accel_planes); },
           nb::for_getter(nb::sig("def accel(self) -> list[RailPlane | None]")))
       .def_prop_ro(
-          "upright", [](const Found& f) { return f.rails.upright; },
+          "upright", [](const Found& f) { return f.rails.gyro_clips_after_compensation; },
           "whether the device clips its output axes, so that clipping of one axis leaves the other axes unaffected")
       .def_prop_ro(
           "clipped_gyro", [](const Found& f) { return bits(f, &Clipping::gyro); },
           "(N,) uint8, bit j: axis j is clipped; the true value is at or beyond the reading")
       .def_prop_ro("clipped_accel", [](const Found& f) { return bits(f, &Clipping::accel); })
       .def_prop_ro(
-          "missing_gyro", [](const Found& f) { return bits(f, &Clipping::missing_gyro); },
+          "unusable_gyro", [](const Found& f) { return bits(f, &Clipping::unusable_gyro); },
           "(N,) uint8, bit j: the reading of axis j is invalid (its sign flipped at the rail)");
   m.def(
       "find_rails", &find_rails, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),

@@ -63,13 +63,13 @@ RateStream::Params stream_params(const nb::kwargs& given) {
   return params_of<RateStream>("RateStream", given);
 }
 
-/// RegimeStream derives these from its RateStream; its CarriedStream makes one iteration per node.
+/// RegimeStream derives these from its RateStream; its HandHeldStream makes one iteration per node.
 const std::vector<const char*> kDerivedRegimeParameters = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                                            "carried_iterations_max"};
 
 RegimeStream::Params regime_params(const nb::kwargs& given) {
   RegimeStream::Params params = params_of<RegimeStream>("RegimeStream", given, kDerivedRegimeParameters);
-  params.carried.body.expert.gap_max_s = params.rate.gap_max_s;
+  params.hand_held.body.expert.gap_max_s = params.rate.gap_max_s;
   return params;
 }
 
@@ -104,7 +104,7 @@ nb::dict shares_of(const RegimeProbabilities& shares) {
   nb::dict out;
   out["flight"] = shares.flight;
   out["contact"] = shares.contact;
-  out["carried"] = shares.carried;
+  out["carried"] = shares.hand_held;
   return out;
 }
 
@@ -144,7 +144,7 @@ void bind_batch(nb::module_& m) {
       "The ranges are those of the data sheet, or None. calibration is a RigCalibration of an earlier run.\n"
       "parameters() lists the options. The model covers flight and contact. For hand-held motion use RegimeSmoother "
       "or\n"
-      "CarriedSmoother; tumble.rate() uses RegimeSmoother.")
+      "HandHeldSmoother; tumble.rate() uses RegimeSmoother.")
       .def(
           "__init__",
           [](RateSmoother* self, const nb::kwargs& options) {
@@ -158,17 +158,17 @@ void bind_batch(nb::module_& m) {
   nb::class_<Joint>(m, "RegimeReport", "Statistics of a run of RegimeSmoother.")
       .def_ro("rate", &Joint::rate, "report of RateSmoother")
       .def_prop_ro(
-          "shares", [](const Joint& r) { return shares_of(r.shares); },
+          "shares", [](const Joint& r) { return shares_of(r.probabilities); },
           nb::for_getter(nb::sig("def shares(self) -> dict[str, float]")),
           "mean probabilities of flight, contact and hand-held motion")
-      .def_ro("carried_clipped_max", &Joint::carried_clipped_max,
+      .def_ro("hand_held_probability_max", &Joint::hand_held_probability_max,
               "largest probability of hand-held motion in a clipped segment")
-      .def_ro("carried_asked", &Joint::carried_asked, "whether CarriedSmoother was used")
-      .def_ro("carried", &Joint::carried, "report of CarriedSmoother, if it was used");
+      .def_ro("hand_held_smoother_ran", &Joint::hand_held_smoother_ran, "whether HandHeldSmoother was used")
+      .def_ro("carried", &Joint::hand_held, "report of HandHeldSmoother, if it was used");
   nb::class_<RegimeSmoother>(
       m, "RegimeSmoother",
       "Estimates the angular velocity of a body in flight, contact or hand-held motion, over a\n"
-      "whole recording. Uses RateSmoother, and CarriedSmoother where the gyro clipped during\n"
+      "whole recording. Uses RateSmoother, and HandHeldSmoother where the gyro clipped during\n"
       "hand-held motion.\n\n"
       "RegimeSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
       "calibration=None, **options): the arguments of RateSmoother. parameters() lists the options.")
@@ -279,7 +279,7 @@ void bind_streams(nb::module_& m) {
       m, "RegimeStream",
       "Estimates the angular velocity of a body in flight, contact or hand-held motion, as a stream. Uses RateStream, "
       "and\n"
-      "CarriedStream where the gyro clips during hand-held motion.\n\n"
+      "HandHeldStream where the gyro clips during hand-held motion.\n\n"
       "RegimeStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None,\n"
       "**options): the arguments of RateSmoother. parameters() lists the options.",
       &regime_params, [](const RegimeStream& s) -> const RateStream& { return s.rate(); },
@@ -287,7 +287,8 @@ void bind_streams(nb::module_& m) {
       .def(
           "regime_shares",
           [](Guarded<Streaming<RegimeStream>>& self) {
-            const RegimeProbabilities shares = self.run([](Streaming<RegimeStream>& at) { return at.state->shares; });
+            const RegimeProbabilities shares =
+                self.run([](Streaming<RegimeStream>& at) { return at.state->probabilities; });
             return shares_of(shares);
           },
           nb::sig("def regime_shares(self) -> dict[str, float]"),

@@ -202,7 +202,7 @@ void bind_map(nb::module_& m) {
             std::vector<Eigen::Vector3f> positions(count);
             for (std::size_t k = 0; k < count; ++k)
               positions[k] = Eigen::Vector3d(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]).cast<float>();
-            return M{with_normals(positions)};
+            return M{to_map_points(positions)};
           },
           nb::arg("position"), "Returns map points with fitted normals for positions (N, 3) [m].");
 }

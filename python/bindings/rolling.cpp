@@ -209,8 +209,8 @@ void bind_unit(nb::module_& m) {
       .def_ro("frozen", &U::frozen, "whether its readings are constant while those of the other units change")
       .def_ro("disagrees", &U::disagrees,
               "whether it has disagreed with the other units for a long time and is excluded")
-      .def_ro("left_out", &U::left_out, "number of windows in which its specific force was excluded")
-      .def_ro("absent", &U::absent, "number of samples that were not finite")
+      .def_ro("left_out", &U::excluded_windows, "number of windows in which its specific force was excluded")
+      .def_ro("absent", &U::missing_samples, "number of samples that were not finite")
       .def_prop_ro("time_offset_s", &U::offset_s, "offset of its clock from the mean of all units")
       .def_prop_ro(
           "rate_bias_rad_s", [](const U& u) { return whole<3>(u.x.data()); },

@@ -49,10 +49,10 @@ nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
 
 }  // namespace
 
-void raise_input(const char* trouble, const std::string& field, nb::handle value, nb::handle bound) {
+void raise_input(const char* error_code, const std::string& field, nb::handle value, nb::handle bound) {
   const std::string text = field + " is " + text_of(value) + ", must be " + text_of(bound);
   const nb::object type = error_class();
-  const nb::object error = type(text.c_str(), trouble, field.c_str(), value, bound);
+  const nb::object error = type(text.c_str(), error_code, field.c_str(), value, bound);
   PyErr_SetObject(type.ptr(), error.ptr());
   throw nb::python_error();
 }
@@ -65,9 +65,9 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
     value = time_object(status.value, times.value);
     bound = time_object(status.bound, times.bound);
     // a bound that was rounded down must not make the time look valid
-    if (status.trouble == Trouble::time_order && PyObject_RichCompareBool(bound.ptr(), value.ptr(), Py_LT) == 1)
+    if (status.error_code == ErrorCode::time_order && PyObject_RichCompareBool(bound.ptr(), value.ptr(), Py_LT) == 1)
       bound = value;
-    message = std::string(to_string(status.trouble)) + ": " + status.field + " is " + text_of(value) + ", bound " +
+    message = std::string(to_string(status.error_code)) + ": " + status.field + " is " + text_of(value) + ", bound " +
               text_of(bound);
   }
   nb::object at = nb::none();
@@ -77,18 +77,19 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
   }
   const nb::object type = error_class();
   const nb::object error =
-      type(message.c_str(), to_string(status.trouble), status.field, value, bound, at, std::move(so_far));
+      type(message.c_str(), to_string(status.error_code), status.field, value, bound, at, std::move(so_far));
   PyErr_SetObject(type.ptr(), error.ptr());
   throw nb::python_error();
 }
 
 void require(const Status& status, std::span<const ImuSample> samples) {
   const auto matches = [&status](const Status& found) {
-    return found.trouble == status.trouble && std::strcmp(found.field, status.field) == 0;
+    return found.error_code == status.error_code && std::strcmp(found.field, status.field) == 0;
   };
   for (std::size_t k = 0; !status.ok() && k < samples.size(); ++k) {
-    const double gap_max_s = status.trouble == Trouble::gap ? status.bound : std::numeric_limits<double>::infinity();
-    const bool late = k > 0 && matches(check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s));
+    const double gap_max_s =
+        status.error_code == ErrorCode::gap ? status.bound : std::numeric_limits<double>::infinity();
+    const bool late = k > 0 && matches(check_stamp_order(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s));
     if (late) require(status, k, nb::none(), {samples[k].time_ns, samples[k - 1].time_ns});
     if (matches(check_sample(samples[k]))) require(status, k);
   }
@@ -97,7 +98,8 @@ void require(const Status& status, std::span<const ImuSample> samples) {
 
 nb::object health_of(const Status& status) {
   if (status.ok()) return nb::none();
-  return error_class()(status.message().c_str(), to_string(status.trouble), status.field, status.value, status.bound);
+  return error_class()(status.message().c_str(), to_string(status.error_code), status.field, status.value,
+                       status.bound);
 }
 
 void translate_invalid_params() {

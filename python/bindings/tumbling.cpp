@@ -146,9 +146,9 @@ void bind_accessors(Class& bound) {
           [](BoundTumblingOdometry& self) {
             const auto P =
                 self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration_covariance(); });
-            constexpr int kErrors = SweepCalibration::kErrors;
+            constexpr int kErrorCount = SweepCalibration::kErrorCount;
             const nb::object all = nb::cast(owned(std::vector<double>(P.data(), P.data() + P.size())));
-            return nb::cast<Doubles>(all.attr("reshape")(kErrors, kErrors).attr("copy")());
+            return nb::cast<Doubles>(all.attr("reshape")(kErrorCount, kErrorCount).attr("copy")());
           },
           "Returns the covariance (N, N) of the errors of calibration(); 0 for values that are not estimated.")
       .def(
@@ -172,7 +172,7 @@ void bind_accessors(Class& bound) {
       .def_prop_ro(
           "gaps",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.restart_count(); });
           },
           "number of gaps in the IMU samples after which rate estimation restarted")
       .def_prop_ro(
@@ -235,7 +235,7 @@ void bind_tumbling(nb::module_& m) {
       .def_ro("scale", &SweepScale::scale)
       .def_ro("sigma", &SweepScale::sigma, "standard deviation of scale; infinite before the first comparison")
       .def_ro("changes", &SweepScale::changes, "number of compared changes of velocity")
-      .def_prop_ro("is_off", &SweepScale::is_off,
+      .def_prop_ro("is_inconsistent", &SweepScale::is_inconsistent,
                    "whether scale differs from 1 by more than 2 % and more than five standard deviations");
   nb::class_<BoundTumblingOdometry> bound(
       m, "TumblingOdometry",

@@ -16,7 +16,7 @@ STREAMS = {
     "vqf": tumble.Vqf,
     "tumble": tumble.TumbleAttitude,
     "strapdown": tumble.Strapdown,
-    "carried": tumble.CarriedStream,
+    "carried": tumble.HandHeldStream,
     "rolling": lambda: tumble.RollingSmoother(radius_m=0.145, lag_s=0.2),
     "rolling_live": lambda: tumble.RollingFilter(radius_m=0.145),
 }
@@ -24,7 +24,7 @@ BATCHES = {
     "smoother": lambda *s: tumble.RateSmoother(lever_arm_m=LEVER).estimate(*s),
     "regimes": lambda *s: tumble.RegimeSmoother(lever_arm_m=LEVER).estimate(*s),
     "saave": lambda *s: tumble.Saave(lever_arm_m=LEVER, saturation_point_rad_s=10.0).estimate(*s),
-    "carried_batch": lambda *s: tumble.CarriedSmoother().estimate(*s),
+    "carried_batch": lambda *s: tumble.HandHeldSmoother().estimate(*s),
     "rails": lambda *s: tumble.find_rails(*s),
 }
 TAKERS = BATCHES | {name: (lambda make: lambda *s: make().add_imu(*s))(make) for name, make in STREAMS.items()}

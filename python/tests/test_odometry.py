@@ -28,7 +28,7 @@ def test_jitter_of_host_stamps_is_estimated(hill, slip):
 def test_diagnostics_of_tumbling_odometry(hill):
     odometry = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
     assert odometry.newest_ns is None and odometry.rejected_samples == 0
-    assert np.isinf(odometry.sweep_scale.sigma) and odometry.sweep_scale.changes == 0 and not odometry.sweep_scale.is_off
+    assert np.isinf(odometry.sweep_scale.sigma) and odometry.sweep_scale.changes == 0 and not odometry.sweep_scale.is_inconsistent
     assert odometry.calibration_covariance().shape == (10, 10) and not odometry.calibration_covariance().any(), "nothing is estimated yet"
     odometry = tumble.tumbling(hill).odometry
     assert odometry.newest_ns == hill.imus[0].time_ns[-1] and odometry.rejected_samples == 0

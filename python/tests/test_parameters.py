@@ -13,7 +13,7 @@ NEEDED = {
     "RateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "RegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "Saave": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
-    "CarriedSmoother": {}, "CarriedStream": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuSheet": {}, "LidarSheet": {},
+    "HandHeldSmoother": {}, "HandHeldStream": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuSheet": {}, "LidarSheet": {},
     "RollingSmoother": {"radius_m": 0.145},
     "RollingFilter": {"radius_m": 0.145},
     "RollingOdometry": {"units": [(tumble.sheets.phidget1044(), np.eye(4))], "radius_m": 0.145},

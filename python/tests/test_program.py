@@ -53,7 +53,7 @@ def test_rate_stream(hill, estimates):
 
 
 def test_rate_of_who_carries_what(twirl, estimates):
-    """Hand-held motion, for which CarriedSmoother is used."""
+    """Hand-held motion, for which HandHeldSmoother is used."""
     expected = estimates("rate/tumble", "twirl")
     own = tumble.rate(twirl.imus[0], twirl.gravity_m_s2)
     assert expected.health["regime_carried_asked"] == 1.0
@@ -73,7 +73,7 @@ def test_rate_smoother(hill, estimates):
 
 def test_carried_smoother(hill, estimates):
     expected, imu = estimates("rate/carried").rates, hill.imus[0]
-    own, attitudes, report = tumble.CarriedSmoother(
+    own, attitudes, report = tumble.HandHeldSmoother(
         gravity_m_s2=hill.gravity_m_s2, gyro_range_rad_s=imu.gyro_range_rad_s,
         accel_range_m_s2=imu.accel_range_m_s2).estimate(*imu.samples)
     assert same(own.rate, expected.rate) and same_covariance(own, expected) and same(own.source, expected.source)
@@ -92,7 +92,7 @@ def test_tumbling(hill, estimates):
     assert same(own.poses.time_ns, expected.sweep_poses.time_ns)
     assert [int(s.verdict) for s in own.sweeps] == expected.sweeps["verdict"].astype(int).tolist()
     assert [s.iterations for s in own.sweeps] == expected.sweeps["iterations"].astype(int).tolist()
-    assert [s.inlier_share for s in own.sweeps] == expected.sweeps["inlier_share"].tolist()
+    assert [s.inlier_ratio for s in own.sweeps] == expected.sweeps["inlier_share"].tolist()
     assert len(own.map) > 10000 and own.odometry.second_pass_applied == bool(expected.health["second_pass_applied"])
     assert own.odometry.rig().covariance.shape == (20, 20)
 
@@ -153,12 +153,12 @@ def test_carried_stream(twirl):
     imu = twirl.imus[0]
     samples, truth = [rows[:2000] for rows in imu.samples], twirl.truth.imu_rate[0][:2000]
     stated = {"gravity_m_s2": twirl.gravity_m_s2, "gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
-    batch, _, _ = tumble.CarriedSmoother(**stated).estimate(*samples)
+    batch, _, _ = tumble.HandHeldSmoother(**stated).estimate(*samples)
     clipped = batch.clipped_axes != 0
     assert np.count_nonzero(clipped) > 100
 
     def through(**options):
-        stream = tumble.CarriedStream(period_s=imu.period_ns * 1e-9, **(stated | options))
+        stream = tumble.HandHeldStream(period_s=imu.period_ns * 1e-9, **(stated | options))
         rates = tumble.Rates.joined([stream.add_imu(*samples), stream.flush()])
         assert np.array_equal(rates.time_ns, samples[0]) and stream.failures == 0
         return rates
@@ -182,9 +182,9 @@ def test_carried_stream_hears_flags_and_goes_on_after_a_refusal(twirl):
     samples = [rows[:400] for rows in imu.samples]
     flags = samples[3].copy()
     flags[200:210] = 2
-    expected = tumble.CarriedStream().add_imu(*samples[:3], flags)
+    expected = tumble.HandHeldStream().add_imu(*samples[:3], flags)
     assert ((expected.clipped_axes[200:210] & 2) != 0).all()
-    whole, refused = tumble.CarriedStream(), tumble.CarriedStream()
+    whole, refused = tumble.HandHeldStream(), tumble.HandHeldStream()
     expected = whole.add_imu(*samples)
     first = refused.add_imu(*(rows[:300] for rows in samples))
     for time_ns, gyro, trouble in ((int(samples[0][299]), samples[1][300], "time_order"), (int(samples[0][299]) + 3 * 10**9, samples[1][300], "gap"),
@@ -195,10 +195,10 @@ def test_carried_stream_hears_flags_and_goes_on_after_a_refusal(twirl):
     rest = refused.add_imu(*(rows[300:] for rows in samples))
     assert np.array_equal(tumble.Rates.joined([first, rest]).rate, expected.rate), "a sample that was refused left its mark"
     with pytest.raises(tumble.TumbleError) as caught:
-        tumble.CarriedStream(lag_s=0.6)
+        tumble.HandHeldStream(lag_s=0.6)
     assert (caught.value.trouble, caught.value.field) == ("out_of_range", "window_s")
     with pytest.raises(tumble.TumbleError, match="iterations_max"):
-        tumble.CarriedStream(iterations_max=3)
+        tumble.HandHeldStream(iterations_max=3)
 
 
 def test_rolling_smoother_over_the_run(slip):

@@ -49,7 +49,7 @@ class Odometry(Stream):
 STREAMS = {
     "rate": Stream(lambda: tumble.RateStream(lever_arm_m=LEVER, gyro_range_rad_s=10.0)),
     "regime": Stream(lambda: tumble.RegimeStream(lever_arm_m=LEVER, lag_s=0.1)),
-    "carried": Stream(lambda: tumble.CarriedStream(gyro_range_rad_s=10.0, lag_s=0.15)),
+    "carried": Stream(lambda: tumble.HandHeldStream(gyro_range_rad_s=10.0, lag_s=0.15)),
     "rolling_live": Stream(lambda: tumble.RollingFilter(radius_m=0.145), end=""),
     "rolling": Stream(lambda: tumble.RollingSmoother(radius_m=0.145, lag_s=0.2), end="finish"),
     "tumbling_odometry": Odometry(lambda: tumble.TumblingOdometry(imu=SHEET, T_IL=np.eye(4), lever_arm_m=LEVER, lag_s=0.1)),

@@ -77,11 +77,11 @@ double number_at(const std::uint8_t* at, std::uint8_t datatype) {
 }
 
 Status check_layout(const PointCloudView& cloud, std::size_t row_bytes) {
-  if (cloud.is_bigendian) return {Trouble::out_of_range, "is_bigendian", 1.0, 0.0};
-  if (cloud.width == 0 || cloud.height == 0) return {Trouble::empty, "points", 0.0, 1.0};
-  if (cloud.point_step == 0) return {Trouble::out_of_range, "point_step", 0.0, 1.0};
+  if (cloud.is_bigendian) return {ErrorCode::out_of_range, "is_bigendian", 1.0, 0.0};
+  if (cloud.width == 0 || cloud.height == 0) return {ErrorCode::empty, "points", 0.0, 1.0};
+  if (cloud.point_step == 0) return {ErrorCode::out_of_range, "point_step", 0.0, 1.0};
   if (row_bytes > cloud.data.size() / cloud.height) {
-    return {Trouble::out_of_range, "row_step", static_cast<double>(row_bytes),
+    return {ErrorCode::out_of_range, "row_step", static_cast<double>(row_bytes),
             static_cast<double>(cloud.data.size()) / cloud.height};
   }
   return {};
@@ -110,7 +110,7 @@ Status PointCloudReader::find_fields(const PointCloudView& cloud, Layout& layout
   for (const PointField& field : cloud.fields) {
     if (field.datatype < 1 || field.datatype > 8 || field.count > 1) continue;  // count 0: some drivers mean one
     if (std::uint64_t{field.offset} + kBytes[field.datatype] > cloud.point_step)
-      return {Trouble::out_of_range, "field offset", double(field.offset), double(cloud.point_step)};
+      return {ErrorCode::out_of_range, "field offset", double(field.offset), double(cloud.point_step)};
     const std::string name = lower(field.name);
     const auto among = [&](const auto& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
     if (name == "x" || name == "y" || name == "z") layout.axes[name[0] - 'x'] = &field;
@@ -127,21 +127,22 @@ Status PointCloudReader::find_fields(const PointCloudView& cloud, Layout& layout
     }
   }
   for (const PointField* axis : layout.axes)
-    if (axis == nullptr) return {Trouble::empty, "field x, y or z", 0.0, 1.0};
-  if (layout.time == nullptr) return {Trouble::empty, "field of point times", 0.0, 1.0};
-  if (times > 1.0) return {Trouble::out_of_range, "fields of point times", times, 1.0};
+    if (axis == nullptr) return {ErrorCode::empty, "field x, y or z", 0.0, 1.0};
+  if (layout.time == nullptr) return {ErrorCode::empty, "field of point times", 0.0, 1.0};
+  if (times > 1.0) return {ErrorCode::out_of_range, "fields of point times", times, 1.0};
   return {};
 }
 
 Status PointCloudReader::find_unit(double span, std::size_t points) {
-  if (!(span > 0.0)) return {Trouble::degenerate, "span of point times", span, 0.0};
+  if (!(span > 0.0)) return {ErrorCode::degenerate, "span of point times", span, 0.0};
   if (unit_ns_ == 0.0) {
-    if (points < kPointsForUnit) return {Trouble::too_few, "points", double(points), double(kPointsForUnit)};
+    if (points < kPointsForUnit) return {ErrorCode::too_few, "points", double(points), double(kPointsForUnit)};
     for (const TimeUnit& unit : kUnits)
       if (span * unit.ns >= kSpanMin_ns && span * unit.ns < kSpanMax_ns) unit_ns_ = unit.ns;
   }
   if (unit_ns_ == 0.0 || span * unit_ns_ > kSpanMax_ns) {
-    return {Trouble::out_of_range, "span of point times", span, unit_ns_ > 0.0 ? kSpanMax_ns / unit_ns_ : kSpanMax_ns};
+    return {ErrorCode::out_of_range, "span of point times", span,
+            unit_ns_ > 0.0 ? kSpanMax_ns / unit_ns_ : kSpanMax_ns};
   }
   return {};
 }
@@ -186,7 +187,7 @@ Status PointCloudReader::read(const PointCloudView& cloud, TimedSweep& sweep) {
       added.ring = static_cast<std::uint16_t>(std::fmin(std::fmax(number(layout.ring), 0.0), 65535.0));
     }
   }
-  if (sweep.points.empty()) return {Trouble::empty, "points", 0.0, 1.0};
+  if (sweep.points.empty()) return {ErrorCode::empty, "points", 0.0, 1.0};
   if (unit_ns_ == 0.0) unit_ns_ = stated_unit_ns(lower(layout.time->name));
   if (Status status = find_unit(last - first, sweep.points.size()); !status.ok()) return status;
   set_times(cloud.stamp_ns, first, last, sweep);

@@ -21,7 +21,7 @@ RollingAdapter::RollingAdapter(const Params& params, Publisher& publisher)
       publisher_(publisher),
       odometry_(params.odometry),
       diagnostics_(params.adapter.diagnostics_period_s) {
-  require_fields(params.adapter);
+  require_valid_fields(params.adapter);
 }
 
 Status RollingAdapter::on_imu(std::size_t unit, const ImuSample& sample) {

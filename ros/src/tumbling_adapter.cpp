@@ -40,7 +40,7 @@ TumblingAdapter::TumblingAdapter(const Params& params, Publisher& publisher)
       reader_(params.time_field),
       map_(params.map_period_s),
       diagnostics_(params.adapter.diagnostics_period_s) {
-  require_fields(params);
+  require_valid_fields(params);
   odometry_.reset(params.T_BI);
 }
 
@@ -167,8 +167,8 @@ void TumblingAdapter::publish_diagnostics() {
   add(out, "sweeps before the first IMU sample", odometry_.early_sweeps());
   if (last_) {
     add(out, "verdict of the last sweep", to_string(last_->verdict));
-    add(out, "inlier ratio of the last sweep", last_->inlier_share);
-    add(out, "consecutive rejected sweeps", last_->lost_sweeps);
+    add(out, "inlier ratio of the last sweep", last_->inlier_ratio);
+    add(out, "consecutive rejected sweeps", last_->consecutive_rejected_sweeps);
   }
   publisher_.diagnostics(odometry_.newest_ns().value_or(0), out);
 }

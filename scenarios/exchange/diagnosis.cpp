@@ -146,7 +146,7 @@ Saturation saturation_of(const sim::ImuRecord& imu) {
   Saturation out;
   if (!bridge::imu_samples(imu, samples).ok() || samples.empty()) return out;
   ClippingFinder::Params params;
-  params.upright_rails = stated_rails(imu);
+  params.axis_aligned_rails = stated_rails(imu);
   const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clippings;
   std::size_t gyro = 0, accel = 0;
   const auto keep_smallest = [](const Eigen::Vector3d& reading, unsigned axes, double& smallest) {
@@ -202,11 +202,11 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
                                percent_text(share), percent_text(kRegisteredShareMin)),
                    "check --T-body-lidar and the other findings"});
   const auto moved = estimate.health.find("lidar_calibration_mahalanobis");
-  if (moved != estimate.health.end() && moved->second > StatedCalibration::kMaxDeviations)
+  if (moved != estimate.health.end() && moved->second > StatedCalibration::kDistanceMax_sigmas)
     out.push_back({"odometry",
                    fmt::format("the estimated pose or clock of the lidar is {} standard deviations from the stated one "
                                "(limit {})",
-                               rounded(moved->second), rounded(StatedCalibration::kMaxDeviations)),
+                               rounded(moved->second), rounded(StatedCalibration::kDistanceMax_sigmas)),
                    "--T-body-lidar with the measured pose of the lidar"});
   return out;
 }

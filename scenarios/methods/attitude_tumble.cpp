@@ -28,10 +28,10 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   estimate.frame = Frame::body;
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
-  for (const Doubt& fault : imus.faults) add_doubt(fault, estimate);
+  for (const HealthFinding& fault : imus.faults) add_finding(fault, estimate);
   if (!estimate.status.ok()) return estimate;
   (void)check_imus(sensors, imus, estimate);
-  if (imus.beyond_range > 0) add_doubt({Doubt::About::beyond_range, double(imus.beyond_range)}, estimate);
+  if (imus.beyond_range > 0) add_finding({HealthFinding::About::beyond_range, double(imus.beyond_range)}, estimate);
   TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
   params.lever_arm_m = imus.merged.lever_arm_m;
@@ -98,7 +98,7 @@ void report_unknown_attitude(Estimate& estimate) {
     const double variance_rad2 = here.covariance_rad2.diagonal().head<2>().maxCoeff();
     if (variance_rad2 > kUnknown_rad * kUnknown_rad) unknown_s += seconds(here.time_ns - before.time_ns);
   }
-  if (unknown_s > 0.0) add_doubt({Doubt::About::attitude, unknown_s}, estimate);
+  if (unknown_s > 0.0) add_finding({HealthFinding::About::attitude, unknown_s}, estimate);
 }
 
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters) {

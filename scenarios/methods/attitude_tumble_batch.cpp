@@ -30,9 +30,9 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
     if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
   }
   ClippedElements clipped = known.clipped();
-  clipped.recovered_rad2_s2 = covariances;
-  CarriedSmoother::Report report;
-  const Status status = CarriedSmoother(carried_params(sensors, parameters))
+  clipped.recovered_covariance_rad2_s2 = covariances;
+  HandHeldSmoother::Report report;
+  const Status status = HandHeldSmoother(carried_params(sensors, parameters))
                             .estimate(recovered.samples, clipped, rates, estimate.attitudes, report);
   if (status.ok()) report_carried(report, estimate.health);
   return status;
@@ -67,7 +67,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   if (sensors.sphere_radius_m <= 0.0)
     report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, samples, estimate);
   std::vector<RateState> rates;
-  if (recovered.estimated && recovered.report.carried_clipped_max < kCarried) {
+  if (recovered.estimated && recovered.report.hand_held_probability_max < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, rates, estimate);
   } else {
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);

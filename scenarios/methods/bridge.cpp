@@ -37,8 +37,9 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
   if (record.period_ns <= 0 || samples.size() < 3) return {};
   const double step_s = median_period_s(samples), stated_s = seconds(record.period_ns);
   if (step_s > stated_s / kPeriodsMax && step_s < stated_s * kPeriodsMax) return {};
-  return {Trouble::out_of_range, "median step of imu time_ns in s (must be within a factor of 20 of the stated period)",
-          step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
+  return {ErrorCode::out_of_range,
+          "median step of imu time_ns in s (must be within a factor of 20 of the stated period)", step_s,
+          step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
 std::vector<ImuSample> samples_of(const sim::ImuRecord& record) {
@@ -94,7 +95,7 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
 // Checks the assumptions of every method: readings are finite and within the device's range, stamps increase at the
 // stated period, and there are no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
-  if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
   for (const ImuSample& sample : samples) {
     const Status status = check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2);
@@ -119,7 +120,7 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
   const auto beyond = [](const Eigen::Vector3d& reading, double stated, const char* field) -> Status {
     const double bound = kStatedRangesMax * stated;
     if (!(bound > 0.0) || reading.cwiseAbs().maxCoeff() <= bound) return {};
-    return {Trouble::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
+    return {ErrorCode::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
   const Status gyro = beyond(gyro_rad_s, record.stated_gyro_range_rad_s,
                              "angular_velocity_rad_s (must be within twice the stated range)");
@@ -166,7 +167,7 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
 
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out) {
   out.clear();
-  if (sensors.imus.empty()) return {Trouble::empty, "imus", 0.0, 1.0};
+  if (sensors.imus.empty()) return {ErrorCode::empty, "imus", 0.0, 1.0};
   return imu_samples(sensors.imus.front(), out);
 }
 

@@ -33,7 +33,7 @@ inline constexpr double kGapMaxS = 1.0;
 /// Readings up to this multiple of the stated range are accepted as measurements. Real saturation levels exceed the
 /// stated range (MTi-30: 1.4 times the range). A tilted saturation plane allows even larger readings. Readings above
 /// the multiple cannot be measurements.
-inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
+inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
 /// A recording is refused if a larger fraction of its readings is out of range, because then the unit or the device
 /// must be wrong.

@@ -8,22 +8,22 @@
 
 namespace tumble::scenarios {
 
-const Settings<CarriedSmoother::Params>& carried_settings() {
-  static const Settings<CarriedSmoother::Params> all(CarriedSmoother::Params{}, {.stated = {"gravity_m_s2"}});
+const Settings<HandHeldSmoother::Params>& carried_settings() {
+  static const Settings<HandHeldSmoother::Params> all(HandHeldSmoother::Params{}, {.stated = {"gravity_m_s2"}});
   return all;
 }
 
 ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health) {
   ClippingFinder::Params params;
-  params.upright_rails = stated_rails(record);
+  params.axis_aligned_rails = stated_rails(record);
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
   report_rails(found.rails, health);
-  return carried_elements(samples, found);
+  return to_clipped_readings(samples, found);
 }
 
-CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
-  CarriedSmoother::Params params;
+HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  HandHeldSmoother::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   carried_settings().apply(parameters, params);
   return params;
@@ -33,23 +33,23 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health) {
   std::vector<ImuSample> samples;
   if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
-  const CarriedSmoother::Params params = carried_params(sensors, parameters);
+  const HandHeldSmoother::Params params = carried_params(sensors, parameters);
   const ClippedReadings known = find_clipped(sensors.imus.front(), samples, health);
-  CarriedSmoother::Report report;
-  const Status status = CarriedSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);
+  HandHeldSmoother::Report report;
+  const Status status = HandHeldSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);
   if (!status.ok()) return status;
   known.mark_partly_saturated(rates);
   report_carried(report, health);
   return status;
 }
 
-void report_carried(const CarriedSmoother::Report& report, std::map<std::string, double>& health) {
+void report_carried(const HandHeldSmoother::Report& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
-  health["hand_mahalanobis"] = report.hand_mahalanobis;
-  health["revolutions_asked"] = report.revolutions_asked;
-  health["revolutions_taken"] = report.revolutions_taken;
-  health["revolutions_open"] = report.revolutions_open;
+  health["hand_mahalanobis"] = report.hand_acceleration_ratio;
+  health["revolutions_asked"] = report.revolutions_tested;
+  health["revolutions_taken"] = report.revolutions_corrected;
+  health["revolutions_open"] = report.revolutions_ambiguous;
   health["revolutions_failed"] = report.revolutions_failed;
 }
 

@@ -10,14 +10,14 @@
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
-#include "tumble/attitude/carried_elements.hpp"
-#include "tumble/attitude/carried_smoother.hpp"
+#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
 
 /// Runs the hand-held smoother on the primary IMU after saturation detection. All hand-held methods use this function.
 namespace tumble::scenarios {
 
 /// Returns the parameters of a hand-held method with the library's defaults.
-const Settings<CarriedSmoother::Params>& carried_settings();
+const Settings<HandHeldSmoother::Params>& carried_settings();
 
 /// Returns which sensing elements are saturated at each sample, according to the stated ranges and the readings. Adds
 /// the detected saturation limits to `health` (report_rails.hpp).
@@ -25,7 +25,7 @@ ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
                              std::map<std::string, double>& health);
 
 /// Returns the smoother's parameters. `parameters` override the values of the recording.
-CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
+HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
 /// Runs the smoother over the primary IMU. Returns an error of the record or of the smoother; the outputs are then
 /// empty.
@@ -33,6 +33,6 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
 
 /// Adds the smoother's report to `health`.
-void report_carried(const CarriedSmoother::Report& report, std::map<std::string, double>& health);
+void report_carried(const HandHeldSmoother::Report& report, std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

@@ -18,7 +18,7 @@ constexpr std::size_t kFirstLineMax = 120;
 
 }  // namespace
 
-std::string less_folder(std::string text, const std::filesystem::path& folder) {
+std::string without_trailing_folder(std::string text, const std::filesystem::path& folder) {
   const std::string whole = folder.string();
   for (std::size_t at = 0; !whole.empty() && (at = text.find(whole, at)) != std::string::npos;) {
     const bool within = at + whole.size() < text.size() && text[at + whole.size()] == '/';
@@ -27,24 +27,24 @@ std::string less_folder(std::string text, const std::filesystem::path& folder) {
   return text;
 }
 
-std::string with_last_words(const std::string& what, const CommandEnd& end) {
-  return what + (end.last_words.empty() ? "" : "; the last output of the command was: " + end.last_words);
+std::string with_output_tail(const std::string& what, const CommandEnd& end) {
+  return what + (end.output_tail.empty() ? "" : "; the last output of the command was: " + end.output_tail);
 }
 
 void require_done(const CommandEnd& end) {
   if (end.how == CommandEnd::How::done) return;
-  if (end.how == CommandEnd::How::out_of_time)
+  if (end.how == CommandEnd::How::timed_out)
     throw NoAnswer(
-        NoAnswer::Why::out_of_time,
-        with_last_words(end.reason + "; to change the limit, set the key time_limit_s in the method's description",
-                        end));
-  throw NoAnswer(NoAnswer::Why::crashed, with_last_words(end.reason, end));
+        NoAnswer::Why::timed_out,
+        with_output_tail(end.reason + "; to change the limit, set the key time_limit_s in the method's description",
+                         end));
+  throw NoAnswer(NoAnswer::Why::crashed, with_output_tail(end.reason, end));
 }
 
-std::string version_said(Command command, const std::string& place) {
+std::string reported_version(Command command, const std::string& place) {
   command.time_limit_s = kVersionLimit_s;
   const CommandEnd end = run_command(command);
-  if (end.how != CommandEnd::How::done) throw BadInput(place + with_last_words(end.reason, end));
+  if (end.how != CommandEnd::How::done) throw BadInput(place + with_output_tail(end.reason, end));
   const std::string said = read_text_file(command.transcript);
   if (said.empty())
     throw BadInput(place + "the version command printed nothing; it must print a text that identifies this version");

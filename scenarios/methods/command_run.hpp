@@ -11,10 +11,10 @@
 /// Helper functions to run external commands and Python functions.
 namespace tumble::scenarios {
 
-std::string less_folder(std::string text, const std::filesystem::path& folder);
+std::string without_trailing_folder(std::string text, const std::filesystem::path& folder);
 
 /// Returns the message `what` with the end of the program's output.
-std::string with_last_words(const std::string& what, const CommandEnd& end);
+std::string with_output_tail(const std::string& what, const CommandEnd& end);
 
 /// Calls `work` and removes the path of the scratch folder from messages of BadInput and NoAnswer. The scratch path
 /// differs in each run. After the removal, messages name files relative to the scratch folder.
@@ -23,9 +23,9 @@ auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {
     return work();
   } catch (const NoAnswer& error) {
-    throw NoAnswer(error.why(), less_folder(error.what(), scratch), error.transcript());
+    throw NoAnswer(error.why(), without_trailing_folder(error.what(), scratch), error.transcript());
   } catch (const BadInput& error) {
-    throw BadInput(less_folder(error.what(), scratch));
+    throw BadInput(without_trailing_folder(error.what(), scratch));
   }
 }
 
@@ -34,6 +34,6 @@ void require_done(const CommandEnd& end);
 
 /// Returns the first line of a version command's output, and a digest of the whole output. The command runs in `folder`
 /// for at most 30 s. Throws BadInput, with a message that starts with `place`, if the version command fails.
-std::string version_said(Command command, const std::string& place);
+std::string reported_version(Command command, const std::string& place);
 
 }  // namespace tumble::scenarios

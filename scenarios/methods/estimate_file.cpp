@@ -180,8 +180,8 @@ void write_sweeps(const std::filesystem::path& folder, const Estimate& estimate)
     sweeps.integer(estimate.sweep_end_ns[k]);
     sweeps.integer(static_cast<int>(sweep.verdict));
     sweeps.integer(sweep.iterations);
-    sweeps.number(sweep.inlier_share);
-    sweeps.number(sweep.conditioning);
+    sweeps.number(sweep.inlier_ratio);
+    sweeps.number(sweep.eigenvalue_ratio);
     sweeps.integer(sweep.pose.time_ns);
     write_pose(sweeps, sweep.pose);
     for (int i = 0; i < 6; ++i) {
@@ -210,8 +210,8 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
     }
     sweep.verdict = static_cast<SweepVerdict>(verdict);
     sweep.iterations = static_cast<int>(sweeps.integer(row, 2));
-    sweep.inlier_share = sweeps.number(row, 3);
-    sweep.conditioning = sweeps.number(row, 4);
+    sweep.inlier_ratio = sweeps.number(row, 3);
+    sweep.eigenvalue_ratio = sweeps.number(row, 4);
     sweep.pose = read_pose(sweeps, row, 5, 6);
     std::size_t column = kCovarianceColumn;
     for (int i = 0; i < 6; ++i) {
@@ -282,7 +282,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
           {"kind", to_string(kind)},
           {"frame", to_string(estimate.frame)},
           {"status",
-           {{"trouble", to_string(estimate.status.trouble)},
+           {{"trouble", to_string(estimate.status.error_code)},
             {"field", estimate.status.field},
             {"message", estimate.status.message()}}},
           {"health", health},
@@ -302,12 +302,12 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   kind = reader.named("kind", Kind::slam);
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
-  estimate.status.trouble = JsonMembers(path, status).named("trouble", Trouble::diverged);
+  estimate.status.error_code = JsonMembers(path, status).named("trouble", ErrorCode::diverged);
   // A Status refers to a static string, so it cannot name the actual field. The file names the field.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
-  estimate.doubts = doubts_in(estimate.health);
+  estimate.findings = findings_in(estimate.health);
   if (!header.contains("parameters")) return;
   for (const auto& [name, value] : reader.object("parameters").items()) {
     if (!value.is_number()) JsonMembers(path, header.at("parameters")).complain(name.c_str(), "a number");

@@ -109,7 +109,7 @@ Estimate run_its_command(const ExternalDescription& description, const sim::Sens
     try {
       return read_external_result(description, values.at("output"), values.at("map"), sensors);
     } catch (const BadInput& error) {
-      throw BadInput(with_last_words(error.what(), end));
+      throw BadInput(with_output_tail(error.what(), end));
     }
   });
 }
@@ -136,7 +136,7 @@ std::string version_of(const ExternalDescription& description) {
   const ScratchFolder scratch("method");
   const Command command =
       command_of(description, description.version, places(description, scratch.path()), scratch.path());
-  return version_said(command, description.file.string() + ": its version command: ") + "; " + own;
+  return reported_version(command, description.file.string() + ": its version command: ") + "; " + own;
 }
 
 }  // namespace

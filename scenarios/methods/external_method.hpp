@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 /// lacked memory or disk space. The message contains the program's output so far.
 class NoAnswer : public std::runtime_error {
  public:
-  enum class Why { crashed, out_of_time, machine };
+  enum class Why { crashed, timed_out, machine };
   NoAnswer(Why why, const std::string& what, std::string transcript = "")
       : std::runtime_error(what), why_(why), transcript_(std::move(transcript)) {}
   Why why() const { return why_; }

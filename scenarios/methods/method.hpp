@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/doubts.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
@@ -47,7 +47,7 @@ struct Estimate {
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam
-  std::vector<Doubt> doubts;                               ///< failed health checks (add_doubt)
+  std::vector<HealthFinding> findings;                     ///< failed health checks (add_finding)
   /// Covariance that failed health checks add to each of `rates`; empty if no check failed (imu_check.hpp).
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
@@ -94,7 +94,7 @@ struct MethodInfo {
   bool baseline = false;
   /// True if the method can start from a saved calibration of the device and saves the calibration that it estimates
   /// (rate_tumble.hpp).
-  bool learns_rig = false;
+  bool calibrates_rig = false;
   std::string version;  ///< version of a method that is not part of this build
 };
 

@@ -64,7 +64,7 @@ bool spins(double radius_m, const RollingOdometry::Pose& pose) {
 }
 
 sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& pose) {
-  if (!slips(pose.mode)) return sim::ContactLabel::grip;
+  if (!may_slip(pose.mode)) return sim::ContactLabel::grip;
   if (pose.mode == RollingMode::bump && !spins(radius_m, pose)) return sim::ContactLabel::air;
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
@@ -74,12 +74,12 @@ Estimate check(const sim::Sensors& sensors, const sim::Values&, const OracleInpu
   Estimate estimate;
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
-  for (const Doubt& fault : imus.faults) add_doubt(fault, estimate);
+  for (const HealthFinding& fault : imus.faults) add_finding(fault, estimate);
   if (!estimate.status.ok()) return estimate;
   estimate.status = check_imus(sensors, imus, estimate);
-  if (imus.beyond_range > 0) add_doubt({Doubt::About::beyond_range, double(imus.beyond_range)}, estimate);
+  if (imus.beyond_range > 0) add_finding({HealthFinding::About::beyond_range, double(imus.beyond_range)}, estimate);
   estimate.health["imus"] = static_cast<double>(imus.merged.units.size());
-  estimate.health["imu_readings_left_out"] = static_cast<double>(imus.merged.readings_excluded);
+  estimate.health["imu_readings_left_out"] = static_cast<double>(imus.merged.excluded_readings);
   if (imus.merged.units.size() < 2) return estimate;
   for (const MergedRecordings::Unit& unit : imus.merged.units) {
     const std::string& name = sensors.imus.at(unit.unit).name;
@@ -184,7 +184,7 @@ RollingOdometry::Params stated_params(const sim::Sensors& sensors, const SphereI
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   for (const UnitRecording& unit : units.recordings) params.units.push_back({unit.sheet, unit.T_BI});
-  if (sensors.imus.front().device.empty()) params.assume_unknown_imus();
+  if (sensors.imus.front().device.empty()) params.widen_priors_for_unknown_imus();
   return params;
 }
 

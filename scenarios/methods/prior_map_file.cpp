@@ -38,7 +38,7 @@ std::vector<MapPoint> from_cloud(const std::filesystem::path& path) {
   if (!normal) {
     std::vector<Eigen::Vector3f> positions(cloud.points);
     for (std::size_t k = 0; k < cloud.points; ++k) positions[k] = position(k);
-    return with_normals(positions);
+    return to_map_points(positions);
   }
   const std::vector<double>* sigma = cloud.find("sigma");
   std::vector<MapPoint> points;

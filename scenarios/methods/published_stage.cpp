@@ -30,7 +30,7 @@ void run_published_chain(const sim::Sensors& sensors, std::span<const ImuSample>
   estimate.frame = Frame::imu;
   count_sources(estimate.rates, estimate.health);
   if (sensors.lidars.empty()) {
-    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, "lidars", 0.0, 1.0};
     return;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();

@@ -37,7 +37,7 @@ const Settings<Saave::Params>& saave_settings() {
   return all;
 }
 
-Settings<Saave::Params> saave_settings_beside(std::span<const sim::Parameter> others) {
+Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others) {
   return Settings<Saave::Params>(saave_defaults(), {.stated = stated_lever_arm(), .beside = others, .prefix = "rate_"});
 }
 

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 const Settings<Saave::Params>& saave_settings();
 /// Returns the settings of Saave's method for use next to another stage. If the other stage has a parameter with an
 /// equal name, the name gets the prefix `rate_`.
-Settings<Saave::Params> saave_settings_beside(std::span<const sim::Parameter> others);
+Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
 /// Computes one RateState per sample. On error, `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,

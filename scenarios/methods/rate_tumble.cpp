@@ -60,7 +60,7 @@ const Settings<RateSmoother::Params>& rate_tumble_settings() {
   return all;
 }
 
-const LearntRig* Learning::found() const {
+const CalibratedRig* RigCalibrationUse::found() const {
   const bool more = of_batch && of_batch->rails_alone && of_stream && !of_stream->rails_alone;
   if (of_batch && !more) return &*of_batch;
   return of_stream ? &*of_stream : nullptr;
@@ -70,19 +70,19 @@ namespace {
 
 /// Compares a stored calibration with a calibration from a run that did not use the stored calibration. Returns false
 /// and adds a failed health check if the two calibrations belong to different rigs.
-bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& result) {
+bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // see distance_of_rigs
-  report_no_doubt(Doubt::About::learnt_rig, result);
+  report_no_findings(HealthFinding::About::learnt_rig, result);
   if (!fresh || fresh->rails_alone) return true;
   const double distance = distance_of_rigs(given.calibration, fresh->calibration);
   if (distance <= kDistanceMax) return true;
-  add_doubt({Doubt::About::learnt_rig, distance}, result);
+  add_finding({HealthFinding::About::learnt_rig, distance}, result);
   return false;
 }
 
 }  // namespace
 
-Method learning_method(const Method& method, Learning& learning) {
+Method calibrating_method(const Method& method, RigCalibrationUse& learning) {
   const std::string name = full_name(method.info);
   const bool batch = name == "rate/tumble";
   if (!batch && name != "rate/tumble_lag") {
@@ -91,15 +91,15 @@ Method learning_method(const Method& method, Learning& learning) {
   Method out = method;
   out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,
                                                          const OracleInput&) {
-    const LearntRig* const start = learning.given ? &*learning.given : nullptr;
-    std::optional<LearntRig> rig;
+    const CalibratedRig* const start = learning.given ? &*learning.given : nullptr;
+    std::optional<CalibratedRig> rig;
     try {
       const sim::Values parameters = resolve_settings("method " + name, given, info.settings);
       const auto run = batch ? run_rate_tumble : run_rate_tumble_lag;
       Estimate estimate = run(sensors, parameters, start, &rig);
       bool of_this_rig = true;
       if (start != nullptr && estimate.status.ok()) {
-        std::optional<LearntRig> fresh;
+        std::optional<CalibratedRig> fresh;
         run(sensors, parameters, nullptr, &fresh);
         of_this_rig = may_be_of_this_rig(*start, fresh, estimate);
       }
@@ -117,20 +117,20 @@ Method learning_method(const Method& method, Learning& learning) {
 RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoother::Params& rate) {
   RegimeSmoother::Params out;
   out.rate = rate;
-  out.evidence.gravity_m_s2 = out.carried.gravity_m_s2 = sensors.gravity_m_s2;
+  out.evidence.gravity_m_s2 = out.hand_held.gravity_m_s2 = sensors.gravity_m_s2;
   return out;
 }
 
 namespace {
 
-Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                        std::optional<LearntRig>* found) {
+Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
+                        std::optional<CalibratedRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
-    if (given != nullptr) start_from_learnt(*given, params);
+    if (given != nullptr) start_from_calibration(*given, params);
     std::vector<AuxiliaryRecording> auxiliary_imus;
     estimate.status = auxiliary_recordings(sensors, auxiliary_imus);
     RegimeSmoother::Report report;
@@ -144,7 +144,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
       report_findings(findings, sensors, samples, estimate);
       report_stamps(sensors, estimate);
       inflate_rates(findings, samples, estimate);
-      if (std::optional<LearntRig> rig = learnt(report.rate, given, params.model); rig && found != nullptr)
+      if (std::optional<CalibratedRig> rig = learnt(report.rate, given, params.model); rig && found != nullptr)
         *found = std::move(rig);
     }
   }
@@ -154,8 +154,8 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
 
 }  // namespace
 
-Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                         std::optional<LearntRig>* found) {
+Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
+                         std::optional<CalibratedRig>* found) {
   return without_outliers(sensors, [&](const sim::Sensors& kept) {
     return with_sample_times(
         kept, [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
@@ -174,7 +174,7 @@ Method rate_tumble() {
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
-  info.learns_rig = true;
+  info.calibrates_rig = true;
   return make_method(std::move(info),
                      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                        return run_rate_tumble(sensors, parameters, nullptr, nullptr);

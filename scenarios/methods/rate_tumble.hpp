@@ -44,28 +44,28 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
 /// null). `found` is unchanged if the status is not ok, or if the run estimated neither the constants nor a saturation
 /// level (learnt). The covariance of `given` is multiplied by four,
 /// because rigs change between runs, but never exceeds the default prior.
-Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                         std::optional<LearntRig>* found);
+Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
+                         std::optional<CalibratedRig>* found);
 
 /// Runs the streaming method rate/tumble_lag with a saved calibration, like run_rate_tumble. The method saves its
 /// calibration only if the covariance decreased.
-Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                             std::optional<LearntRig>* found);
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
+                             std::optional<CalibratedRig>* found);
 
 /// Calibration from which several runs on one rig start, and which each run updates.
-struct Learning {
-  std::optional<LearntRig> given;  ///< empty: start without calibration
-  std::optional<LearntRig> of_batch, of_stream;
+struct RigCalibrationUse {
+  std::optional<CalibratedRig> given;  ///< empty: start without calibration
+  std::optional<CalibratedRig> of_batch, of_stream;
   /// Returns the calibration to save; null if none. Prefers the result of the smoother over the whole recording. If the
   /// smoother only found saturation levels and the stream found more, returns the streaming result.
-  const LearntRig* found() const;
+  const CalibratedRig* found() const;
 };
 
 /// Returns `method` with a calibration that starts from and updates `learning`. `learning` must outlive the returned
 /// method. If `learning` has a start calibration, the method also runs without this calibration. If the results of the
 /// two runs differ (distance_of_rigs), the estimate gets a failed health check and no calibration is saved. Throws
 /// BadInput unless the method is rate/tumble or rate/tumble_lag.
-Method learning_method(const Method& method, Learning& learning);
+Method calibrating_method(const Method& method, RigCalibrationUse& learning);
 
 Method rate_tumble_lag();
 

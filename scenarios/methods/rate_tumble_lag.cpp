@@ -30,7 +30,8 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
   return all;
 }
 
-RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given) {
+RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters,
+                                   const CalibratedRig* given) {
   const sim::ImuRecord& record = sensors.imus.front();
   RegimeStream::Params params = rate_tumble_lag_settings().defaults();
   RateStream::Params& rate = params.rate;
@@ -40,18 +41,18 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   rate.model = batch.model;
   rate.rails = batch.rails;
   if (record.period_ns > 0) rate.period_s = seconds(record.period_ns);
-  params.evidence.gravity_m_s2 = params.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
+  params.evidence.gravity_m_s2 = params.hand_held.body.gravity_m_s2 = sensors.gravity_m_s2;
   rate_tumble_lag_settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
-  params.carried.body.expert.gap_max_s = rate.gap_max_s;
+  params.hand_held.body.expert.gap_max_s = rate.gap_max_s;
   if (given == nullptr) return params;
 
-  start_from_learnt(*given, rate);
+  start_from_calibration(*given, rate);
   return params;
 }
 
-Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                         std::optional<LearntRig>* found) {
+Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
+                         std::optional<CalibratedRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -82,7 +83,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   const RateStream::State& state = all.rate;
   estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
-  estimate.health["device_unlike"] = state.device.front().posterior.unlike;
+  estimate.health["device_unlike"] = state.device.front().posterior.uncalibrated_probability;
   const KnownSensorErrors device = stream.sensor_errors(state);
   constexpr int kDelay = SensorErrors::kDelay;
   estimate.health["accel_delay_s"] = device.errors.accel_delay_s;
@@ -94,15 +95,15 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     const double each = 1.0 / static_cast<double>(all.reported);
     estimate.health["regime_flight_share"] = each * all.sum.flight;
     estimate.health["regime_contact_share"] = each * all.sum.contact;
-    carried_share = each * all.sum.carried;
+    carried_share = each * all.sum.hand_held;
     estimate.health["regime_carried_share"] = *carried_share;
   }
-  estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
+  estimate.health["regime_carried_joined"] = static_cast<double>(all.combined_samples);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
-  estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
-  estimate.health["carried_revolutions_open"] = static_cast<double>(all.carried.revolutions_open);
+  estimate.health["carried_steps_skipped"] = static_cast<double>(all.hand_held.failures);
+  estimate.health["carried_revolutions_open"] = static_cast<double>(all.hand_held.revolutions_ambiguous);
   if (estimate.status.ok() && found != nullptr) {
-    if (std::optional<LearntRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
+    if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
     // reported only, because the results are already final
@@ -116,8 +117,8 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
 
 }  // namespace
 
-Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                             std::optional<LearntRig>* found) {
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
+                             std::optional<CalibratedRig>* found) {
   return without_outliers(sensors, [&](const sim::Sensors& kept) {
     return with_sample_times(
         kept, [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
@@ -132,7 +133,7 @@ Method rate_tumble_lag() {
   info.ours = true;
   info.settings = {&rate_tumble_lag_settings()};
   info.robots = {"rig", "pendulum"};
-  info.learns_rig = true;
+  info.calibrates_rig = true;
   return make_method(std::move(info),
                      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                        return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);

@@ -41,7 +41,7 @@ void report_plane(std::size_t j, const RailPlane& plane, std::map<std::string, d
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
   const RailPlanes in_use = rails.planes_in_use();
   for (std::size_t j = 0; j < 3; ++j) {
-    const double level_rad_s = rails.upright_rails.channels[j].rail;
+    const double level_rad_s = rails.axis_aligned_rails.channels[j].rail;
     if (in_use.element[j]) {
       report_level(j, in_use.element[j]->distance_rad_s, health);
     } else if (level_rad_s > 0.0) {

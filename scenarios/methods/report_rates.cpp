@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 namespace {
 
 /// Reports whether the smoother's unit check failed or passed.
-void report_unit(Doubt::About unit, bool suspect, Estimate& result) {
-  suspect ? add_doubt({unit}, result) : report_no_doubt(unit, result);
+void report_unit(HealthFinding::About unit, bool suspect, Estimate& result) {
+  suspect ? add_finding({unit}, result) : report_no_findings(unit, result);
 }
 
 void report_smoother(const RateReport& report, Estimate& result) {
@@ -38,8 +38,8 @@ void report_smoother(const RateReport& report, Estimate& result) {
   health["gyro_update_s"] = report.gyro_update_s;
   health["accel_update_s"] = report.accel_update_s;
   health["rails_upright"] = report.clips_after_compensation ? 1.0 : 0.0;
-  report_unit(Doubt::About::rate_unit, report.rate_unit_suspect, result);
-  report_unit(Doubt::About::force_unit, report.force_unit_suspect, result);
+  report_unit(HealthFinding::About::rate_unit, report.rate_unit_suspect, result);
+  report_unit(HealthFinding::About::force_unit, report.force_unit_suspect, result);
   const char* const names[] = {"x", "y", "z"};
   for (int j = 0; j < 3; ++j) {
     const std::string axis = names[j];
@@ -52,21 +52,21 @@ void report_smoother(const RateReport& report, Estimate& result) {
 }  // namespace
 
 std::optional<double> carried_share(const RegimeSmoother::Report& report) {
-  return report.judged ? std::optional(report.shares.carried) : std::nullopt;
+  return report.judged ? std::optional(report.probabilities.hand_held) : std::nullopt;
 }
 
 void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
   report_smoother(report.rate, result);
   if (!report.judged) return;
   std::map<std::string, double>& health = result.health;
-  health["regime_flight_share"] = report.shares.flight;
-  health["regime_contact_share"] = report.shares.contact;
-  health["regime_carried_share"] = report.shares.carried;
-  health["regime_carried_clipped_max"] = report.carried_clipped_max;
-  health["regime_carried_asked"] = report.carried_asked ? 1.0 : 0.0;
-  if (!report.carried_asked) return;
+  health["regime_flight_share"] = report.probabilities.flight;
+  health["regime_contact_share"] = report.probabilities.contact;
+  health["regime_carried_share"] = report.probabilities.hand_held;
+  health["regime_carried_clipped_max"] = report.hand_held_probability_max;
+  health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
+  if (!report.hand_held_smoother_ran) return;
   std::map<std::string, double> of_carried;
-  report_carried(report.carried, of_carried);
+  report_carried(report.hand_held, of_carried);
   for (const auto& [name, value] : of_carried) health["carried_" + name] = value;
 }
 

@@ -41,13 +41,13 @@ json numbers(const Array& values) {
   return out;
 }
 
-json pairs(const LearntRig::Planes& planes) {
+json pairs(const CalibratedRig::Planes& planes) {
   json out = json::array();
   for (const auto& [low, high] : planes) out.push_back({low ? json(*low) : json(), high ? json(*high) : json()});
   return out;
 }
 
-json rails(const LearntRig& rig, std::size_t first) {
+json rails(const CalibratedRig& rig, std::size_t first) {
   json out = json::array();
   for (std::size_t j = 0; j < 3; ++j) out.push_back(rig.rail[first + j] ? json(*rig.rail[first + j]) : json());
   return out;
@@ -82,7 +82,7 @@ class CalibrationReader {
     }
   }
 
-  void read_rails(const char* key, std::size_t first, LearntRig& rig) const {
+  void read_rails(const char* key, std::size_t first, CalibratedRig& rig) const {
     const json& values = array(key, 3);
     for (std::size_t j = 0; j < 3; ++j) {
       if (values[j].is_null()) continue;
@@ -92,7 +92,7 @@ class CalibrationReader {
     }
   }
 
-  void read_planes(const char* key, LearntRig::Planes& planes) const {
+  void read_planes(const char* key, CalibratedRig::Planes& planes) const {
     const json& values = array(key, 3);
     for (std::size_t j = 0; j < 3; ++j) {
       if (!values[j].is_array() || values[j].size() != 2) complain(key, "needs 3 pairs of rails");
@@ -115,7 +115,7 @@ class CalibrationReader {
 
 }  // namespace
 
-void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
+void write_rig_calibration(const std::filesystem::path& path, const CalibratedRig& rig) {
   const RigConstants& constants = rig.calibration.constants;
   json object;
   object["lever_arm_m"] = numbers(constants.lever_arm_m);
@@ -138,7 +138,7 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
 
 namespace {
 
-void read_device_errors(const CalibrationReader& reader, const json& object, LearntRig& rig) {
+void read_device_errors(const CalibrationReader& reader, const json& object, CalibratedRig& rig) {
   if (object.contains(kErrorsKey) != object.contains(kErrorsCovarianceKey)) {
     reader.complain(object.contains(kErrorsKey) ? kErrorsCovarianceKey : kErrorsKey, "missing");
   }
@@ -161,7 +161,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Lea
 
 }  // namespace
 
-LearntRig read_learnt_rig(const std::filesystem::path& path) {
+CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   std::ifstream file = open_regular_file(path);
   const json object = json::parse(file, nullptr, false);
   if (!object.is_object()) throw BadInput(path.string() + ": not a JSON object");
@@ -175,7 +175,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
                        std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
     if (!known) reader.complain(key, "unknown key");
   }
-  LearntRig rig;
+  CalibratedRig rig;
   reader.read("lever_arm_m", rig.calibration.constants.lever_arm_m);
   reader.read("gyro_bias_rad_s", rig.calibration.constants.gyro_bias_rad_s);
   reader.read("accel_bias_m_s2", rig.calibration.constants.accel_bias_m_s2);

@@ -46,7 +46,7 @@ void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_n
 }  // namespace
 
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
-  if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
   const RestDetector detector(kStart);
   RestDetector::State state, rest;
   for (const ImuSample& sample : samples) {
@@ -82,12 +82,12 @@ Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad) {
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate) {
   if (sensors.lidars.empty()) {
-    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, "lidars", 0.0, 1.0};
     return;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
   if (bridge::sweep_count(lidar) == 0) {
-    estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, "lidar.sweep_start_ns", 0.0, 1.0};
     return;
   }
   baselines::RigidOdometry odometry(params);

@@ -24,7 +24,7 @@ struct SampleTimes {
 
 SampleTimes sample_times(const sim::ImuRecord& record) {
   SampleTimes out{.times_ns = record.time_ns};
-  (void)to_sample_times(SampleClock({}), out.times_ns, out.corrected_jitter_s);
+  (void)correct_stamps(SampleClock({}), out.times_ns, out.corrected_jitter_s);
   return out;
 }
 

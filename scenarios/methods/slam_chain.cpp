@@ -43,7 +43,7 @@ bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
     SweepReport& report = sweep.report;
     // The IMU readings start after the sweep, so the sweep has no pose.
-    if (sweep.status.trouble == Trouble::too_few && report.trajectory.empty()) {
+    if (sweep.status.error_code == ErrorCode::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;
     }
@@ -85,12 +85,12 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
   params.own_body_L = presets::rig_body_L();
-  params.expert.matching.agreeing_least = RegistrationParams().expert.agreeing_min;  // disables with_few_matches
+  params.expert.matching.agreeing_matches_min = RegistrationParams().expert.agreeing_min;  // disables with_few_matches
   return params;
 }
 
 SlamParams with_few_matches(SlamParams params) {
-  params.odometry.expert.matching.agreeing_least = MatchingParams().agreeing_least;
+  params.odometry.expert.matching.agreeing_matches_min = MatchingParams().agreeing_matches_min;
   return params;
 }
 
@@ -113,12 +113,12 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   estimate.frame = Frame::imu;
   count_sources(estimate.rates, estimate.health);
   if (sensors.lidars.empty()) {
-    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, "lidars", 0.0, 1.0};
     return false;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
   if (bridge::sweep_count(lidar) == 0) {
-    estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, "lidar.sweep_start_ns", 0.0, 1.0};
     return false;
   }
 

@@ -52,7 +52,7 @@ void report_end(const Localisation& localisation, Estimate& estimate) {
   estimate.health["end_sigma_rad"] = std::sqrt(P.bottomRightCorner<3, 3>().trace());
   estimate.health["well_constrained_share"] = well_constrained_share(estimate.sweeps);
   estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
-  estimate.health["innovation_second"] = localisation.second_innovation();
+  estimate.health["innovation_second"] = localisation.second_largest_innovation();
 }
 
 void report_scale(const SweepScale& scale, Estimate& estimate) {
@@ -60,20 +60,20 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
   if (!std::isfinite(scale.sigma)) return;
   estimate.health["lidar_scale"] = scale.scale;
   estimate.health["lidar_scale_sigma"] = scale.sigma;
-  if (scale.is_off()) add_doubt({Doubt::About::lidar_scale}, estimate);
+  if (scale.is_inconsistent()) add_finding({HealthFinding::About::lidar_scale}, estimate);
 }
 
 /// Returns true if the run is localised in its map: tracking never failed, the calibration stayed within its
 /// uncertainty, and lidar ranges and motion have one scale. A wrong scale gives a map of the wrong size even if all
 /// sweeps agree.
 bool is_localised(bool calibration_is_off, const Localisation& localisation, const SweepScale* scale) {
-  return !calibration_is_off && localisation.verdict().ok() && !(scale && scale->is_off());
+  return !calibration_is_off && localisation.verdict().ok() && !(scale && scale->is_inconsistent());
 }
 
 Status any_registered(std::span<const SweepReport> sweeps) {
   const bool any = std::any_of(sweeps.begin(), sweeps.end(),
                                [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  return any ? Status{} : Status{Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  return any ? Status{} : Status{ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
 }  // namespace
@@ -92,7 +92,8 @@ bool conclude(const LidarInertialOdometry& odometry, bool calibration_is_off, co
   if (!estimate.sweeps.empty()) {
     report_end(localisation, estimate);
     localised = is_localised(calibration_is_off, localisation, scale);
-    localised ? report_no_doubt(Doubt::About::place, estimate) : add_doubt({Doubt::About::place, 0.0}, estimate);
+    localised ? report_no_findings(HealthFinding::About::place, estimate)
+              : add_finding({HealthFinding::About::place, 0.0}, estimate);
   }
   if (scale) report_scale(*scale, estimate);
   estimate.map = odometry.map();

@@ -15,7 +15,7 @@ const Settings<SlamParams>& slam_icp_chain_settings() {
 }
 
 const Settings<Saave::Params>& slam_icp_rate_settings() {
-  static const Settings<Saave::Params> all = saave_settings_beside(slam_icp_chain_settings().rows());
+  static const Settings<Saave::Params> all = other_saave_settings(slam_icp_chain_settings().rows());
   return all;
 }
 

@@ -73,7 +73,7 @@ Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, con
   estimate.uncertain.clear();
   if (!estimate.status.ok()) return estimate;
   if (sensors.lidars.empty() || estimate.poses.size() < 2) {
-    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, "lidars", 0.0, 1.0};
     return estimate;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();

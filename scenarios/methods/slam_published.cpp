@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 namespace {
 
 const Settings<Saave::Params>& slam_published_rate_settings() {
-  static const Settings<Saave::Params> all = saave_settings_beside(published_settings().rows());
+  static const Settings<Saave::Params> all = other_saave_settings(published_settings().rows());
   return all;
 }
 

@@ -20,10 +20,11 @@ struct SlamParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.odometry);
-    visit(p.flight_arc, on_off("flight_arc",
-                               "1: in flight, the position follows the ballistic arc of the calibrated centre of mass; "
-                               "0: the position follows the accelerometer",
-                               Rank::first));
+    visit(p.flight_arc,
+          switch_field("flight_arc",
+                       "1: in flight, the position follows the ballistic arc of the calibrated centre of mass; "
+                       "0: the position follows the accelerometer",
+                       FieldRank::basic));
   }
 };
 

@@ -112,7 +112,7 @@ class Collector {
     if (output_ == Output::live) replace_by_live();
     const double moved = given_.deviations(odometry.mapper().calibration());
     const RecordingEstimate* const whole = odometry.recording();
-    const bool off = whole ? whole->mapped.calibration_is_off() : moved > StatedCalibration::kMaxDeviations;
+    const bool off = whole ? whole->mapped.calibration_is_off() : moved > StatedCalibration::kDistanceMax_sigmas;
     estimate_.health["lidar_calibration_mahalanobis"] = moved;
     scenarios::conclude(odometry.mapper(), off, localisation_, &odometry.sweep_scale(), estimate_);
   }
@@ -186,7 +186,7 @@ void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, s
   report_rates(whole.report, estimate);
   report_findings(whole.findings, sensors, samples, estimate);
   report_stamps(sensors, estimate);
-  if (whole.findings.contradict()) add_doubt({Doubt::About::rates}, estimate);
+  if (whole.findings.contradict()) add_finding({HealthFinding::About::rates}, estimate);
   count_sources(estimate.rates, estimate.health);
   if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
@@ -196,7 +196,7 @@ void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, s
 
 void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
   report_rails(odometry.rails(), estimate.health);
-  estimate.health["gaps"] = static_cast<double>(odometry.gaps());
+  estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
 }
 
@@ -216,7 +216,7 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   if (!estimate.status.ok()) return estimate;
   if (sensors.lidars.empty() || bridge::sweep_count(sensors.lidars.front()) == 0) {
     const char* const missing = sensors.lidars.empty() ? "lidars" : "lidar.sweep_start_ns";
-    estimate.status = {Trouble::empty, missing, 0.0, 1.0};
+    estimate.status = {ErrorCode::empty, missing, 0.0, 1.0};
     return estimate;
   }
   if (output != Output::whole) {  // Only a warning, as for attitudes.

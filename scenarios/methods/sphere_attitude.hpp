@@ -25,9 +25,9 @@ struct RestParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rest_s,
-          {"rest_s", "s", 0.01, 60.0,
-           "duration of the initial rest; the mean readings during this rest give gyro bias and tilt", Rank::first});
+    visit(p.rest_s, {"rest_s", "s", 0.01, 60.0,
+                     "duration of the initial rest; the mean readings during this rest give gyro bias and tilt",
+                     FieldRank::basic});
   }
 };
 const Settings<RestParams>& rest_settings();

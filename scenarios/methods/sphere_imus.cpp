@@ -32,19 +32,19 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
   return samples;
 }
 
-Doubt doubt_of(const UnitFault& fault, const std::string& name, TimeNs start_ns) {
+HealthFinding finding_of(const UnitFault& fault, const std::string& name, TimeNs start_ns) {
   const double since_s = seconds(fault.since_ns - start_ns);
   switch (fault.kind) {
     case UnitFault::Kind::silent:
-      return {Doubt::About::unit_silent, since_s, name};
+      return {HealthFinding::About::unit_silent, since_s, name};
     case UnitFault::Kind::frozen:
-      return {Doubt::About::unit_frozen, since_s, name};
+      return {HealthFinding::About::unit_frozen, since_s, name};
     case UnitFault::Kind::frozen_axis:
-      return {Doubt::About::unit_frozen, since_s, name + "_" + to_string(fault.axis)};
+      return {HealthFinding::About::unit_frozen, since_s, name + "_" + to_string(fault.axis)};
     case UnitFault::Kind::disagrees:
       break;
   }
-  return {Doubt::About::unit_disagrees, since_s, name};
+  return {HealthFinding::About::unit_disagrees, since_s, name};
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ std::string to_string(const FrozenAxis& frozen) {
 
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out) {
   out = {};
-  if (sensors.imus.empty()) return {Trouble::empty, "imus", 0.0, 1.0};
+  if (sensors.imus.empty()) return {ErrorCode::empty, "imus", 0.0, 1.0};
   Status primary;
   bool any_valid = false;
   for (const sim::ImuRecord& record : sensors.imus) {
@@ -87,7 +87,7 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   }
   const Status status = merge_recordings(units.recordings, params, out.merged);
   for (const UnitFault& fault : out.merged.faults)
-    out.faults.push_back(doubt_of(fault, units.names[fault.unit], start_ns));
+    out.faults.push_back(finding_of(fault, units.names[fault.unit], start_ns));
   return status;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/doubts.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "sim/recording.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
@@ -28,7 +28,7 @@ Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 /// The units of a sphere, merged with knowledge of the whole recording.
 struct MergedImus {
   MergedRecordings merged;
-  std::vector<Doubt> faults;  ///< units not used, or not all the time: frozen, silent, or inconsistent
+  std::vector<HealthFinding> faults;  ///< units not used, or not all the time: frozen, silent, or inconsistent
   int beyond_range = 0;
 };
 

@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 void count_trouble(const Status& status, Estimate& estimate) {
-  if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
+  if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.error_code)] += 1.0;
 }
 
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate) {
@@ -34,8 +34,8 @@ void leave_out_unfinished(Estimate& estimate) {
 }
 
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate) {
-  const bool of_the_sweep = status.trouble == Trouble::too_few || status.trouble == Trouble::empty ||
-                            status.trouble == Trouble::non_finite || status.trouble == Trouble::degenerate;
+  const bool of_the_sweep = status.error_code == ErrorCode::too_few || status.error_code == ErrorCode::empty ||
+                            status.error_code == ErrorCode::non_finite || status.error_code == ErrorCode::degenerate;
   if (!of_the_sweep || !report.trajectory.empty() || !estimate.sweeps.empty()) return false;
   count_trouble(status, estimate);
   return true;
@@ -59,7 +59,7 @@ bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, E
   }
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
                                [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  if (!any) estimate.status = {ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0};
   return true;
 }
 

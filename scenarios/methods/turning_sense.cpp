@@ -37,12 +37,13 @@ std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors)
 
 std::string text_of(const TurningFit& fit, const std::string& frame) {
   std::string out;
-  if (fit.written == Written::w_first) out = "the quaternions were stored with w first (expected order: x y z w)";
-  if (fit.written == Written::w_first_inverse)
+  if (fit.written == QuaternionConvention::w_first)
+    out = "the quaternions were stored with w first (expected order: x y z w)";
+  if (fit.written == QuaternionConvention::w_first_inverse)
     out =
         "the quaternions were stored with w first and described the world in sensor axes (expected: x y z w, the "
         "sensor in world axes)";
-  if (fit.written == Written::inverse)
+  if (fit.written == QuaternionConvention::inverse)
     out = "the quaternions described the world in sensor axes (expected: the sensor in world axes)";
   if (fit.frame == 0) return out;
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
@@ -81,8 +82,8 @@ std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensor
   if (frames.empty()) return "";
   const TurningCheck check = check_turning(attitudes_of(estimate), frames, sensors.imus.front(), kDelaySearched_s);
   const TurningFit& likely = check.reading.likely();
-  if (check.pairs == 0 || likely.written != Written::as_stated || likely.difference >= kTurnsOnceCorrected ||
-      !is_delayed(likely.delay_s))
+  if (check.pairs == 0 || likely.written != QuaternionConvention::as_stated ||
+      likely.difference >= kTurnsOnceCorrected || !is_delayed(likely.delay_s))
     return "";
   return fmt::format(
       "the attitudes rotate differently from the gyro (difference {:.0f} % over {} pairs of poses); with a corrected "

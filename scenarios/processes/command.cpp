@@ -99,13 +99,13 @@ CommandEnd run_command(const Command& command) {
 
   CommandEnd end;
   end.transcript = ends_of(command.transcript, kTranscript);
-  end.last_words = words_of(end.transcript);
+  end.output_tail = words_of(end.transcript);
   end.cpu_s = last.cpu_s;
   if (!problem.empty()) {
     end.how = CommandEnd::How::not_started;
     end.reason = "cannot be started: " + problem;
   } else if (!ended) {
-    end.how = CommandEnd::How::out_of_time;
+    end.how = CommandEnd::How::timed_out;
     end.reason =
         "did not end within its time limit of " + std::to_string(static_cast<long long>(command.time_limit_s)) + " s";
   } else if (!last.normal) {

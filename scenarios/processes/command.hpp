@@ -21,12 +21,12 @@ struct Command {
 
 /// Describes how a command ended.
 struct CommandEnd {
-  enum class How { done, failed, out_of_time, not_started };
+  enum class How { done, failed, timed_out, not_started };
   How how = How::done;
-  std::string reason;      ///< one line; empty on success
-  std::string last_words;  ///< transcript on one line: first and last 300 characters
-  std::string transcript;  ///< first and last half MiB of a long transcript
-  double cpu_s = 0.0;      ///< of the command without its children
+  std::string reason;       ///< one line; empty on success
+  std::string output_tail;  ///< transcript on one line: first and last 300 characters
+  std::string transcript;   ///< first and last half MiB of a long transcript
+  double cpu_s = 0.0;       ///< of the command without its children
 };
 
 /// Runs the command in a separate process group. At the time limit, the whole process group is killed. The group is

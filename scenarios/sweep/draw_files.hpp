@@ -40,7 +40,7 @@ class DrawFiles {
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
   /// Returns the error in one line, or an empty text if there is none.
-  const std::string& trouble() const { return trouble_; }
+  const std::string& error_code() const { return trouble_; }
 
  private:
   void take_over(const sim::Sensors& sensors) const;

@@ -271,7 +271,7 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
     if (!write_all(fd, to_line({outcome, {}}))) return;
   }
   files.finish(made->draw, failed);
-  if (!files.trouble().empty()) write_all(fd, to_line({{}, {}, {}, files.trouble()}));
+  if (!files.error_code().empty()) write_all(fd, to_line({{}, {}, {}, files.error_code()}));
 }
 
 }  // namespace tumble::scenarios

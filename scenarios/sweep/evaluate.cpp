@@ -64,7 +64,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   switch (why) {
     case NoAnswer::Why::crashed:
       return OutcomeStatus::crashed;
-    case NoAnswer::Why::out_of_time:
+    case NoAnswer::Why::timed_out:
       return OutcomeStatus::timeout;
     case NoAnswer::Why::machine:
       break;
@@ -76,7 +76,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;
-  none.status = {Trouble::empty, "estimate", 0.0, 1.0};
+  none.status = {ErrorCode::empty, "estimate", 0.0, 1.0};
   return none;
 }
 

@@ -43,10 +43,10 @@ void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& s
   hasher.add(static_cast<std::int32_t>(sweep.verdict));
   add_pose(hasher, sweep.pose);
   add_poses(hasher, sweep.trajectory);
-  hasher.add(sweep.inlier_share);
-  hasher.add(sweep.conditioning);
+  hasher.add(sweep.inlier_ratio);
+  hasher.add(sweep.eigenvalue_ratio);
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
-  hasher.add_matrix(sweep.weakest_direction);
+  hasher.add_matrix(sweep.least_constrained_direction);
   hasher.add_matrix(sweep.saturation_deficit_rad_s);
   for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
     hasher.add(static_cast<std::uint64_t>(count));
@@ -57,7 +57,7 @@ void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& s
 
 std::string digest(const Estimate& estimate) {
   NumberHasher hasher;
-  hasher.add(static_cast<std::int32_t>(estimate.status.trouble));
+  hasher.add(static_cast<std::int32_t>(estimate.status.error_code));
   hasher.text(estimate.status.field);
   hasher.add(static_cast<std::int32_t>(estimate.frame));
   hasher.add(static_cast<std::uint64_t>(estimate.rates.size()));

@@ -56,7 +56,7 @@ bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out)
     if (line.empty()) return true;
     const std::size_t between = line.find(kBetween);
     if (between == 0) {
-      out.trouble = line.substr(1);
+      out.error_code = line.substr(1);
       return true;
     }
     if (between == std::string::npos) return false;
@@ -80,7 +80,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
   if (read_rows(worker.said, failure, draw)) return;
-  draw.trouble = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
+  draw.error_code = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
 }
 
 /// Starts the process of a simulated run. Returns false if another process must end first.

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 struct DrawTriage {
   DrawName draw;
   std::vector<TriageRow> rows;  ///< rows of triage(); the first is the unmodified run
-  std::string trouble;          ///< why rows are missing: simulation impossible, process died or timed out
+  std::string error_code;       ///< why rows are missing: simulation impossible, process died or timed out
 };
 
 /// Returns the scenarios and seeds of the suite that fit the method's robots. The order is that of a sweep, with seeds

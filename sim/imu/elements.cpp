@@ -33,10 +33,13 @@ Elements::Elements(const Params& params, Stream stream) {
 }
 
 Elements::Elements(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset)
-    : axes_(axes), inverse_(axes.inverse()), offset_(offset), upright_(axes.isIdentity(0.0) && offset.isZero(0.0)) {}
+    : axes_(axes),
+      inverse_(axes.inverse()),
+      offset_(offset),
+      axis_aligned_(axes.isIdentity(0.0) && offset.isZero(0.0)) {}
 
 Eigen::Vector3d Elements::clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const {
-  if (upright_) return rail(signal, first_bit, flags);
+  if (axis_aligned_) return rail(signal, first_bit, flags);
   const Eigen::Vector3d sensed = axes_ * signal + offset_;
   const Eigen::Vector3d clipped = rail(sensed, first_bit, flags);
   if (clipped == sensed) return signal;
@@ -46,7 +49,7 @@ Eigen::Vector3d Elements::clip(const Eigen::Vector3d& signal, Rail& rail, int fi
 Eigen::Vector3d Elements::with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,
                                            const Eigen::Vector3d& reading) const {
   Eigen::Vector3d out = reading;
-  if (upright_) {
+  if (axis_aligned_) {
     for (int axis = 0; axis < 3; ++axis) {
       if ((mask >> axis & 1) != 0) out[axis] = other[axis];
     }

@@ -31,7 +31,7 @@ class Elements {
     double scale = 0.0;         ///< the same for each entry on the diagonal, about 1
     double offset = 0.0;        ///< the same for each element's o [unit of the signal]
   };
-  static constexpr double kMostMisalignment = 0.1;  ///< upper bound of both spreads, for which M is always invertible
+  static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
   /// Creates aligned elements: M is the identity, and there is no offset.
   Elements() = default;
@@ -43,7 +43,7 @@ class Elements {
   const Eigen::Matrix3d& axes() const { return axes_; }
   const Eigen::Vector3d& offset() const { return offset_; }
   /// Returns true if M is the identity and there is no offset.
-  bool upright() const { return upright_; }
+  bool axis_aligned() const { return axis_aligned_; }
 
   /// Returns the device's reading of `signal` after saturation by `rail`; signal and reading are in the device's axes.
   /// Sets bit `first_bit + i` of `flags` if element i saturated. For aligned elements, the device's reading is the
@@ -57,7 +57,7 @@ class Elements {
  private:
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity(), inverse_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
-  bool upright_ = true;
+  bool axis_aligned_ = true;
 };
 
 }  // namespace tumble::sim

@@ -82,7 +82,7 @@ class Device {
  private:
   void describe_elements() {
     const auto rows = [](const Elements& elements, std::vector<Eigen::Vector3d>& out, Eigen::Vector3d& offset) {
-      if (elements.upright()) return;
+      if (elements.axis_aligned()) return;
       for (int i = 0; i < 3; ++i) out.emplace_back(elements.axes().row(i));
       offset = elements.offset();
     };

@@ -17,13 +17,13 @@ Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
 }  // namespace
 
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
-                   const CarriedPath& path) {
+                   const HandHeldPath& path) {
   constexpr double kDifference_s = 1e-3;     // interval of the numerical derivatives of the path
   constexpr double kFrequency_rad_s = 60.0;  // natural frequency of spring and damper; high, because the hand's tremor
                                              // is part of the path
   constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
-  const CarriedPose before = path(state.time_s - kDifference_s), now = path(state.time_s),
-                    after = path(state.time_s + kDifference_s);
+  const HandHeldPose before = path(state.time_s - kDifference_s), now = path(state.time_s),
+                     after = path(state.time_s + kDifference_s);
   const Eigen::Vector3d v_m_s = (after.p_m - before.p_m) / (2.0 * kDifference_s);
   const Eigen::Vector3d a_m_s2 = (after.p_m - 2.0 * now.p_m + before.p_m) / (kDifference_s * kDifference_s);
   const Eigen::Vector3d first = turn(before.q, now.q), second = turn(now.q, after.q);

@@ -10,19 +10,19 @@
 namespace tumble::sim {
 
 /// Target pose of a robot that a hand carries.
-struct CarriedPose {
+struct HandHeldPose {
   Eigen::Vector3d p_m;  ///< centre of mass, in W
   Eigen::Quaterniond q;
 };
 
 /// Smooth path over time, defined at any time, also before 0. The path is differentiated twice numerically, so
 /// velocities must be continuous.
-using CarriedPath = std::function<CarriedPose(double time_s)>;
+using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
 /// Returns the wrench of a hand that carries a robot along a path: the feed-forward force of the path, plus a spring
 /// and a damper. The hand has no body in the simulation. `inertia_B_kg_m2` is about the centre of mass, in B axes.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
-                   const CarriedPath& path);
+                   const HandHeldPath& path);
 
 /// Returns the moment of inertia of the robot that `hand` carries, about the robot's centre of mass in B axes [kg m^2].
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);

@@ -77,7 +77,7 @@ class Stroll : public Motion {
     return Eigen::Quaterniond(Eigen::AngleAxisd(values_.at("heading_rad") + yaw_rad, Eigen::Vector3d::UnitZ()));
   }
 
-  CarriedPose path(double time_s) const {
+  HandHeldPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
     // the tremor starts and ends within a second, with continuous acceleration
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);

@@ -101,7 +101,7 @@ class Twirl : public Motion {
 
  private:
   /// Intended pose of the robot.
-  CarriedPose path(double time_s) const {
+  HandHeldPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;
@@ -111,7 +111,7 @@ class Twirl : public Motion {
     const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();
-    CarriedPose pose;
+    HandHeldPose pose;
     pose.q = start.q_WB * Eigen::AngleAxisd(share * rotations_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
              Eigen::AngleAxisd(share * rotations_[2].at(time_s), Eigen::Vector3d::UnitY()) *
              Eigen::AngleAxisd(spun_rad + share * rotations_[0].at(time_s), Eigen::Vector3d::UnitX());

@@ -56,7 +56,7 @@ std::vector<std::string> rows_of_doubts(const std::string& source) {
 
 // Written by hand such a row would be no doubt, and nothing would say it.
 TEST(Health, RowsOfDoubtsAreWrittenByDoubtsAlone) {
-  const std::string own = "scenarios/methods/doubts.cpp";
+  const std::string own = "scenarios/methods/findings.cpp";
   const std::vector<std::string> rows = rows_of_doubts(text_of_source(own));
   EXPECT_EQ(rows.size(), 15u);
   for (const std::string& file : harness_sources()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // flight_senses SCENARIO FIRST LAST [HARM]: for how long the flights of draws look like those of the sensor as it says,
-// and of the other sensor that they look most like (FlightSense, of a body that nobody holds). A line a draw. Not a
+// and of the other sensor that they look most like (FlightSignCheck, of a body that nobody holds). A line a draw. Not a
 // test: a second a draw.
 #include <algorithm>
 #include <cstdint>
@@ -16,28 +16,28 @@
 #include "sim/simulate.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
-#include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/detail/flight_sign_check.hpp"
 
 namespace {
 
 namespace scenarios = tumble::scenarios;
-using tumble::FlightSense;
+using tumble::FlightSignCheck;
 
 void print_flights(const scenarios::SimulatedDraw& draw, const std::string& harm) {
   tumble::sim::Sensors sensors = draw.recording.sensors;
   scenarios::testing::wrong_inputs().at(harm)(sensors);
   std::vector<tumble::ImuSample> samples;
   if (!scenarios::bridge::primary_imu_samples(sensors, samples).ok()) return;
-  FlightSense::Params params;
-  params.body = FlightSense::Body::thrown;
+  FlightSignCheck::Params params;
+  params.body = FlightSignCheck::Body::thrown;
   params.lever_arm_m = scenarios::bridge::lever_arm_I_m(sensors.imus.front());
   params.gyro_range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
-  const FlightSense sense(params);
-  FlightSense::State state;
+  const FlightSignCheck sense(params);
+  FlightSignCheck::State state;
   for (const tumble::ImuSample& sample : samples) sense.step(sample, state);
-  const double other_s = *std::max_element(state.flown_s.begin() + 1, state.flown_s.end());
+  const double other_s = *std::max_element(state.flight_duration_s.begin() + 1, state.flight_duration_s.end());
   std::printf("%-14s %6llu %-18s as it says %5.2f s, another %5.2f s  %s\n", draw.scenario.c_str(),
-              static_cast<unsigned long long>(draw.seed), harm.c_str(), state.flown_s.front(), other_s,
+              static_cast<unsigned long long>(draw.seed), harm.c_str(), state.flight_duration_s.front(), other_s,
               sense.verdict(state).ok() ? "" : sense.verdict(state).field);
   std::fflush(stdout);
 }

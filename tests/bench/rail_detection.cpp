@@ -61,7 +61,7 @@ void judge(const std::string& file, bool flags) {
   sim::ImuRecord& imu = sensors.imus.at(0);
   if (!flags) imu.clip_flags.assign(imu.time_ns.size(), 0);
   ClippingFinder::Params params;
-  params.upright_rails = scenarios::stated_rails(imu);
+  params.axis_aligned_rails = scenarios::stated_rails(imu);
   const ClippingFinder finder(params);
   std::vector<ImuSample> samples;
   if (!scenarios::bridge::imu_samples(imu, samples).ok()) return;
@@ -78,7 +78,7 @@ void judge(const std::string& file, bool flags) {
     free[k].angular_velocity_rad_s = truth.gyro_unclipped_rad_s[k];
     free[k].specific_force_m_s2 = truth.accel_unclipped_m_s2[k];
   }
-  params.upright_rails.stated_gyro_rad_s = params.upright_rails.stated_accel_m_s2 = std::nullopt;
+  params.axis_aligned_rails.stated_gyro_rad_s = params.axis_aligned_rails.stated_accel_m_s2 = std::nullopt;
   const ClippingFinder::Found none = ClippingFinder(params).find(free);
   for (const Clipping& clipping : none.clippings) {
     gyro.false_alarms += clipping.gyro != 0;

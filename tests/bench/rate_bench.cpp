@@ -51,11 +51,11 @@ void streaming(benchmark::State& state) {
   const tumble::RateStream stream(params);
   std::optional<tumble::RateState> out;
   for (auto _ : state) {
-    tumble::RateStream::State carried = stream.start();
+    tumble::RateStream::State hand_held = stream.start();
     for (const tumble::ImuSample& sample : tumbling.samples) {
-      if (!stream.push(sample, carried, out).ok()) state.SkipWithError("not estimated");
+      if (!stream.push(sample, hand_held, out).ok()) state.SkipWithError("not estimated");
     }
-    benchmark::DoNotOptimize(carried);
+    benchmark::DoNotOptimize(hand_held);
   }
   state.counters["per_sample"] =
       benchmark::Counter(static_cast<double>(tumbling.samples.size()),
@@ -86,7 +86,9 @@ struct Problem {
     fill(corner.gradient);
   }
 
-  Eigen::Index size() const { return static_cast<Eigen::Index>(blocks.size()) * arrow::kState + arrow::kBorder; }
+  Eigen::Index size() const {
+    return static_cast<Eigen::Index>(blocks.size()) * arrow::kBlockSize + arrow::kBorderSize;
+  }
 
   // upper triangle
   Eigen::SparseMatrix<double> matrix() const {
@@ -98,11 +100,11 @@ struct Problem {
         }
       }
     };
-    const Eigen::Index border = size() - arrow::kBorder;
+    const Eigen::Index border = size() - arrow::kBorderSize;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
-      const Eigen::Index at = static_cast<Eigen::Index>(k) * arrow::kState;
+      const Eigen::Index at = static_cast<Eigen::Index>(k) * arrow::kBlockSize;
       add(at, at, blocks[k].diagonal);
-      if (k + 1 < blocks.size()) add(at, at + arrow::kState, blocks[k].coupling);
+      if (k + 1 < blocks.size()) add(at, at + arrow::kBlockSize, blocks[k].coupling);
       add(at, border, blocks[k].border);
     }
     add(border, border, corner.matrix);
@@ -114,9 +116,9 @@ struct Problem {
   Eigen::VectorXd gradient() const {
     Eigen::VectorXd out(size());
     for (std::size_t k = 0; k < blocks.size(); ++k) {
-      out.segment<arrow::kState>(static_cast<Eigen::Index>(k) * arrow::kState) = blocks[k].gradient;
+      out.segment<arrow::kBlockSize>(static_cast<Eigen::Index>(k) * arrow::kBlockSize) = blocks[k].gradient;
     }
-    out.tail<arrow::kBorder>() = corner.gradient;
+    out.tail<arrow::kBorderSize>() = corner.gradient;
     return out;
   }
 };
@@ -150,7 +152,7 @@ void solve_arrow(benchmark::State& state) {
     }
     benchmark::DoNotOptimize(step);
     // both solve the same problem
-    if (!good || (step - want.head<arrow::kState>()).norm() > 1e-9 * want.norm()) state.SkipWithError("wrong");
+    if (!good || (step - want.head<arrow::kBlockSize>()).norm() > 1e-9 * want.norm()) state.SkipWithError("wrong");
   }
   per_sample(state);
 }

@@ -213,10 +213,10 @@ scenarios::Estimate estimate_of(const scenarios::Method& method, const sim::Reco
                                 const sim::Recording* other) {
   if (other == nullptr)
     return method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});
-  scenarios::Learning before, learning;
-  (void)scenarios::learning_method(method, before).run(other->sensors, {}, {});
+  scenarios::RigCalibrationUse before, learning;
+  (void)scenarios::calibrating_method(method, before).run(other->sensors, {}, {});
   if (before.found() != nullptr) learning.given = *before.found();
-  return scenarios::learning_method(method, learning).run(recording.sensors, {}, {});
+  return scenarios::calibrating_method(method, learning).run(recording.sensors, {}, {});
 }
 
 Figures figures(const Request& request, const std::vector<sim::Recording>& recordings,
@@ -227,7 +227,7 @@ Figures figures(const Request& request, const std::vector<sim::Recording>& recor
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const sim::Recording& recording = recordings[i];
     const double start_s = scenarios::process_cpu_s();
-    const bool learns = request.learnt && method.info.learns_rig;
+    const bool learns = request.learnt && method.info.calibrates_rig;
     const scenarios::Estimate estimate = estimate_of(method, recording, learns ? &others[i] : nullptr);
     const std::size_t flights = pool.normalised_flight().size(), contacts = pool.normalised_contact().size();
     const std::size_t before = pool.clipped_rad_s().size();

@@ -96,9 +96,9 @@ const scenarios::Method& method_of(const std::string& name) {
 }
 
 // What the batch learns of a rig in one recording.
-scenarios::Learning learn(const sim::Recording& recording) {
-  scenarios::Learning learning;
-  (void)scenarios::learning_method(method_of("tumble"), learning).run(recording.sensors, {}, {});
+scenarios::RigCalibrationUse learn(const sim::Recording& recording) {
+  scenarios::RigCalibrationUse learning;
+  (void)scenarios::calibrating_method(method_of("tumble"), learning).run(recording.sensors, {}, {});
   learning.given = learning.of_batch;
   return learning;
 }
@@ -111,7 +111,7 @@ int run(const Request& request) {
   int rejected = 0;
   for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
     sim::Recording recording;
-    scenarios::Learning given;
+    scenarios::RigCalibrationUse given;
     try {
       recording = recording_of(data, scenario, seed, request.keep);
       if (request.learnt) given = learn(recording_of(data, scenario, seed, request.keep, true));
@@ -123,10 +123,10 @@ int run(const Request& request) {
       recording.sensors.imus[i].T_BI = recording.truth.imus[i].T_BI;
     }
     for (RatePool& pool : pools) {
-      scenarios::Learning learning = given;
+      scenarios::RigCalibrationUse learning = given;
       const bool learns = request.learnt && pool.name().starts_with("tumble");
       const scenarios::Method method =
-          learns ? scenarios::learning_method(method_of(pool.name()), learning) : method_of(pool.name());
+          learns ? scenarios::calibrating_method(method_of(pool.name()), learning) : method_of(pool.name());
       const double start_s = scenarios::process_cpu_s();
       const scenarios::Estimate estimate =
           method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});

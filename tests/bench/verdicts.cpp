@@ -48,8 +48,8 @@ constexpr std::string_view kPeople = "people";  // about the start: what they hi
 
 bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate) {
   if (outcome.status != scenarios::OutcomeStatus::ok) return true;
-  using About = scenarios::Doubt::About;
-  return has_doubt({About::place}, estimate) || has_doubt({About::readings}, estimate);
+  using About = scenarios::HealthFinding::About;
+  return has_finding({About::place}, estimate) || has_finding({About::readings}, estimate);
 }
 
 /// How far off a run is, in its deviations: by the covariances that it reports, by those before it told of trouble, and
@@ -101,7 +101,7 @@ Judgement judge_attitudes(const sim::Recording& recording, const scenarios::Esti
   }
   Judgement out{quantile(tilts, 5), quantile(deviations, 9)};
   out.before = out.deviations;
-  const bool says_so = has_doubt({scenarios::Doubt::About::attitude}, estimate);
+  const bool says_so = has_finding({scenarios::HealthFinding::About::attitude}, estimate);
   out.gross = !says_so && !(out.error <= kWrongTilt_rad);
   return out;
 }

@@ -248,10 +248,10 @@ void write_documents(const path& folder, const path& scratch) {
   put_text(in(folder, "gate_run") / "small",
            "scenario,kind,method,metric,1,2\nhill,slam,tumble,status,ok,failed\nhill,slam,tumble,map_overlap,0.75,\n");
 
-  LearntRig rig;
+  CalibratedRig rig;
   rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
   rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
-  write_learnt_rig(in(folder, "learnt") / "small", rig);
+  write_rig_calibration(in(folder, "learnt") / "small", rig);
   const std::vector<MapPoint> map(3, MapPoint{{1, 2, 3}, {0, 0, 1}, 0.1f});
   write_map(in(folder, "map_ply") / "small", map);
 

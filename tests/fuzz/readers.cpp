@@ -157,7 +157,7 @@ void data_sheet(const path& file) {
 }
 
 void learnt(const path& file) {
-  read_learnt_rig(file);
+  read_rig_calibration(file);
 }
 void map_ply(const path& file) {
   read_map(file);

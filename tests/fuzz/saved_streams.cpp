@@ -26,13 +26,13 @@ struct Streaming {
 
   /// With short windows, which are quick.
   static typename Estimator::Params params() {
-    const auto shorten = [](CarriedStream::Params& carried) {
-      carried.lag_s = 0.05;
-      carried.window_s = 0.15;
+    const auto shorten = [](HandHeldStream::Params& hand_held) {
+      hand_held.lag_s = 0.05;
+      hand_held.window_s = 0.15;
     };
     typename Estimator::Params params = test::params_of_stream<Stream>();
-    if constexpr (std::same_as<Stream, CarriedStream>) shorten(params);
-    if constexpr (std::same_as<Stream, CarriedLive>) shorten(params.stream);
+    if constexpr (std::same_as<Stream, HandHeldStream>) shorten(params);
+    if constexpr (std::same_as<Stream, HandHeldPipeline>) shorten(params.stream);
     return params;
   }
   static const std::vector<ImuSample>& samples() {
@@ -60,9 +60,9 @@ void saved_streams(const std::filesystem::path& file) {
     case 'G':
       return load_spoiled<Streaming<RegimeStream>>(edits);
     case 'C':
-      return load_spoiled<Streaming<CarriedStream>>(edits);
+      return load_spoiled<Streaming<HandHeldStream>>(edits);
     case 'L':
-      return load_spoiled<Streaming<CarriedLive>>(edits);
+      return load_spoiled<Streaming<HandHeldPipeline>>(edits);
     case 'F':
       return load_spoiled<Streaming<RollingFilter>>(edits);
     case 'S':

@@ -151,7 +151,7 @@ TEST(PointClouds, TheUnitIsThatOfTheFirstWholeSweep) {
   PointCloudReader reader;
   TimedSweep sweep;
   const CloudMessage small = test::ouster_cloud(few), whole = test::ouster_cloud(points);
-  EXPECT_EQ(reader.read(small.view(0), sweep).trouble, Trouble::too_few);
+  EXPECT_EQ(reader.read(small.view(0), sweep).error_code, ErrorCode::too_few);
   ASSERT_TRUE(reader.read(whole.view(0), sweep).ok());
   ASSERT_TRUE(reader.read(small.view(0), sweep).ok());
   EXPECT_EQ(sweep.end_ns, 250'000);
@@ -161,36 +161,38 @@ TEST(PointClouds, DamagedCloudsAreRejected) {
   const std::vector<LidarPoint> points = some_points();
   const CloudMessage fine = test::ouster_cloud(points);
   TimedSweep sweep;
-  const auto trouble = [&](const ros::PointCloudView& view) { return PointCloudReader().read(view, sweep).trouble; };
-  ASSERT_EQ(trouble(fine.view(0)), Trouble::none);
+  const auto error_code = [&](const ros::PointCloudView& view) {
+    return PointCloudReader().read(view, sweep).error_code;
+  };
+  ASSERT_EQ(error_code(fine.view(0)), ErrorCode::none);
   ros::PointCloudView view = fine.view(0);
   view.is_bigendian = true;
-  EXPECT_EQ(trouble(view), Trouble::out_of_range);
+  EXPECT_EQ(error_code(view), ErrorCode::out_of_range);
   view = fine.view(0);
   view.data = view.data.first(view.data.size() - 1);
-  EXPECT_EQ(trouble(view), Trouble::out_of_range);
+  EXPECT_EQ(error_code(view), ErrorCode::out_of_range);
   view = fine.view(0);
   view.height = 0xffffffffu;
-  EXPECT_EQ(trouble(view), Trouble::out_of_range);
+  EXPECT_EQ(error_code(view), ErrorCode::out_of_range);
   view = fine.view(0);
   view.point_step = 0;
-  EXPECT_EQ(trouble(view), Trouble::out_of_range);
+  EXPECT_EQ(error_code(view), ErrorCode::out_of_range);
   view = fine.view(0);
   view.width = 0;
-  EXPECT_EQ(trouble(view), Trouble::empty);
+  EXPECT_EQ(error_code(view), ErrorCode::empty);
   std::vector<ros::PointField> fields = fine.fields;
   fields[3].offset = fine.point_step - 3;
   view = fine.view(0);
   view.fields = fields;
-  EXPECT_EQ(trouble(view), Trouble::out_of_range) << "a field beyond its point";
+  EXPECT_EQ(error_code(view), ErrorCode::out_of_range) << "a field beyond its point";
   fields = fine.fields;
   fields[1].name = "w";
   view.fields = fields;
-  EXPECT_EQ(trouble(view), Trouble::empty) << "no y";
+  EXPECT_EQ(error_code(view), ErrorCode::empty) << "no y";
   fields = fine.fields;
   fields[3].name = "w";
   view.fields = fields;
-  EXPECT_EQ(trouble(view), Trouble::empty) << "no times";
+  EXPECT_EQ(error_code(view), ErrorCode::empty) << "no times";
 }
 
 TEST(PointClouds, TheTimeFieldMustBeUnique) {
@@ -200,10 +202,10 @@ TEST(PointClouds, TheTimeFieldMustBeUnique) {
   columns.push_back({"t", 6, [](const LidarPoint& p) { return double(p.offset_ns) + 5e8; }});
   const CloudMessage two = cloud_message(some_points(), columns);
   TimedSweep sweep;
-  EXPECT_EQ(PointCloudReader().read(two.view(0), sweep).trouble, Trouble::out_of_range);
+  EXPECT_EQ(PointCloudReader().read(two.view(0), sweep).error_code, ErrorCode::out_of_range);
   ASSERT_TRUE(PointCloudReader("t").read(two.view(0), sweep).ok());
   EXPECT_EQ(sweep.start_ns, 500'000'000);
-  EXPECT_EQ(PointCloudReader("ts").read(two.view(0), sweep).trouble, Trouble::empty);
+  EXPECT_EQ(PointCloudReader("ts").read(two.view(0), sweep).error_code, ErrorCode::empty);
   columns[4].name = "t_ns";
   const CloudMessage stated = cloud_message(some_points(), columns);
   ASSERT_TRUE(PointCloudReader().read(stated.view(0), sweep).ok()) << "the field that states its unit";
@@ -217,10 +219,10 @@ TEST(PointClouds, EqualAndWildTimesAreRejected) {
   std::vector<Column> columns = test::xyz();
   columns.push_back({"t_ns", 6, [](const LidarPoint& p) { return double(p.offset_ns); }});
   const CloudMessage wild = cloud_message(points, columns);
-  EXPECT_EQ(PointCloudReader().read(wild.view(0), sweep).trouble, Trouble::out_of_range);
+  EXPECT_EQ(PointCloudReader().read(wild.view(0), sweep).error_code, ErrorCode::out_of_range);
   for (LidarPoint& point : points) point.offset_ns = 5;
   const CloudMessage equal = cloud_message(points, columns);
-  EXPECT_EQ(PointCloudReader().read(equal.view(0), sweep).trouble, Trouble::degenerate);
+  EXPECT_EQ(PointCloudReader().read(equal.view(0), sweep).error_code, ErrorCode::degenerate);
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ TEST(TumblingAdapter, ContinuesAfterTheClockStepsBack) {
   play_to(adapter, body, kEpoch_ns);
   const Eigen::Vector3d last = got.sweeps.back().T_OB.translation();
   play_to(adapter, body, 0, 300'000'000);  // a bag that is played again, with another clock; 0.2 s until the restart
-  EXPECT_EQ(adapter.odometry().gaps(), 1u);
+  EXPECT_EQ(adapter.odometry().restart_count(), 1u);
   const auto again = std::find_if(got.sweeps.begin(), got.sweeps.end(),
                                   [](const ros::Odometry& each) { return each.stamp_ns < kEpoch_ns; });
   ASSERT_GT(got.sweeps.end() - again, 20);
@@ -260,8 +260,8 @@ TEST(TumblingAdapter, ReportsRejectedMessages) {
   TumblingAdapter adapter(adapter_params(body), got);
   ImuSample bad;
   bad.angular_velocity_rad_s.x() = std::nan("");
-  EXPECT_EQ(adapter.on_imu(bad).trouble, Trouble::non_finite);
-  EXPECT_EQ(adapter.on_cloud(ros::PointCloudView{}).trouble, Trouble::empty);
+  EXPECT_EQ(adapter.on_imu(bad).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(adapter.on_cloud(ros::PointCloudView{}).error_code, ErrorCode::empty);
   ImuSample fine;
   fine.time_ns = 2'000'000'000;
   fine.specific_force_m_s2.z() = 9.8;

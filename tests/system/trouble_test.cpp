@@ -24,7 +24,7 @@ void expect_one_line(const Ended& ended, const std::string& says) {
   EXPECT_THAT(ended.err, HasSubstr(says));
 }
 
-TEST(Trouble, TruncatedRecordingIsRecognised) {
+TEST(ErrorCode, TruncatedRecordingIsRecognised) {
   const fs::path folder = test_folder();
   const std::string whole = read_file(shared_run("roll") / "recording.h5");
   ASSERT_GT(whole.size(), 1000u);
@@ -40,7 +40,7 @@ TEST(Trouble, TruncatedRecordingIsRecognised) {
   EXPECT_FALSE(fs::exists(folder / "e")) << "nothing is left of an estimate that could not begin";
 }
 
-TEST(Trouble, FolderThatCannotBeWritten) {
+TEST(ErrorCode, FolderThatCannotBeWritten) {
   // below a regular file: refused to root too
   const fs::path folder = test_folder();
   std::ofstream(folder / "file") << "x";
@@ -57,7 +57,7 @@ TEST(Trouble, FolderThatCannotBeWritten) {
                   "file/below");
 }
 
-TEST(Trouble, FilesOfAnotherKindAreNotReplaced) {
+TEST(ErrorCode, FilesOfAnotherKindAreNotReplaced) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string();
   std::ofstream(folder / "imu.csv") << "sec,nsec,wx,wy,wz,fx,fy,fz\n0,0,0,0,0,0,0,9.8\n";
@@ -80,7 +80,7 @@ TEST(Trouble, FilesOfAnotherKindAreNotReplaced) {
   kept("a.tum", {"export", recording, "--format", "mcap", "-o"}, "ending in .mcap");
 }
 
-TEST(Trouble, ABagForARecordingPointsToImport) {
+TEST(ErrorCode, ABagForARecordingPointsToImport) {
   const fs::path folder = test_folder();
   const std::string bag = (folder / "a.bag").string(), out = (folder / "out").string();
   std::ofstream(bag) << "#ROSBAG V2.0\n";
@@ -96,7 +96,7 @@ TEST(Trouble, ABagForARecordingPointsToImport) {
   }
 }
 
-TEST(Trouble, FullDiskLeavesNoPartialRecording) {
+TEST(ErrorCode, FullDiskLeavesNoPartialRecording) {
   const fs::path folder = test_folder();
   // a limit on the size of files stands for the disk that is full; a roll takes more than this
   const auto full = [] {
@@ -113,7 +113,7 @@ TEST(Trouble, FullDiskLeavesNoPartialRecording) {
                   "x.db");
 }
 
-TEST(Trouble, TooFewFilesAreNoDefect) {
+TEST(ErrorCode, TooFewFilesAreNoDefect) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string();
   // how many this process has open is not known: below some number the program cannot even be loaded
@@ -133,19 +133,19 @@ TEST(Trouble, TooFewFilesAreNoDefect) {
   EXPECT_GT(met, 0u);
 }
 
-TEST(Trouble, FullStandardOutputIsSaid) {
+TEST(ErrorCode, FullStandardOutputIsSaid) {
   const Ended ended = run_program({"list", "methods"}, [] {
     if (std::freopen("/dev/full", "w", stdout) == nullptr) _exit(126);
   });
   expect_one_line(ended, "standard output");
 }
 
-TEST(Trouble, DataThatAreNotThereAreSaid) {
+TEST(ErrorCode, DataThatAreNotThereAreSaid) {
   const Ended ended = run_program({"list", "scenarios"}, [] { setenv("TUMBLE_DATA", "/nowhere", 1); });
   expect_one_line(ended, "/nowhere");
 }
 
-TEST(Trouble, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
+TEST(ErrorCode, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
   const fs::path file = test_folder() / "bad.yaml";
   const std::string catalogue = read_file(test::source_dir() / "scenarios" / "catalogue" / "roll.yaml");
   const std::size_t at = catalogue.find("motion:");
@@ -156,7 +156,7 @@ TEST(Trouble, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
   EXPECT_THAT(ended.err, HasSubstr("did you mean 'motion'?"));
 }
 
-TEST(Trouble, AGapIsSaidWithItsPlace) {
+TEST(ErrorCode, AGapIsSaidWithItsPlace) {
   const fs::path folder = test_folder();
   std::ofstream csv(folder / "gap.csv");
   csv << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
@@ -175,7 +175,7 @@ TEST(Trouble, AGapIsSaidWithItsPlace) {
 }
 
 // met before the run, of which nothing stays that looks finished
-TEST(Trouble, WhatIsLearntHasAPlaceOrNothingRuns) {
+TEST(ErrorCode, WhatIsLearntHasAPlaceOrNothingRuns) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string(), made = (folder / "e").string();
   expect_one_line(run_program({"estimate", recording, "--method", "rate/tumble", "--learnt",
@@ -194,7 +194,7 @@ TEST(Trouble, WhatIsLearntHasAPlaceOrNothingRuns) {
 }
 
 // what another rig has taught is believed to millimetres, and clipped rates are wrong by it
-TEST(Trouble, WhatWasLearntOfAnotherRigIsACaution) {
+TEST(ErrorCode, WhatWasLearntOfAnotherRigIsACaution) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string(), file = (folder / "rig.json").string();
   const auto estimate = [&](const std::string& out) {
@@ -211,13 +211,13 @@ TEST(Trouble, WhatWasLearntOfAnotherRigIsACaution) {
   EXPECT_THAT(other.err, HasSubstr("from the lever arm of the recording, so the file may belong to another rig"));
 }
 
-TEST(Trouble, AFrameIsCheckedWithoutATrajectoryToo) {
+TEST(ErrorCode, AFrameIsCheckedWithoutATrajectoryToo) {
   expect_one_line(run_program({"replay", (shared_run("roll") / "recording.h5").string(), "--frame", "limu", "-o",
                                (test_folder() / "p.html").string()}),
                   "unknown frame 'limu'");
 }
 
-TEST(Trouble, ForeignFilesAreRefused) {
+TEST(ErrorCode, ForeignFilesAreRefused) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "text") << "this is neither HDF5 nor SQLite\n";
   expect_one_line(

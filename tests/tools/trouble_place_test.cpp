@@ -58,8 +58,8 @@ TEST(TroublePlace, NamesTheLongestGap) {
 }
 
 TEST(TroublePlace, OfWhatIsNoReadingIsNone) {
-  EXPECT_EQ(trouble_place({Trouble::out_of_range, "median step of imu time_ns", 1.0, 2.0}, sound()), "");
-  EXPECT_EQ(trouble_place({Trouble::non_finite, "specific_force_m_s2", 1.0, 2.0}, sound()), "") << "none has it";
+  EXPECT_EQ(trouble_place({ErrorCode::out_of_range, "median step of imu time_ns", 1.0, 2.0}, sound()), "");
+  EXPECT_EQ(trouble_place({ErrorCode::non_finite, "specific_force_m_s2", 1.0, 2.0}, sound()), "") << "none has it";
 }
 
 }  // namespace

@@ -6,13 +6,13 @@
 namespace tumble::tools {
 namespace {
 
-using scenarios::Doubt;
+using scenarios::HealthFinding;
 
 TEST(VerdictLines, AnEstimateWithoutTroubleSaysNothing) {
   scenarios::Estimate estimate;
   estimate.health = {{"imu_force_share", 1.0}, {"samples_slip", 12.0}, {"imu_2_time_offset_s", 0.003}};
-  report_no_doubt(Doubt::About::place, estimate);
-  report_no_doubt(Doubt::About::rate_unit, estimate);
+  report_no_findings(HealthFinding::About::place, estimate);
+  report_no_findings(HealthFinding::About::rate_unit, estimate);
   EXPECT_TRUE(verdict_lines(estimate).empty());
   EXPECT_EQ(estimate.health.at("localised"), 1.0);
   EXPECT_EQ(estimate.health.at("rate_unit_suspect"), 0.0);
@@ -20,10 +20,10 @@ TEST(VerdictLines, AnEstimateWithoutTroubleSaysNothing) {
 
 TEST(VerdictLines, EachDoubtIsALineWithItsRowAndValue) {
   scenarios::Estimate estimate;
-  add_doubt({Doubt::About::readings}, estimate);
-  add_doubt({Doubt::About::unit_frozen, 4.348, "imu_2_gyro_z"}, estimate);
-  add_doubt({Doubt::About::place, 0.0}, estimate);
-  add_doubt({Doubt::About::unit_silent, 0.0, "imu_3"}, estimate);
+  add_finding({HealthFinding::About::readings}, estimate);
+  add_finding({HealthFinding::About::unit_frozen, 4.348, "imu_2_gyro_z"}, estimate);
+  add_finding({HealthFinding::About::place, 0.0}, estimate);
+  add_finding({HealthFinding::About::unit_silent, 0.0, "imu_3"}, estimate);
   estimate.health["samples_slip"] = 12.0;
   const std::vector<std::string> lines = verdict_lines(estimate);
   ASSERT_EQ(lines.size(), 4U);
@@ -37,15 +37,15 @@ TEST(VerdictLines, EachDoubtIsALineWithItsRowAndValue) {
 
 // Whatever its row is called: but for rates, of which `readings` speaks.
 TEST(VerdictLines, EachDoubtIsSaidAlsoOfAnEstimateOfWhichOnlyTheHealthWasKept) {
-  for (const Doubt::About about : scenarios::kAllDoubts) {
-    const bool of_unit = about >= Doubt::About::unit_frozen;
+  for (const HealthFinding::About about : scenarios::kAllFindings) {
+    const bool of_unit = about >= HealthFinding::About::unit_frozen;
     scenarios::Estimate estimate;
-    add_doubt({about, about == Doubt::About::place ? 0.0 : 2.5, of_unit ? "imu_2" : ""}, estimate);
-    const std::size_t lines = about == Doubt::About::rates ? 0 : 1;
-    EXPECT_EQ(verdict_lines(estimate).size(), lines) << row_of(estimate.doubts.at(0));
+    add_finding({about, about == HealthFinding::About::place ? 0.0 : 2.5, of_unit ? "imu_2" : ""}, estimate);
+    const std::size_t lines = about == HealthFinding::About::rates ? 0 : 1;
+    EXPECT_EQ(verdict_lines(estimate).size(), lines) << row_of(estimate.findings.at(0));
     scenarios::Estimate back;
-    back.doubts = scenarios::doubts_in(estimate.health);
-    EXPECT_EQ(back.doubts, estimate.doubts) << row_of(estimate.doubts.at(0));
+    back.findings = scenarios::findings_in(estimate.health);
+    EXPECT_EQ(back.findings, estimate.findings) << row_of(estimate.findings.at(0));
     EXPECT_EQ(verdict_lines(back), verdict_lines(estimate));
   }
 }

@@ -14,7 +14,7 @@ using scenarios::BadInput;
 
 std::string failure_reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
-  if (status.trouble == Trouble::empty && field == "imus")
+  if (status.error_code == ErrorCode::empty && field == "imus")
     return "the method needs an IMU, but the recording contains no IMU";
   const std::string place = trouble_place(status, sensors);
   return status.message() + (place.empty() ? "" : ": " + place);

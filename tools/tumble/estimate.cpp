@@ -78,7 +78,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const scenarios::MethodPointer chosen = chosen_method(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
-  if (!options.learnt.empty() && !method.info.learns_rig) {
+  if (!options.learnt.empty() && !method.info.calibrates_rig) {
     throw BadInput("--learnt applies only to " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
                    "' does not calibrate the rig");
   }
@@ -90,7 +90,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   learnt.require_place();
   note_time_limits(session, std::span(&options.method, 1));
   scenarios::Estimate estimate = run_method(methods.front(), sensors);
-  if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
+  if (!scenarios::states_digest(options.recording)) add_finding({scenarios::HealthFinding::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   if (!estimate.map.empty()) scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);

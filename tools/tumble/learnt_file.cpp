@@ -15,7 +15,7 @@ namespace tumble::tools {
 LearntFile::LearntFile(std::filesystem::path path) : path_(std::move(path)) {
   if (path_.empty() || !std::filesystem::exists(path_)) return;
   scenarios::require_regular_file(path_);
-  learning_.given = scenarios::read_learnt_rig(path_);
+  learning_.given = scenarios::read_rig_calibration(path_);
 }
 
 void LearntFile::require_place() const {
@@ -38,18 +38,18 @@ std::string LearntFile::caution(const sim::Sensors& sensors) const {
 std::string LearntFile::learning_methods() {
   std::string names;
   for (const scenarios::Method& method : scenarios::methods()) {
-    if (method.info.learns_rig) names += (names.empty() ? "'" : ", '") + full_name(method.info) + "'";
+    if (method.info.calibrates_rig) names += (names.empty() ? "'" : ", '") + full_name(method.info) + "'";
   }
   return names;
 }
 
 scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
-  return path_.empty() || !method.info.learns_rig ? method : scenarios::learning_method(method, learning_);
+  return path_.empty() || !method.info.calibrates_rig ? method : scenarios::calibrating_method(method, learning_);
 }
 
 void LearntFile::keep(const Session& session) const {
   if (path_.empty()) return;
-  if (learning_.found() != nullptr) return scenarios::write_learnt_rig(path_, *learning_.found());
+  if (learning_.found() != nullptr) return scenarios::write_rig_calibration(path_, *learning_.found());
   session.note(path_.string() +
                (std::filesystem::exists(path_) ? ": the file is unchanged" : ": the file was not written") +
                ", because the run produced no calibration of the rig. Possible reasons are too little free flight or "

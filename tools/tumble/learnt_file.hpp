@@ -40,7 +40,7 @@ class LearntFile {
 
  private:
   std::filesystem::path path_;
-  scenarios::Learning learning_;
+  scenarios::RigCalibrationUse learning_;
 };
 
 }  // namespace tumble::tools

@@ -119,7 +119,7 @@ double imu_duration_s(const sim::ImuRecord& imu) {
 std::string health_text(const Estimate& estimate) {
   if (!estimate.status.ok()) return "failed";
   std::string text;
-  for (const scenarios::Doubt& doubt : estimate.doubts)
+  for (const scenarios::HealthFinding& doubt : estimate.findings)
     text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", row_of(doubt), doubt.value);
   return text.empty() ? "ok" : text;
 }

@@ -176,7 +176,7 @@ std::vector<scenarios::Method> asked_methods(const RunOptions& options, const sc
                                              LearntFile& learnt) {
   const auto selected = select_methods(options.methods);
   if (!options.learnt.empty() &&
-      std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
+      std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.calibrates_rig; })) {
     throw scenarios::BadInput("--learnt applies only to " + LearntFile::learning_methods() +
                               ", but none of these methods runs; name one with --method");
   }

@@ -64,7 +64,7 @@ json draw_json(const DrawTriage& draw, const std::string& words) {
     runs.push_back({{"input", row.input}, {"status", to_string(row.outcome.status)}, {"fails", row.fails}});
   return {{"scenario", draw.draw.scenario},
           {"seed", draw.draw.seed},
-          {"trouble", draw.trouble},
+          {"trouble", draw.error_code},
           {"runs", runs},
           {"again", fmt::format("tumble triage {} --seed {}{}", scenarios::shell_word(draw.draw.scenario),
                                 draw.draw.seed, words)}};
@@ -128,8 +128,8 @@ std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& as
 
 std::string line_of(const DrawTriage& draw) {
   const std::string name = fmt::format("{} {}: ", draw.draw.scenario, draw.draw.seed);
-  if (draw.rows.empty()) return name + draw.trouble;
-  if (!draw.trouble.empty()) return name + "incomplete: " + draw.trouble;
+  if (draw.rows.empty()) return name + draw.error_code;
+  if (!draw.error_code.empty()) return name + "incomplete: " + draw.error_code;
   if (!draw.rows.front().fails) return name + "does not fail";
   std::string cures;
   for (const scenarios::TriageRow& row : draw.rows) {
@@ -141,7 +141,7 @@ std::string line_of(const DrawTriage& draw) {
 
 std::string first_trouble(const std::vector<DrawTriage>& draws) {
   const auto first =
-      std::find_if(draws.begin(), draws.end(), [](const DrawTriage& draw) { return !draw.trouble.empty(); });
+      std::find_if(draws.begin(), draws.end(), [](const DrawTriage& draw) { return !draw.error_code.empty(); });
   return first == draws.end() ? "" : line_of(*first);
 }
 
@@ -165,7 +165,7 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   session.print({table_of(worths, asked.metric)}, to_json(worths, triaged, asked));
   session.note(conclusion(worths));
   const auto troubled =
-      std::count_if(triaged.begin(), triaged.end(), [](const DrawTriage& draw) { return !draw.trouble.empty(); });
+      std::count_if(triaged.begin(), triaged.end(), [](const DrawTriage& draw) { return !draw.error_code.empty(); });
   if (troubled > 0)
     std::fprintf(stderr,
                  "tumble: %td of %zu draws have no result or an incomplete result; the first of these draws is %s\n",

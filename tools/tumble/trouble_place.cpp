@@ -32,20 +32,20 @@ std::string place_of_gap(const sim::Sensors& sensors) {
 }
 
 /// True if a reading has this error, alone or relative to its predecessor.
-bool has_trouble(Trouble trouble, const sim::ImuRecord& imu, std::size_t k) {
-  if (trouble == Trouble::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
+bool has_trouble(ErrorCode error_code, const sim::ImuRecord& imu, std::size_t k) {
+  if (error_code == ErrorCode::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
   ImuSample sample;
   sample.angular_velocity_rad_s = imu.gyro_rad_s[k];
   sample.specific_force_m_s2 = imu.accel_m_s2[k];
-  return check_sample(sample).trouble == trouble ||
-         scenarios::bridge::check_range(imu, sample.angular_velocity_rad_s, sample.specific_force_m_s2).trouble ==
-             trouble;
+  return check_sample(sample).error_code == error_code ||
+         scenarios::bridge::check_range(imu, sample.angular_velocity_rad_s, sample.specific_force_m_s2).error_code ==
+             error_code;
 }
 
-std::string place_of_reading(Trouble trouble, const sim::Sensors& sensors) {
+std::string place_of_reading(ErrorCode error_code, const sim::Sensors& sensors) {
   for (const sim::ImuRecord& imu : sensors.imus) {
     for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
-      if (has_trouble(trouble, imu, k))
+      if (has_trouble(error_code, imu, k))
         return fmt::format("reading {} of {}, at {:.3f} s", k, imu.name, recording_time_s(imu.time_ns[k]));
     }
   }
@@ -55,11 +55,11 @@ std::string place_of_reading(Trouble trouble, const sim::Sensors& sensors) {
 }  // namespace
 
 std::string trouble_place(const Status& status, const sim::Sensors& sensors) {
-  if (status.trouble == Trouble::gap) return place_of_gap(sensors);
+  if (status.error_code == ErrorCode::gap) return place_of_gap(sensors);
   const std::string field = status.field;
   const bool of_reading = field.starts_with("angular_velocity_rad_s") || field.starts_with("specific_force_m_s2") ||
-                          (status.trouble == Trouble::time_order && field == "time_ns");
-  return of_reading ? place_of_reading(status.trouble, sensors) : "";
+                          (status.error_code == ErrorCode::time_order && field == "time_ns");
+  return of_reading ? place_of_reading(status.error_code, sensors) : "";
 }
 
 }  // namespace tumble::tools

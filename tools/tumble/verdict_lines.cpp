@@ -8,8 +8,8 @@ namespace tumble::tools {
 namespace {
 
 /// Returns null for findings that the line of another finding covers.
-const char* meaning(scenarios::Doubt::About about) {
-  using About = scenarios::Doubt::About;
+const char* meaning(scenarios::HealthFinding::About about) {
+  using About = scenarios::HealthFinding::About;
   switch (about) {
     case About::readings:
       return "the IMU's readings contradict each other or gravity; do not use the estimate";
@@ -54,7 +54,7 @@ const char* meaning(scenarios::Doubt::About about) {
 
 std::vector<std::string> verdict_lines(const scenarios::Estimate& estimate) {
   std::vector<std::string> out;
-  for (const scenarios::Doubt& doubt : estimate.doubts) {
+  for (const scenarios::HealthFinding& doubt : estimate.findings) {
     const char* const said = meaning(doubt.about);
     if (said != nullptr) out.push_back(fmt::format("{} {:.6g}: {}", row_of(doubt), doubt.value, said));
   }

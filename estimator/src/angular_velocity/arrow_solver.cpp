@@ -46,8 +46,8 @@ ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors
 
 // Computes the 3x3 covariance of a sample's rate: rate_smoother.md (R35).
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance) {
-  const Eigen::Matrix<double, 3, kBorder> rows = conditional.by_border.topRows<3>();
-  const Eigen::Matrix<double, 3, kBorder> cross = rows.lazyProduct(border_covariance);
+  const Eigen::Matrix<double, 3, kBorderSize> rows = conditional.jacobian_border.topRows<3>();
+  const Eigen::Matrix<double, 3, kBorderSize> cross = rows.lazyProduct(border_covariance);
   Eigen::Matrix3d out = conditional.state.topLeftCorner<3, 3>();
   out.noalias() += cross.lazyProduct(rows.transpose());
   return out;

@@ -27,7 +27,7 @@ Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbou
   // The variance covers two errors: interpolation, up to share (1 - share) of the change between readings, and clock
   // error.
   const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
-  const double scaled = auxiliary_imu.share_error * value.norm();
+  const double scaled = auxiliary_imu.scale_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
                      .cwiseSqrt()};
 }
@@ -53,7 +53,8 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
-    return {Trouble::too_few, "clippings", static_cast<double>(clippings.size()), static_cast<double>(samples.size())};
+    return {ErrorCode::too_few, "clippings", static_cast<double>(clippings.size()),
+            static_cast<double>(samples.size())};
   }
   out.assign(primary.size(), {});
   if (samples.size() < 2) return {};
@@ -73,7 +74,7 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
     const Clipping &c = clippings[near.before], &d = clippings[near.after];
     // interpolation omits a reading with zero weight
     const bool left = near.share<1.0, right = near.share> 0.0;
-    const unsigned gyro = (left ? c.gyro | c.missing_gyro : 0u) | (right ? d.gyro | d.missing_gyro : 0u);
+    const unsigned gyro = (left ? c.gyro | c.unusable_gyro : 0u) | (right ? d.gyro | d.unusable_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
     out[k].rate_along_elements = gyro != 0;
     out[k].force_along_elements = accel != 0;

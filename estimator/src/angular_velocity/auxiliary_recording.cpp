@@ -13,7 +13,7 @@ Status align(std::span<const AuxiliaryRecording> recordings, std::span<const Imu
   out.clear();
   for (const AuxiliaryRecording& recording : recordings.first(std::min(recordings.size(), kAuxiliaryImusMax))) {
     ClippingFinder::Params clipping;
-    clipping.upright_rails = recording.stated_rails;
+    clipping.axis_aligned_rails = recording.stated_rails;
     const ClippingFinder::Found found = ClippingFinder(clipping).find(recording.samples);
     AuxiliaryImu imu = recording.imu;
     imu.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);

@@ -7,32 +7,32 @@
 
 #include "element_clipping.hpp"
 #include "sample_hold.hpp"
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 
 namespace tumble {
 
 RailPlanes SaturationLevels::planes_in_use(Triad triad) const {
   const RailPlanes& known = triad == Triad::gyro ? planes : accel_planes;
-  return (triad == Triad::gyro ? upright : accel_clips_after_compensation)
-             ? without_plateaus(known, upright_rails, triad)
+  return (triad == Triad::gyro ? gyro_clips_after_compensation : accel_clips_after_compensation)
+             ? without_plateaus(known, axis_aligned_rails, triad)
              : known;
 }
 
 SensingDirections SaturationLevels::rows(Triad triad, double unknown_sigma) const {
-  if (triad == Triad::gyro ? upright : accel_clips_after_compensation) return {};
-  return element_rows(planes_in_use(triad), unknown_sigma);
+  if (triad == Triad::gyro ? gyro_clips_after_compensation : accel_clips_after_compensation) return {};
+  return sensing_directions(planes_in_use(triad), unknown_sigma);
 }
 
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis) {
   const std::uint8_t clipped = triad == Triad::gyro ? clipping.gyro : clipping.accel;
-  if (triad == Triad::gyro && (clipping.missing_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
+  if (triad == Triad::gyro && (clipping.unusable_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
   if ((clipped >> axis & 1u) == 0) return ElementReading::measured;
   return reading_of(sample, triad)[axis] < 0.0 ? ElementReading::clipped_low : ElementReading::clipped_high;
 }
 
 std::uint8_t clip_flags(const Clipping& clipping) {
   constexpr int kAccelFirst = 3;
-  return static_cast<std::uint8_t>(clipping.gyro | clipping.missing_gyro | clipping.accel << kAccelFirst);
+  return static_cast<std::uint8_t>(clipping.gyro | clipping.unusable_gyro | clipping.accel << kAccelFirst);
 }
 
 std::uint8_t ConfirmedSaturation::flags(const ImuSample& sample, const Clipping& judged) const {
@@ -51,27 +51,29 @@ std::uint8_t ConfirmedSaturation::flags(const ImuSample& sample, const Clipping&
 }
 
 ClippingFinder::ClippingFinder(const Params& params)
-    : upright_rails_(params.upright_rails), planes_(plane_finders(params)), tilted_(params.tilted) {}
+    : axis_aligned_rails_(params.axis_aligned_rails), planes_(plane_finders(params)), tilted_(params.tilted) {}
 
 RailPlanes ClippingFinder::find_planes(std::span<const ImuSample> samples, Triad triad,
-                                       const RailDetector::State& upright_rails, bool& upright) const {
+                                       const RailDetector::State& axis_aligned_rails,
+                                       bool& clips_after_compensation) const {
   std::vector<Eigen::Vector3d> readings(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = reading_of(samples[k], triad);
   RailPlaneFinder::Workspace workspace;
-  const bool unstated = stated_range_contradicted(upright_rails_, upright_rails, triad);
+  const bool unstated = stated_range_contradicted(axis_aligned_rails_, axis_aligned_rails, triad);
   const RailPlanes planes = planes_[index_of(triad)][unstated ? 1 : 0].find(readings, {}, workspace);
-  upright = are_upright(readings, planes, upright_rails, triad);
+  clips_after_compensation = are_upright(readings, planes, axis_aligned_rails, triad);
   return planes;
 }
 
 ClippingFinder::Found ClippingFinder::find(std::span<const ImuSample> samples) const {
   Found out;
   out.clippings.resize(samples.size());
-  upright_rails_.classify_all(samples, out.rails.upright_rails, out.clippings);
+  axis_aligned_rails_.classify_all(samples, out.rails.axis_aligned_rails, out.clippings);
   if (!tilted_) return out;
-  out.rails.planes = find_planes(samples, Triad::gyro, out.rails.upright_rails, out.rails.upright);
-  out.rails.accel_planes =
-      find_planes(samples, Triad::accelerometer, out.rails.upright_rails, out.rails.accel_clips_after_compensation);
+  out.rails.planes =
+      find_planes(samples, Triad::gyro, out.rails.axis_aligned_rails, out.rails.gyro_clips_after_compensation);
+  out.rails.accel_planes = find_planes(samples, Triad::accelerometer, out.rails.axis_aligned_rails,
+                                       out.rails.accel_clips_after_compensation);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const RailPlanes planes = out.rails.planes_in_use(triad);
     if (!planes.any()) continue;

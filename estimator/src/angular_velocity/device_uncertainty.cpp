@@ -62,47 +62,52 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
 }  // namespace
 
 DeviceUncertainty::DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated)
-    : sheet_(prior_deviations(sizes, 0.0)), unknown_(prior_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
+    : data_sheet_sigma_(prior_sigmas(sizes, 0.0)),
+      uncalibrated_sigma_(prior_sigmas(sizes, 1.0)),
+      uncalibrated_(uncalibrated) {}
 
 void DeviceUncertainty::reset(Posterior& posterior) const {
-  posterior.unlike = uncalibrated_;
+  posterior.uncalibrated_probability = uncalibrated_;
   posterior.covariance =
-      ((1.0 - uncalibrated_) * sheet_.cwiseAbs2() + uncalibrated_ * unknown_.cwiseAbs2()).asDiagonal();
+      ((1.0 - uncalibrated_) * data_sheet_sigma_.cwiseAbs2() + uncalibrated_ * uncalibrated_sigma_.cwiseAbs2())
+          .asDiagonal();
 }
 
 void DeviceUncertainty::update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
                                bool unlike_sheet) const {
   if (unlike_sheet) {
-    if (!about_corrected(evidence, unknown_, work)) work.about_corrected = unknown_.cwiseAbs2().asDiagonal();
+    if (!about_corrected(evidence, uncalibrated_sigma_, work))
+      work.about_corrected = uncalibrated_sigma_.cwiseAbs2().asDiagonal();
     posterior.covariance = work.about_corrected;
-    posterior.unlike = 1.0;
+    posterior.uncalibrated_probability = 1.0;
     return;
   }
-  const double odds = std::log(uncalibrated_ / (1.0 - uncalibrated_)) + log_odds(evidence, unknown_, work.system) -
-                      log_odds(evidence, sheet_, work.system);
+  const double odds = std::log(uncalibrated_ / (1.0 - uncalibrated_)) +
+                      log_odds(evidence, uncalibrated_sigma_, work.system) -
+                      log_odds(evidence, data_sheet_sigma_, work.system);
   const double unlike = 1.0 / (1.0 + std::exp(-odds));
-  bool known = std::isfinite(unlike) && about_corrected(evidence, sheet_, work);
+  bool known = std::isfinite(unlike) && about_corrected(evidence, data_sheet_sigma_, work);
   if (known) posterior.covariance = (1.0 - unlike) * work.about_corrected;
-  known = known && about_corrected(evidence, unknown_, work);
+  known = known && about_corrected(evidence, uncalibrated_sigma_, work);
   if (!known) return reset(posterior);
   posterior.covariance += unlike * work.about_corrected;
-  posterior.unlike = unlike;
+  posterior.uncalibrated_probability = unlike;
 }
 
-double DeviceUncertainty::odds_of_sheet(double delay_s, double sigma_s) const {
+double DeviceUncertainty::data_sheet_odds(double delay_s, double sigma_s) const {
   const auto variance = [&](const Vector& deviation) {
     return sigma_s * sigma_s + deviation[SensorErrors::kDelay] * deviation[SensorErrors::kDelay];
   };
-  const double sheet = variance(sheet_), unknown = variance(unknown_);
+  const double sheet = variance(data_sheet_sigma_), unknown = variance(uncalibrated_sigma_);
   const double log_odds = 0.5 * delay_s * delay_s * (1.0 / unknown - 1.0 / sheet) + 0.5 * std::log(unknown / sheet);
   return (1.0 - uncalibrated_) / uncalibrated_ * std::exp(log_odds);
 }
 
-double DeviceUncertainty::further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const {
+double DeviceUncertainty::delay_correction_s(const SensorErrorEvidence& evidence, double reach_s) const {
   constexpr int kFirst = SensorErrors::kGSensitivity, kRest = SensorErrors::kSize - kFirst,
                 kAt = SensorErrors::kDelay - kFirst;
   using Rest = Eigen::Matrix<double, kRest, kRest>;
-  Eigen::Matrix<double, kRest, 1> deviation = unknown_.tail<kRest>();
+  Eigen::Matrix<double, kRest, 1> deviation = uncalibrated_sigma_.tail<kRest>();
   deviation[kAt] = reach_s;
   const Rest system_evidence = evidence.information.bottomRightCorner<kRest, kRest>(),
              both = 0.5 * (system_evidence + system_evidence.transpose());
@@ -114,9 +119,11 @@ double DeviceUncertainty::further_delay_s(const SensorErrorEvidence& evidence, d
   return std::isfinite(out) ? std::clamp(out, -reach_s, reach_s) : 0.0;
 }
 
-double DeviceUncertainty::common_delay_s2(const Posterior& posterior) const {
-  const double delay_s = unknown_[SensorErrors::kDelay];
-  return delay_s > sheet_[SensorErrors::kDelay] ? 0.5 * posterior.unlike * delay_s * delay_s : 0.0;
+double DeviceUncertainty::common_delay_variance_s2(const Posterior& posterior) const {
+  const double delay_s = uncalibrated_sigma_[SensorErrors::kDelay];
+  return delay_s > data_sheet_sigma_[SensorErrors::kDelay]
+             ? 0.5 * posterior.uncalibrated_probability * delay_s * delay_s
+             : 0.0;
 }
 
 }  // namespace tumble

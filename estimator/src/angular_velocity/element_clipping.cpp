@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 
 namespace tumble {
@@ -39,10 +39,10 @@ bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::s
 // Returns whether a sample between a clipped sample and the sample `outside` was saturated for a part of its window.
 // The criterion is the distance of the readings from the saturation level, rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
-  const double depth = rail.short_of(reading_of(now, triad), sign);
-  if (depth > kBesideRail * rail.distance_rad_s) return false;
+  const double depth = rail.margin_rad_s(reading_of(now, triad), sign);
+  if (depth > kNearRailRatio * rail.distance_rad_s) return false;
   if (outside == nullptr) return true;
-  const double before = rail.short_of(reading_of(*outside, triad), sign);
+  const double before = rail.margin_rad_s(reading_of(*outside, triad), sign);
   return depth < kEdgeOfStep * (before - depth);
 }
 
@@ -65,14 +65,14 @@ std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, co
 }  // namespace
 
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params) {
-  return {stated_and_not(params.planes, params.upright_rails.stated_gyro_rad_s),
-          stated_and_not(params.accel_planes, params.upright_rails.stated_accel_m_s2)};
+  return {stated_and_not(params.planes, params.axis_aligned_rails.stated_gyro_rad_s),
+          stated_and_not(params.accel_planes, params.axis_aligned_rails.stated_accel_m_s2)};
 }
 
-bool stated_range_contradicted(const RailDetector& upright_rails, const RailDetector::State& state, Triad triad) {
+bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad) {
   const int first = static_cast<int>(first_channel(triad));
-  return upright_rails.disagrees(state, first) || upright_rails.disagrees(state, first + 1) ||
-         upright_rails.disagrees(state, first + 2);
+  return axis_aligned_rails.disagrees(state, first) || axis_aligned_rails.disagrees(state, first + 1) ||
+         axis_aligned_rails.disagrees(state, first + 2);
 }
 
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
@@ -85,7 +85,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     if (rail && plateau > 0.0) {
       // on a tilted saturation plane, most clipped samples would have different readings
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
-        return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualShare * plateau;
+        return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });
       if (2 * equal >= rail->samples[0] + rail->samples[1]) {
         nil += 2;
@@ -114,11 +114,11 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
   return out;
 }
 
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
+Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after) {
-  Clipping out = by_upright_rails;
+  Clipping out = by_axis_aligned_rails;
   std::uint8_t& bits = triad == Triad::gyro ? out.gyro : out.accel;
-  const std::uint8_t unreadable = triad == Triad::gyro ? by_upright_rails.missing_gyro : 0;
+  const std::uint8_t unreadable = triad == Triad::gyro ? by_axis_aligned_rails.unusable_gyro : 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
     if (!rail || (unreadable >> j & 1u) != 0) continue;
@@ -140,22 +140,22 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
   mark_subsample_saturation(rails, state, noise_rad_s, before, now, after);
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
-    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.missing_gyro >> j & 1u) == 0;
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.unusable_gyro >> j & 1u) == 0;
     if (!rail || !flagged) continue;
     const auto bit = static_cast<std::uint8_t>(1u << j);
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated & ~bit);
     const int sign = side(now.sample, Triad::gyro, j);
     const double level = rail->distance_rad_s;
-    const double reading = level - rail->short_of(now.sample.angular_velocity_rad_s, sign);
+    const double reading = level - rail->margin_rad_s(now.sample.angular_velocity_rad_s, sign);
     const double neighbour =
-        free_neighbour(reading, level, static_cast<int>(j), before, after,
-                       [&](const Eigen::Vector3d& beside) { return level - rail->short_of(beside, sign); });
+        unsaturated_neighbour(reading, level, static_cast<int>(j), before, after,
+                              [&](const Eigen::Vector3d& beside) { return level - rail->margin_rad_s(beside, sign); });
     if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
     const SubsampleSaturation loss = subsample_saturation(reading, neighbour, level, noise_rad_s);
     if (!loss.saturated) continue;
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | bit);
-    now.lost_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.lost_rad_s;
-    now.lost_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
+    now.expected_deficit_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.expected_deficit_rad_s;
+    now.expected_deficit_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
   }
 }
 

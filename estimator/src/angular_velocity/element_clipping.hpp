@@ -28,7 +28,7 @@ inline std::size_t first_channel(Triad triad) {
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
 /// Returns whether readings contradict the stated range; RailPlaneFinder then ignores the stated range.
-bool stated_range_contradicted(const RailDetector& upright_rails, const RailDetector::State& state, Triad triad);
+bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad);
 
 /// Returns whether planes and plateaus of equal readings indicate a device that clips its output, so that other axes
 /// are unaffected. Two cross-axis sensitivities that are known to be zero are sufficient; a plateau counts as one
@@ -43,7 +43,7 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 /// saturation plane clips according to the plane or the device's flag. A neighbour of a clipped sample also counts as
 /// clipped if the neighbour was saturated for a part of its window. A neighbour was partly saturated if its distance
 /// from the plane is less than half of the distance of the next sample. `before` and `after` may be null.
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
+Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
 /// Finds partly saturated axes like mark_subsample_saturation() of RateObservation, but uses the saturation level of

@@ -40,11 +40,11 @@ void begin_repeat(std::size_t channel, const std::array<double, 6>& now, TimeNs 
   axis.reading = now[channel];
   axis.since_ns = time_ns;
   axis.repeated_s = axis.samples = axis.stationary_s = 0.0;
-  axis.flagged = axis.frozen = false;
+  axis.device_flagged = axis.frozen = false;
   axis.stationary_reference = now;
   for (std::size_t k = 0; k < 2; ++k) {
-    axis.other_low[k] = axis.other_high[k] = now[other(channel, k)];
-    axis.other_changes[k] = 0.0;
+    axis.others_min[k] = axis.others_max[k] = now[other(channel, k)];
+    axis.others_changes[k] = 0.0;
   }
 }
 
@@ -60,7 +60,7 @@ bool others_rest(std::size_t channel, const std::array<double, 6>& now, const st
 }  // namespace
 
 FrozenAxes::FrozenAxes(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 void FrozenAxes::step(const ImuSample& sample, State& state) const {
@@ -76,33 +76,33 @@ void FrozenAxes::step(const ImuSample& sample, State& state) const {
     if (!state.started || now[c] != axis.reading) {
       if (state.started) {
         const double change = std::abs(now[c] - axis.reading);
-        axis.quantum = axis.quantum > 0.0 ? std::min(axis.quantum, change) : change;
+        axis.smallest_change = axis.smallest_change > 0.0 ? std::min(axis.smallest_change, change) : change;
         if (!axis.frozen && !at_rail(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
-        axis.moved_s += dt_s;
+        axis.changing_s += dt_s;
       }
       begin_repeat(c, now, sample.time_ns, axis);
     }
-    hold(c, now, dt_s, sample.device_clip_flags, state);
+    track_repetition(c, now, dt_s, sample.device_clip_flags, state);
   }
   state.before = now;
   state.last_time_ns = sample.time_ns;
-  state.fastest_rad_s = std::max(state.fastest_rad_s, sample.angular_velocity_rad_s.norm());
+  state.rate_max_so_far_rad_s = std::max(state.rate_max_so_far_rad_s, sample.angular_velocity_rad_s.norm());
   state.started = true;
 }
 
-void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
-                      State& state) const {
+void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 6>& now, double dt_s,
+                                  std::uint8_t flags, State& state) const {
   Axis& axis = state.axes[channel];
   const int first = is_gyro(channel) ? kClipGyroX : kClipAccelX;
-  axis.flagged = axis.flagged || (flags & first << channel % 3) != 0;
+  axis.device_flagged = axis.device_flagged || (flags & first << channel % 3) != 0;
   if (state.last_time_ns >= axis.since_ns && state.started) {
     axis.repeated_s += dt_s;
     axis.samples += 1.0;
     for (std::size_t k = 0; k < 2; ++k) {
       const std::size_t beside = other(channel, k);
-      axis.other_low[k] = std::min(axis.other_low[k], now[beside]);
-      axis.other_high[k] = std::max(axis.other_high[k], now[beside]);
-      if (now[beside] != state.before[beside]) axis.other_changes[k] += 1.0;
+      axis.others_min[k] = std::min(axis.others_min[k], now[beside]);
+      axis.others_max[k] = std::max(axis.others_max[k], now[beside]);
+      if (now[beside] != state.before[beside]) axis.others_changes[k] += 1.0;
     }
     if (others_rest(channel, now, axis.stationary_reference)) {
       axis.stationary_s += dt_s;
@@ -118,7 +118,7 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
   const bool of_no_motion = axis.stationary_s >= params_.rail_stationary_s ||
                             (axis.repeated_s >= params_.rail_repeated_s && others_move(channel, 0.0, axis));
   const bool froze = at_its_rail ? of_no_motion && std::abs(axis.reading) >= most
-                                 : axis.moved_s >= params_.frozen_s &&
+                                 : axis.changing_s >= params_.frozen_s &&
                                        axis.repeated_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
                                        others_move(channel, kChanging, axis);
   axis.frozen = axis.frozen || froze;
@@ -130,17 +130,17 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kRailShare * stated) return true;
   // A flag shows that the device saturated. The flag does not show that the repeated value is the saturation level.
-  if (axis.flagged && size >= kExtremeShare * stated) return true;
+  if (axis.device_flagged && size >= kExtremeShare * stated) return true;
   return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
 /// Returns whether the other axes of the triad change by far more than a quantum of the tested axis. The other axes
 /// must change in at least the fraction `changing_share` of the samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
-  const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
+  const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.smallest_change);
   for (std::size_t k = 0; k < 2; ++k) {
-    const bool changes = axis.other_changes[k] >= changing_share * axis.samples;
-    if (changes && axis.other_high[k] - axis.other_low[k] >= least) return true;
+    const bool changes = axis.others_changes[k] >= changing_share * axis.samples;
+    if (changes && axis.others_max[k] - axis.others_min[k] >= least) return true;
   }
   return false;
 }
@@ -155,7 +155,7 @@ Status FrozenAxes::verdict(const State& state) const {
       "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
       "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
   for (std::size_t c = 0; c < kFields.size(); ++c) {
-    if (state.axes[c].frozen) return {Trouble::out_of_range, kFields[c], state.axes[c].repeated_s, params_.frozen_s};
+    if (state.axes[c].frozen) return {ErrorCode::out_of_range, kFields[c], state.axes[c].repeated_s, params_.frozen_s};
   }
   return {};
 }
@@ -164,7 +164,8 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   for (std::size_t c = 0; c < 3; ++c) {
     const Axis& axis = state.axes[c];
-    if (axis.frozen && time_ns >= axis.since_ns) out[static_cast<int>(c)] = state.fastest_rad_s * state.fastest_rad_s;
+    if (axis.frozen && time_ns >= axis.since_ns)
+      out[static_cast<int>(c)] = state.rate_max_so_far_rad_s * state.rate_max_so_far_rad_s;
   }
   return out;
 }

@@ -11,17 +11,17 @@ void members(Self& s, Visitor& visit) {
   visit("frozen.reading", s.reading);
   visit("frozen.since_ns", s.since_ns);
   visit("frozen.repeated_s", s.repeated_s);
-  visit("frozen.flagged", s.flagged);
+  visit("frozen.flagged", s.device_flagged);
   visit("frozen.frozen", s.frozen);
   visit("frozen.ever_frozen", s.ever_frozen);
   visit("frozen.longest_s", s.longest_s);
-  visit("frozen.moved_s", s.moved_s);
-  visit("frozen.quantum", s.quantum);
+  visit("frozen.moved_s", s.changing_s);
+  visit("frozen.quantum", s.smallest_change);
   visit("frozen.min_reading", s.min_reading);
   visit("frozen.max_reading", s.max_reading);
-  visit("frozen.other_low", s.other_low);
-  visit("frozen.other_high", s.other_high);
-  visit("frozen.other_changes", s.other_changes);
+  visit("frozen.other_low", s.others_min);
+  visit("frozen.other_high", s.others_max);
+  visit("frozen.other_changes", s.others_changes);
   visit("frozen.samples", s.samples);
   visit("frozen.stationary_s", s.stationary_s);
   visit("frozen.stationary_reference", s.stationary_reference);
@@ -32,7 +32,7 @@ void members(Self& s, Visitor& visit) {
   visit("frozen.axes", s.axes);
   visit("frozen.before", s.before);
   visit("frozen.last_time_ns", s.last_time_ns);
-  visit("frozen.fastest_rad_s", s.fastest_rad_s);
+  visit("frozen.fastest_rad_s", s.rate_max_so_far_rad_s);
   visit("frozen.started", s.started);
 }
 

@@ -3,16 +3,17 @@
 
 namespace tumble {
 
-GyroOffset::GyroOffset() : rests_({.rate_max_rad_s = kMost_rad_s, .rest_s = 0.5}) {}
+GyroOffset::GyroOffset() : rest_detector_({.rate_max_rad_s = kOffsetMax_rad_s, .rest_s = 0.5}) {}
 
 std::optional<Eigen::Vector3d> GyroOffset::observe(const ImuSample& sample, State& state) const {
   if (state.decided) return std::nullopt;
   if (!state.first_ns) state.first_ns = sample.time_ns;
-  const bool rests = rests_.observe(sample, state.rest);
-  state.decided = rests || check_follows(sample.time_ns, *state.first_ns, kWithin_s).trouble == Trouble::gap;
+  const bool rests = rest_detector_.observe(sample, state.rest);
+  state.decided =
+      rests || check_stamp_order(sample.time_ns, *state.first_ns, kRestEndMax_s).error_code == ErrorCode::gap;
   if (!rests) return std::nullopt;
   const Eigen::Vector3d offset = state.rest.mean_rate_rad_s();
-  if (offset.cwiseAbs().maxCoeff() <= kLeast_rad_s) return std::nullopt;
+  if (offset.cwiseAbs().maxCoeff() <= kOffsetMin_rad_s) return std::nullopt;
   return offset;
 }
 

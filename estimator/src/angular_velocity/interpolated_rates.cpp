@@ -68,8 +68,8 @@ std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStream
     const RateStreamKnot& knot = window[i];
     const RateObservation& o = knot.observation;
     const double stamp_s = seconds(o.sample.time_ns - window[k].observation.sample.time_ns);
-    return OwnReading{stamp_s - knot.repeated.behind_samples() * period_s, o.sample.angular_velocity_rad_s,
-                      knot.repeated.is_slower_than_log() && !o.by_elements() && o.read_in_part() == 0};
+    return OwnReading{stamp_s - knot.repeated.delay_samples() * period_s, o.sample.angular_velocity_rad_s,
+                      knot.repeated.is_slower_than_log() && !o.is_element_clipped() && o.partly_saturated_axes() == 0};
   };
   std::size_t b = new_reading(window, k + 1);
   while (b < window.size() && at(b).time_s < 0.0) b = new_reading(window, b + 1);

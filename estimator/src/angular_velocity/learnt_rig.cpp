@@ -26,7 +26,7 @@ constexpr double kSureLogOdds = 10.0;
 // Lower bound of the standard deviation of a cross-axis sensitivity, equation (R59) of rails.md.
 constexpr double kSlopeSigmaMin = 3e-4;
 
-std::optional<double> lowest_rail(const LearntRig& rig, std::size_t first) {
+std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
   std::optional<double> out;
   for (std::size_t j = first; j < first + 3; ++j) {
     if (rig.rail[j] && (!out || *rig.rail[j] < *out)) out = rig.rail[j];
@@ -49,15 +49,15 @@ bool reported_level(const RailPlane& plane, int sign) {
 
 }  // namespace
 
-LearntRig learnt(const RateReport& report) {
-  LearntRig out{report.calibration, report.rail};
+CalibratedRig learnt(const RateReport& report) {
+  CalibratedRig out{report.calibration, report.rail};
   out.device_errors = report.sensor_errors;
   if (!report.clips_after_compensation) out.keep(report.planes);
   out.keep(report.accel_planes, Triad::accelerometer);
   return out;
 }
 
-void LearntRig::keep(const RailPlanes& planes, Triad triad) {
+void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
   Planes& kept = triad == Triad::gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2;
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
@@ -84,7 +84,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
 namespace {
 
 // Stores cross-axis sensitivities and intercepts of an element whose plane is certain.
-void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig& rig) {
+void take_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
                                plane.row[static_cast<Eigen::Index>((j + 2) % 3)]);
@@ -103,16 +103,16 @@ void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig&
 
 }  // namespace
 
-std::optional<LearntRig> with_rails(const LearntRig& before, const SaturationLevels& rails) {
-  LearntRig found, out = before;
-  if (!rails.upright) found.keep(rails.planes);
+std::optional<CalibratedRig> with_rails(const CalibratedRig& before, const SaturationLevels& rails) {
+  CalibratedRig found, out = before;
+  if (!rails.gyro_clips_after_compensation) found.keep(rails.planes);
   if (!rails.accel_clips_after_compensation) found.keep(rails.accel_planes, Triad::accelerometer);
   out.rails_alone = true;
   bool sure = false;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const bool gyro = triad == Triad::gyro;
-    const LearntRig::Planes& now = gyro ? found.gyro_planes_rad_s : found.accelerometer_planes_m_s2;
-    LearntRig::Planes& kept = gyro ? out.gyro_planes_rad_s : out.accelerometer_planes_m_s2;
+    const CalibratedRig::Planes& now = gyro ? found.gyro_planes_rad_s : found.accelerometer_planes_m_s2;
+    CalibratedRig::Planes& kept = gyro ? out.gyro_planes_rad_s : out.accelerometer_planes_m_s2;
     for (std::size_t j = 0; j < 3; ++j) {
       const std::optional<RailPlane>& plane = (gyro ? rails.planes : rails.accel_planes).element[j];
       for (std::size_t i = 0; i < 2; ++i) {
@@ -126,7 +126,7 @@ std::optional<LearntRig> with_rails(const LearntRig& before, const SaturationLev
   return sure ? std::optional(out) : std::nullopt;
 }
 
-RailPlanes LearntRig::planes(Triad triad) const {
+RailPlanes CalibratedRig::planes(Triad triad) const {
   constexpr double kDistanceShare = 1e-3;
   const bool gyro = triad == Triad::gyro;
   const RigConstants of_accel{.elements = accelerometer_elements};
@@ -153,7 +153,7 @@ RailPlanes LearntRig::planes(Triad triad) const {
   return out;
 }
 
-void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params) {
+void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& params) {
   if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", must be at least 1");
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
@@ -172,7 +172,7 @@ void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params
   if (const auto rail = lowest_rail(rig, 3)) params.rails.stated_accel_m_s2 = rail;
 }
 
-void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
+void start_from_calibration(const CalibratedRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kTrust, params);
   // Biases change at every switch-on, so the default prior replaces the saved covariance of the biases.
@@ -193,19 +193,19 @@ void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   covariance = information.inverse();
 }
 
-LearntRig known_before(const LearntRig* given, const RateModelParams& model) {
+CalibratedRig known_before(const CalibratedRig* given, const RateModelParams& model) {
   if (given != nullptr) return *given;
   const RateModel assumed(model, 0.01);
   return {{assumed.prior_constants(), assumed.prior_covariance()}, {}};
 }
 
-void start_from_learnt(const LearntRig& rig, RateStream::Params& params) {
+void start_from_calibration(const CalibratedRig& rig, RateStream::Params& params) {
   RateSmoother::Params batch;
   batch.model = params.model;
   batch.rails = params.rails;
   batch.expert.planes = params.expert.planes;
   batch.expert.accel_planes = params.expert.accel_planes;
-  start_from_learnt(rig, batch);
+  start_from_calibration(rig, batch);
   params.model = batch.model;
   params.rails = batch.rails;
   params.expert.planes = batch.expert.planes;
@@ -213,11 +213,12 @@ void start_from_learnt(const LearntRig& rig, RateStream::Params& params) {
   if (batch.calibrated_errors) params.calibrated_errors = std::make_shared<KnownSensorErrors>(*batch.calibrated_errors);
 }
 
-std::optional<LearntRig> learnt(const RateReport& report, const LearntRig* given, const RateModelParams& model) {
+std::optional<CalibratedRig> learnt(const RateReport& report, const CalibratedRig* given,
+                                    const RateModelParams& model) {
   if (!report.calibration_at_prior) return learnt(report);
   SaturationLevels rails;
   rails.planes = report.planes;
-  rails.upright = report.clips_after_compensation;
+  rails.gyro_clips_after_compensation = report.clips_after_compensation;
   rails.accel_planes = report.accel_planes;
   return with_rails(known_before(given, model), rails);
 }
@@ -229,32 +230,32 @@ bool is_at_prior(const RateStream& stream, const RateStream::State& state) {
 
 namespace {
 
-LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
-  LearntRig rig{stream.calibration(state), {}};
-  const RailDetector upright_rails(params.rails);
+CalibratedRig rig_of(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
+  CalibratedRig rig{stream.calibration(state), {}};
+  const RailDetector axis_aligned_rails(params.rails);
   const SaturationLevels& known = state.rails.known;
   for (int c = 0; c < 6; ++c) {
     std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
-    rail = upright_rails.rail(known.upright_rails, c);
+    rail = axis_aligned_rails.rail(known.axis_aligned_rails, c);
     const auto& plane = (c < 3 ? known.planes : known.accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) rail = plane->distance_rad_s;
   }
-  if (!known.upright) rig.keep(known.planes);
+  if (!known.gyro_clips_after_compensation) rig.keep(known.planes);
   if (!known.accel_clips_after_compensation) rig.keep(known.accel_planes, Triad::accelerometer);
   return rig;
 }
 
 }  // namespace
 
-std::optional<LearntRig> learnt(const RateStream& stream, const RateStream::Params& params, const LearntRig* given,
-                                const RateStream::State& state) {
+std::optional<CalibratedRig> learnt(const RateStream& stream, const RateStream::Params& params,
+                                    const CalibratedRig* given, const RateStream::State& state) {
   const bool late = state.device.front().delay.found;
-  std::optional<LearntRig> rig;
+  std::optional<CalibratedRig> rig;
   if (!is_at_prior(stream, state)) {
     rig = rig_of(stream, params, state);
     if (given != nullptr) rig->device_errors = given->device_errors;
   } else {
-    const LearntRig before = known_before(given, params.model);
+    const CalibratedRig before = known_before(given, params.model);
     rig = with_rails(before, state.rails.known);
     if (!rig && late) {
       rig = before;

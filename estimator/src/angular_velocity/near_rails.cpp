@@ -36,7 +36,7 @@ std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) 
     const auto& rail = planes.element[j];
     const int sign = reading[axis] < 0.0 ? -1 : 1;
     if (!rail || !rail->seen(sign)) continue;
-    const double missing = rail->short_of(reading, sign);
+    const double missing = rail->margin_rad_s(reading, sign);
     const std::size_t reach = missing < kRoundShare * rail->distance_rad_s ? kReach : 1;
     if (missing < largest_step(readings, at, reach, axis)) out = static_cast<std::uint8_t>(out | 1u << j);
   }

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 
 namespace tumble {
 
 namespace {
 
-// `kUnseenTilt` is the maximum tilt between the saturation planes of two elements, in addition to kBesideRail.
+// `kUnseenTilt` is the maximum tilt between the saturation planes of two elements, in addition to kNearRailRatio.
 // `kUnseenOfStep` is the saturation deficit of a few samples at a saturation level, as a fraction of the step to the
 // neighbouring reading.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
@@ -46,44 +46,44 @@ double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
 }  // namespace
 
 // Stores the smallest saturation level that the readings allow: rails.md (R75).
-void LeastRails::add(const Eigen::Vector3d& rate_rad_s) {
+void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];
     least = std::max(least, std::abs(rate_rad_s[j]) - kUnseenTilt * beside_of(rate_rad_s, j));
   }
 }
 
-bool LeastRails::refute(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const {
+bool MinSaturationLevels::rules_out(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const {
   const double least = rad_s_[rate_rad_s[axis] < 0.0 ? 0 : 1][axis];
-  return std::abs(rate_rad_s[axis]) + kUnseenTilt * beside_of(rate_rad_s, axis) < (1.0 - kBesideRail) * least;
+  return std::abs(rate_rad_s[axis]) + kUnseenTilt * beside_of(rate_rad_s, axis) < (1.0 - kNearRailRatio) * least;
 }
 
-void inflate_possible_saturation(const RailPlanes& planes, const LeastRails& least, double noise_rad_s,
+void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after) {
   const double rail = lowest_rail(planes);
-  now.lone = 0;
+  now.isolated_high_axes = 0;
   if (rail == 0.0) return;
   const Eigen::Vector3d& reading = now.sample.angular_velocity_rad_s;
   for (Eigen::Index j = 0; j < 3; ++j) {
     const auto& own = planes.element[static_cast<std::size_t>(j)];
     const int sign = reading[j] < 0.0 ? -1 : 1;
-    const unsigned unusable = now.clipping.gyro | now.clipping.missing_gyro | now.subsample_saturated;
+    const unsigned unusable = now.clipping.gyro | now.clipping.unusable_gyro | now.subsample_saturated;
     if ((own && own->seen(sign)) || (unusable >> j & 1u) != 0) continue;
     const double beside = beside_of(reading, j);
-    if (std::abs(reading[j]) < (1.0 - kBesideRail) * rail - kUnseenTilt * beside) continue;
-    if (least.refute(reading, j)) continue;
+    if (std::abs(reading[j]) < (1.0 - kNearRailRatio) * rail - kUnseenTilt * beside) continue;
+    if (least.rules_out(reading, j)) continue;
     double step = 0.0;
     for (const ImuSample* neighbour : {before, after}) {
       if (neighbour == nullptr) continue;
       step = std::max(step, std::abs(reading[j] - neighbour->angular_velocity_rad_s[j]));
     }
-    now.lone = static_cast<std::uint8_t>(now.lone | 1u << j);
-    now.lost_sigma_rad_s[j] = std::hypot(noise_rad_s, kUnseenOfStep * step);
+    now.isolated_high_axes = static_cast<std::uint8_t>(now.isolated_high_axes | 1u << j);
+    now.expected_deficit_sigma_rad_s[j] = std::hypot(noise_rad_s, kUnseenOfStep * step);
   }
 }
 
-void inflate_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
-                             std::span<RateObservation> observations) {
+void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_share,
+                             double noise_rad_s, std::span<RateObservation> observations) {
   const double from = (1.0 - kElementsApart * offset_share) * lowest_rail(planes);
   const bool flags = std::any_of(observations.begin(), observations.end(),
                                  [](const RateObservation& o) { return o.sample.device_clip_flags != 0; });
@@ -109,14 +109,15 @@ void inflate_motion_plateaus(const RailPlanes& planes, const LeastRails& least, 
         const double rise =
             hidden_rise(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
         if (!(rise > 0.0)) continue;  // not a maximum
-        if (least.refute(observations[first].sample.angular_velocity_rad_s, axis)) continue;
+        if (least.rules_out(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {
           RateObservation& o = observations[i];
-          if (((o.clipping.gyro | o.clipping.missing_gyro) >> j & 1u) != 0) continue;
-          const double sigma = (o.lone >> j & 1u) != 0 ? o.lost_sigma_rad_s[axis] : noise_rad_s;
-          o.lone = static_cast<std::uint8_t>(o.lone & ~(1u << j));
+          if (((o.clipping.gyro | o.clipping.unusable_gyro) >> j & 1u) != 0) continue;
+          const double sigma =
+              (o.isolated_high_axes >> j & 1u) != 0 ? o.expected_deficit_sigma_rad_s[axis] : noise_rad_s;
+          o.isolated_high_axes = static_cast<std::uint8_t>(o.isolated_high_axes & ~(1u << j));
           o.suspect = static_cast<std::uint8_t>(o.suspect | 1u << j);
-          o.lost_sigma_rad_s[axis] = std::hypot(sigma, kUnseenOfStep * rise);
+          o.expected_deficit_sigma_rad_s[axis] = std::hypot(sigma, kUnseenOfStep * rise);
         }
       }
     }

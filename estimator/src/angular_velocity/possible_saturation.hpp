@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "tumble/angular_velocity/detail/least_rails.hpp"
+#include "tumble/angular_velocity/detail/min_saturation_levels.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rail_plane.hpp"
 
@@ -13,8 +13,8 @@ namespace tumble {
 /// Marks readings of a sensing element without a known saturation level if the readings are near the levels of other
 /// elements. Marking is needed because few saturated samples do not reveal a saturation plane. The possible saturation
 /// deficit of a marked reading is its step to the neighbours. Readings that `least` excludes as saturation levels are
-/// not marked. The function resets RateObservation::lone.
-void inflate_possible_saturation(const RailPlanes& planes, const LeastRails& least, double noise_rad_s,
+/// not marked. The function resets RateObservation::isolated_high_axes.
+void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
 /// Marks whole segments of readings near a maximum, which may hide a peak between the slopes before and after the
@@ -22,7 +22,7 @@ void inflate_possible_saturation(const RailPlanes& planes, const LeastRails& lea
 /// (RailPlaneFinder::Params). The function has no effect if the device flags clipping or no saturation level is known.
 /// The function also has no effect if the sensing element has read far higher values. The function sets
 /// RateObservation::suspect.
-void inflate_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
-                             std::span<RateObservation> observations);
+void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_share,
+                             double noise_rad_s, std::span<RateObservation> observations);
 
 }  // namespace tumble

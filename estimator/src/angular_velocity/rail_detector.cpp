@@ -23,7 +23,7 @@ void set_bit(std::uint8_t& bits, int j) {
 RailDetector::RailDetector(const Params& params) : params_(params) {
   if (params.stated_gyro_rad_s) require_within("stated_gyro_rad_s", *params.stated_gyro_rad_s, 1e-6, 1000.0);
   if (params.stated_accel_m_s2) require_within("stated_accel_m_s2", *params.stated_accel_m_s2, 1e-6, 1e5);
-  require_fields(params);
+  require_valid_fields(params);
   require_within("leave_share", params.leave_share, params.enter_share, 0.5);
 }
 
@@ -103,7 +103,7 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
     }
     if (flipped) {
-      set_bit(out.missing_gyro, c);
+      set_bit(out.unusable_gyro, c);
       continue;  // `last` keeps the sign before the overflow
     }
     channel.clipped = clipped;
@@ -116,11 +116,11 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
 void RailDetector::classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const {
   for (const ImuSample& sample : samples) observe(sample, state);
   for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify(samples[k], state);
-  for (std::size_t k = samples.size(); k-- > 1;) add_edge(samples[k - 1], samples[k], out[k], state, out[k - 1]);
+  for (std::size_t k = samples.size(); k-- > 1;) add_rising_edge(samples[k - 1], samples[k], out[k], state, out[k - 1]);
 }
 
-void RailDetector::add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
-                            Clipping& clipping) const {
+void RailDetector::add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next,
+                                   const State& state, Clipping& clipping) const {
   for (int c = 0; c < 6; ++c) {
     const std::uint8_t after = c < 3 ? of_next.gyro : of_next.accel;
     if ((after >> (c % 3) & 1u) == 0) continue;

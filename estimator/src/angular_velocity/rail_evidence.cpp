@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 
 namespace tumble {
 
@@ -90,7 +90,7 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
     squares += std::pow(facet.row.dot(readings.rates[first + i]) - line, 2);
   }
   const double free = static_cast<double>(s.size() - kThinTaken), digit = readings.digit[facet.axis] / std::sqrt(12.0);
-  const double least = std::max(digit, kEqualShare * facet.level);
+  const double least = std::max(digit, kEqualReadingsRatio * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
   // the result is the log ratio of two Gaussian likelihoods, with the standard deviations of scatter and noise

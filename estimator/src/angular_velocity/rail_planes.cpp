@@ -12,7 +12,7 @@
 
 #include "rail_evidence.hpp"
 #include "rail_facets.hpp"
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -203,7 +203,7 @@ struct SideSearch {
 }  // namespace
 
 RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
   if (params.stated_rad_s) require_within("stated_rad_s", *params.stated_rad_s, 1e-6, 1000.0);
   require_within("log_odds_keep", params.log_odds_keep, -100.0, params.log_odds_min);
 }
@@ -227,7 +227,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
   const DistinctReadings readings = distinct_readings(readings_rad_s, workspace.rates, workspace.values);
   RailPlanes found;
   if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2)
-    return with_known(found, readings.rates);
+    return merge_with_known_planes(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
   // Each accepted plane changes the odds of the planes that are still missing. The loop therefore repeats until no
@@ -246,7 +246,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
       }
     }
   }
-  return with_known(found, readings.rates);
+  return merge_with_known_planes(found, readings.rates);
 }
 
 }  // namespace tumble

@@ -19,7 +19,8 @@ constexpr double kSameShare = 0.003;
 }  // namespace
 
 // Adds saturation planes of an earlier run, for planes that the current readings do not show.
-RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
+RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
+                                                    std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& earlier = params_.known.element[j];
@@ -41,13 +42,13 @@ bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const 
   int beyond = 0;
   for (const Vector3d& y : readings_rad_s) {
     for (const int sign : {-1, 1}) {
-      beyond += seen(sign) && short_of(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
+      beyond += seen(sign) && margin_rad_s(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
     }
   }
   return beyond >= kContradicting;
 }
 
-SensingDirections element_rows(const RailPlanes& planes, double unknown_sigma) {
+SensingDirections sensing_directions(const RailPlanes& planes, double unknown_sigma) {
   SensingDirections out;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto i = static_cast<Eigen::Index>(j);

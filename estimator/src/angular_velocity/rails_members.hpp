@@ -5,8 +5,8 @@
 
 #include "../common/imu_members.hpp"
 #include "sample_hold_bounds.hpp"
-#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 
 namespace tumble {
@@ -40,7 +40,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RepeatDetector::Memory> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hold.reading", s.reading);
-  visit("hold.run_samples", s.run_samples, 0.0, std::numeric_limits<double>::max());
+  visit("hold.run_samples", s.equal_samples, 0.0, std::numeric_limits<double>::max());
   visit("hold.moving", s.moving, 0.0, 2.0 * sample_hold::kMovingMax);
   visit("hold.repeated", s.repeated, 0.0, s.moving);
   visit("hold.now", s.now);
@@ -55,7 +55,7 @@ template <StateOf<Clipping> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("clipping.gyro", s.gyro);
   visit("clipping.accel", s.accel);
-  visit("clipping.missing_gyro", s.missing_gyro);
+  visit("clipping.missing_gyro", s.unusable_gyro);
 }
 
 template <StateOf<RailDetector::Channel> Self, class Visitor>
@@ -102,24 +102,24 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<SaturationLevels> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("rails.upright_rails", s.upright_rails);
+  visit("rails.upright_rails", s.axis_aligned_rails);
   visit("rails.planes", s.planes);
   visit("rails.accel_planes", s.accel_planes);
-  visit("rails.upright", s.upright);
+  visit("rails.upright", s.gyro_clips_after_compensation);
   visit("rails.accel_clips_after_compensation", s.accel_clips_after_compensation);
 }
 
-template <StateOf<RailWatch::Memory> Self, class Visitor>
+template <StateOf<StreamingClippingFinder::Memory> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rails.readings", s.readings);
   visit("rails.peak", s.peak);
   visit("rails.near", s.near);
-  visit("rails.unsearched", s.unsearched);
+  visit("rails.unsearched", s.unsearched_near_extremes);
   visit("rails.samples_since_search", s.samples_since_search);
   visit("rails.pruned", s.pruned);
 }
 
-template <StateOf<RailWatch::State> Self, class Visitor>
+template <StateOf<StreamingClippingFinder::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rails.known", s.known);
   visit("rails.memory", s.memory);

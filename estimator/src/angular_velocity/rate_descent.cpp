@@ -23,7 +23,7 @@ constexpr double kStepDeviations = 0.1;
 
 // Computes the flight weight and contact force of each sample: rate_smoother.md (R16) to (R19).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
-               const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
+               const RigConstants::Matrix& rig_covariance, double threshold_factor, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < estimates.size(); ++k) {
     double after = std::numeric_limits<double>::max();
@@ -32,16 +32,16 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
     // if the gyro measures all axes, no unobserved rate can explain a residual
-    const int clipped = observations[k].unseen();
-    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
-                estimates[k]);
+    const int clipped = observations[k].unmeasured_axes();
+    model.compute_flight_weight(observations[k], rig, rig_covariance, clipped != 0 ? threshold_factor : 1.0,
+                                std::min(before, after), estimates[k]);
     before = after;
   }
 }
 
 // Runs Gauss-Newton from the initial values. Returns false if a system is not positive definite.
 bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-             double widen, RateSolution& solution, RateReport& health) {
+             double threshold_factor, RateSolution& solution, RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
@@ -50,15 +50,16 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   health.iterations = 0;
   health.converged = false;
   while (health.iterations < params.expert.descent.iterations_max) {
-    weigh_all(model, observations, solution.rig, solution.rig_covariance, widen, estimates);
+    weigh_all(model, observations, solution.rig, solution.rig_covariance, threshold_factor, estimates);
     if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
     solution.rig_covariance = solution.iteration.rig_covariance();
     health.last_step_rad_s =
         solution.iteration.apply(model, params.expert.descent.step_max_rad_s, estimates, solution.rig);
     ++health.iterations;
 
-    const bool converged = widen == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
-                                            solution.iteration.decrement() < kStepDeviations * kStepDeviations);
+    const bool converged =
+        threshold_factor == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
+                                    solution.iteration.decrement() < kStepDeviations * kStepDeviations);
     if (soft > 0) {
       solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
         model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance,
@@ -69,13 +70,13 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
         health.iterations + params.expert.descent.bound_iterations >= params.expert.descent.iterations_max) {
       for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
         if (estimates[k].flight_weight >= 0.5) continue;
-        model.seek_flight(observations[k], solution.rig, estimates[k]);
+        model.search_flight(observations[k], solution.rig, estimates[k]);
         model.start_bounds(observations[k], solution.rig, estimates[k]);
       }
       health.converged = converged || health.converged;
       if (soft++ == params.expert.descent.bound_iterations) break;
     }
-    widen = std::max(1.0, 0.5 * widen);
+    threshold_factor = std::max(1.0, 0.5 * threshold_factor);
   }
   health.calibration_mahalanobis = model.calibration_mahalanobis(solution.rig);
   return true;
@@ -86,14 +87,14 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 // with an unmeasured rate.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
-  double sum = 0.0, unseen = 0.0, flight = 0.0;
+  double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;
   for (std::size_t k = 0; k < estimates.size(); ++k) {
     sum += std::sqrt(estimates[k].flight_weight);
-    if (observations[k].unseen() == 0) continue;
-    unseen += 1.0;
+    if (observations[k].unmeasured_axes() == 0) continue;
+    unmeasured_axes += 1.0;
     flight += estimates[k].flight_weight >= 0.5 ? 1.0 : 0.0;
   }
-  share = unseen > 0.0 ? flight / unseen : 1.0;
+  share = unmeasured_axes > 0.0 ? flight / unmeasured_axes : 1.0;
   return sum;
 }
 
@@ -159,14 +160,14 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }
-  out.of_rig.noalias() = rig_covariance_ * border;
-  out.evidence.information.noalias() -= border.transpose() * out.of_rig;
+  out.calibration_by_errors.noalias() = rig_covariance_ * border;
+  out.evidence.information.noalias() -= border.transpose() * out.calibration_by_errors;
   out.evidence.gradient.noalias() += border.transpose() * rig_step_;
   for (std::size_t k = blocks_.size(); k-- > 0;) {
     const arrow::ErrorMatrix* const next = k + 1 == blocks_.size() ? nullptr : &out.of_sample[k + 1];
-    out.of_sample[k] = arrow::back_substitute_errors(blocks_[k], out.of_sample[k], next, out.of_rig);
+    out.of_sample[k] = arrow::back_substitute_errors(blocks_[k], out.of_sample[k], next, out.calibration_by_errors);
   }
-  discount_unobservable(model.distinct_reading_share(), out.evidence);
+  discount_unobservable(model.independent_reading_ratio(), out.evidence);
   return out;
 }
 
@@ -179,8 +180,8 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
     if (share >= kFlightShareExpected) break;
     RateSolution other{{}, {}, {}, RateIteration(observations)};
     RateReport other_health = health;
-    const double widen = std::max(1.0, factor * params.expert.descent.widen_first);
-    if (!descend(params, model, observations, widen, other, other_health)) continue;
+    const double threshold_factor = std::max(1.0, factor * params.expert.descent.widen_first);
+    if (!descend(params, model, observations, threshold_factor, other, other_health)) continue;
     double other_share = 0.0;
     const double found = explained(observations, other.estimates, other_share);
     ++health.restarts;

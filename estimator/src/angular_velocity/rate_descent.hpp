@@ -35,7 +35,7 @@ class RateIteration {
   /// factorisation, with its `estimates` and `rig`, before apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
-    arrow::BorderErrors of_rig;
+    arrow::BorderErrors calibration_by_errors;
     SensorErrorEvidence evidence;
   };
   Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;

@@ -74,7 +74,7 @@ RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
-  f.by_knot << Matrix3d::Identity(), Matrix3d::Zero();
+  f.jacobian_knot << Matrix3d::Identity(), Matrix3d::Zero();
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<3>(3).setIdentity();
   return f;
@@ -84,12 +84,12 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
-  f.by_knot.setZero();
+  f.jacobian_knot.setZero();
   f.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
     const Vector3d row = rig.sensing_direction(j);
     f.residual[j] = row.dot(off);
-    f.by_knot.row(j).head<3>() = row;
+    f.jacobian_knot.row(j).head<3>() = row;
     f.jacobian_calibration.row(j).segment<3>(3) = row;
     f.jacobian_calibration(j, RigConstants::kElements + 2 * j) = off[(j + 1) % 3];
     f.jacobian_calibration(j, RigConstants::kElements + 2 * j + 1) = off[(j + 2) % 3];
@@ -103,7 +103,7 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   RateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
   // derivative of w x (w x t) = w (w.t) - t (w.w) by the rate: rate_smoother.md (R10)
-  f.by_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
+  f.jacobian_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<3>(0) =
       so3::hat(alpha) + w * w.transpose() - w.squaredNorm() * Matrix3d::Identity();
@@ -112,29 +112,29 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
 }
 
 // Residual of the specific force in flight, for a delayed accelerometer: rate_smoother.md (R12).
-RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
-                              double delay_s, Vector3d* by_delay) {
+RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
+                                 double delay_s, Vector3d* jacobian_delay) {
   const Jerk jerk = jerk_of(knot, rig);
   const JerkDerivatives derivatives = derivatives_of(jerk, knot);
   const double d = delay_s, half = 0.5 * delay_s * delay_s;
   const RateFactor at = flight_factor(earlier_by(d, knot, jerk), rig, reading_m_s2);
-  const Matrix3d by_rate = at.by_knot.leftCols<3>(), by_acceleration = at.by_knot.rightCols<3>();
+  const Matrix3d by_rate = at.jacobian_knot.leftCols<3>(), by_acceleration = at.jacobian_knot.rightCols<3>();
   RateFactor f = at;
-  f.by_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_rate;
-  f.by_knot.rightCols<3>() =
+  f.jacobian_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_rate;
+  f.jacobian_knot.rightCols<3>() =
       by_acceleration - d * by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_acceleration;
   f.jacobian_calibration.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * derivatives.by_inertia;
-  if (by_delay != nullptr) {
-    *by_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - by_acceleration * jerk.value;
+  if (jacobian_delay != nullptr) {
+    *jacobian_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - by_acceleration * jerk.value;
   }
   return f;
 }
 
 // Flight residual of a delayed accelerometer, with the derivatives by the calibration only: rate_smoother.md (R12).
-RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
-                              double delay_s) {
+RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
+                                               const Vector3d& reading_m_s2, double delay_s) {
   RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
-  f.by_knot.setZero();
+  f.jacobian_knot.setZero();
   return f;
 }
 
@@ -154,7 +154,7 @@ RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d momentum = J * w;
   RateFactor f;
   f.residual = J * alpha + w.cross(momentum);
-  f.by_knot << so3::hat(w) * J - so3::hat(momentum), J;
+  f.jacobian_knot << so3::hat(w) * J - so3::hat(momentum), J;
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<5>(9) = basis_times(alpha);
   f.jacobian_calibration.middleCols<5>(9).noalias() += so3::hat(w).lazyProduct(basis_times(w));

@@ -38,8 +38,8 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
     (void)saave.step(o.sample, state, recovered);  // step() cannot fail, because the samples were checked
     readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
     for (int j = 0; j < 3; ++j) {
-      if ((o.clipping.missing_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
-      if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
+      if ((o.clipping.unusable_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
+      if ((o.unmeasured_axes() & o.clipping.gyro & 1u << j) == 0) continue;
       const double limit = model.rate_max_rad_s;
       readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
       readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);

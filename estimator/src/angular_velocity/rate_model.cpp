@@ -22,19 +22,19 @@ void check(const AuxiliaryImu& p) {
   require_within("auxiliary_imu accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
   require_within("auxiliary_imu gyro_error_rad_s", p.gyro_error_rad_s, 1e-9, 10.0);
   require_within("auxiliary_imu accel_error_m_s2", p.accel_error_m_s2, 1e-9, 10.0);
-  require_within("auxiliary_imu share_error", p.share_error, 0.0, 1.0);
+  require_within("auxiliary_imu share_error", p.scale_error, 0.0, 1.0);
   require_within("auxiliary_imu position_error_m", p.position_error_m, 1e-9, 1.0);
   require_within("auxiliary_imu clock_error_s", p.clock_error_s, 0.0, 0.1);
   for (const double value : p.T_IC.matrix().reshaped()) require_within("auxiliary_imu T_IC", value, -100.0, 100.0);
 }
 
 void check(const RateModelParams& p) {
-  require_fields(p);
+  require_valid_fields(p);
   for (const double value : p.errors.vector()) require_within("sensor errors", value, -0.2, 0.2);
   require_within("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
   for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
-  const Status rig = check_rig(p.calibration ? p.calibration->constants : p.nominal);
-  if (!rig.ok()) require_within(rig.field, rig.value, -RigConstants::kMost, RigConstants::kMost);
+  const Status rig = check_rig_constants(p.calibration ? p.calibration->constants : p.nominal);
+  if (!rig.ok()) require_within(rig.field, rig.value, -RigConstants::kMagnitudeMax, RigConstants::kMagnitudeMax);
 }
 
 RigConstants::Matrix covariance_of(const RateModelParams& p) {
@@ -95,7 +95,7 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
 // with the derivative A of the residual by the unknowns of the sample.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
-  Eigen::Matrix<double, 3, 6> A = f.by_knot;
+  Eigen::Matrix<double, 3, 6> A = f.jacobian_knot;
   A.rightCols<3>() /= time_scale_s;
   const Eigen::Matrix<double, 6, 3> At = A.transpose().lazyProduct(information);
   block.diagonal.noalias() += At.lazyProduct(A);
@@ -148,7 +148,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
   share_ = std::min(1.0, period_s / params.expert.model_error_s);
-  exact_ = params.errors == SensorErrors{};
+  uses_raw_readings_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
   prior_covariance_ = covariance_of(params);
   const dense::Cholesky factor(prior_covariance_);
@@ -158,21 +158,21 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   prior_information_ = factor.inverse<RigConstants::Matrix>();
 }
 
-void RateModel::weigh(const RateObservation& observation, const RigConstants& rig,
-                      const RigConstants::Matrix& rig_covariance, double widen, double jump,
-                      RateEstimate& estimate) const {
-  RateFactor flight = flight_by_rig(observation, estimate.knot, rig);
+void RateModel::compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
+                                      const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
+                                      RateEstimate& estimate) const {
+  RateFactor flight = flight_jacobian_calibration(observation, estimate.knot, rig);
   const Vector3d hidden = read_accel_elements(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
-  const double threshold = widen * params_.expert.flight.threshold;
+  const double threshold = threshold_factor * params_.expert.flight.threshold;
   // Geman-McClure weight: the gradient of an outlier decreases with the cube of the residual, rate_smoother.md (R18)
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
   // contact force, as a fraction of the flight residual (model minus reading): rate_smoother.md (R19)
-  estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
+  estimate.contact_force_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
 double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
@@ -181,7 +181,7 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
 }
 
 // Returns the accelerometer variance for sums over samples. Errors that last longer than a sample do not average out.
-double RateModel::accel_variance_together(const RateObservation& observation) const {
+double RateModel::accel_variance_of_sum(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
@@ -198,12 +198,15 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
     // change of the rate by contact between reading and sample: rate_smoother.md (R7)
-    const double change = params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
-    const double lost = (observation.read_in_part() >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
+    const double change =
+        params_.expert.contact.gain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
+    const double lost =
+        (observation.partly_saturated_axes() >> axis & 1u) != 0 ? observation.expected_deficit_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
   }
-  if ((observation.read_in_part() >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
-  const double impact = kSubsampleInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[axis];
+  if ((observation.partly_saturated_axes() >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
+  const double impact = kSubsampleInContact * (1.0 - estimate.flight_weight),
+               lost = observation.expected_deficit_sigma_rad_s[axis];
   return 1.0 / (lost * lost + impact * impact);
 }
 
@@ -211,9 +214,9 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
 // small force is then a more probable explanation of an unmeasured rate than a large force.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
-  const double flight2 = accel_variance_together(observation);
-  const double share = observation.unseen() != 0 ? params_.expert.contact.force_share : 0.0;
-  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm() / share_;
+  const double flight2 = accel_variance_of_sum(observation);
+  const double share = observation.unmeasured_axes() != 0 ? params_.expert.contact.force_share : 0.0;
+  const double contact2 = flight2 + share * share * estimate.contact_force_m_s2.squaredNorm() / share_;
   ForceFactor out;
   const double information =
       estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
@@ -247,7 +250,7 @@ void RateModel::add_gyro(const RateObservation& observation, const RateEstimate&
 
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
-  if (observation.by_elements()) {
+  if (observation.is_element_clipped()) {
     add_elements(observation, estimate, rig, block, corner, rig_spread);
   } else {
     add_gyro(observation, estimate, rig, block, corner);
@@ -262,7 +265,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     flight.jacobian_calibration.setZero();
     euler.jacobian_calibration.setZero();
   } else if (is_uninformative(estimate)) {
-    keep_from_rig(observation, flight);
+    exclude_from_calibration(observation, flight);
     euler.jacobian_calibration.setZero();
   }
   add_flight(flight, of_flight, time_scale_s_, block, corner);
@@ -285,11 +288,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 // A force through one point of the body has no torque about the direction of the force: rate_smoother.md (R21).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
-  const double force = estimate.contact_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
+  const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
   const double across = share_ / (flight + lever * lever);
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
   const double twist = params_.expert.contact.twist_share * lever;
-  const Vector3d n = estimate.contact_m_s2 / force;
+  const Vector3d n = estimate.contact_force_m_s2 / force;
   return across * Eigen::Matrix3d::Identity() + (share_ / (flight + twist * twist) - across) * n * n.transpose();
 }
 
@@ -298,7 +301,8 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
   const double h = time_scale_s_, ratio = dt_s / h;
   // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
   // possible change of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
-  const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
+  const double change =
+      params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
   // inverse of the scaled motion covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
@@ -356,9 +360,9 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
-  const int clipped = o.clipping.gyro | o.clipping.missing_gyro;
+  const int clipped = o.clipping.gyro | o.clipping.unusable_gyro;
   // a reading that may be saturated counts as a bound only, neither as clipped nor as measured
-  if (clipped == 0) return o.may_hide() == 0 ? RateSource::measured : RateSource::bounded_only;
+  if (clipped == 0) return o.possibly_saturated_axes() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
   double largest = 0.0;
   for (int j = 0; j < 3; ++j) {

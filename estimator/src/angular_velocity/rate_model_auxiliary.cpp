@@ -33,14 +33,14 @@ bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& obser
 
 // Returns the matrix that converts the primary IMU's specific force to the axes or sensing elements of an auxiliary
 // IMU.
-Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const SensingDirections& elements, bool by_elements) {
-  return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
+Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const SensingDirections& elements, bool is_element_clipped) {
+  return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
 // Returns the standard deviation of an unsaturated element's reading that is due to the element's uncertain sensing
 // direction. `most` is the maximum saturation deficit of the other elements.
-double unknown_row(const SensingDirections& elements, bool by_elements, int j, double most) {
-  return by_elements ? elements.slope_sigma[j] * most : 0.0;
+double unknown_row(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
+  return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }
 
 }  // namespace
@@ -70,11 +70,11 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
       }
       const Eigen::RowVector3d axis = accel.row(j);
       if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation)) continue;
-      AuxiliaryRow row = axis * rotation.by_knot;
+      AuxiliaryRow row = axis * rotation.jacobian_knot;
       row.tail<3>() /= time_scale_s_;
       const double unknown = unknown_row(mount.accel_elements, reading.force_along_elements, j, force.norm());
       const double lasting =
-          std::sqrt((misplaced * misplaced + unknown * unknown) / share_ + accel_variance_together(observation));
+          std::sqrt((misplaced * misplaced + unknown * unknown) / share_ + accel_variance_of_sum(observation));
       const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);
       add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
     }

@@ -26,9 +26,10 @@ constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
 
 }  // namespace
 
-void RateModel::seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {
-  const int unseen = observation.unseen();
-  if (unseen == 0 || observation.clipping.accel != 0) return;
+void RateModel::search_flight(const RateObservation& observation, const RigConstants& rig,
+                              RateEstimate& estimate) const {
+  const int unmeasured_axes = observation.unmeasured_axes();
+  if (unmeasured_axes == 0 || observation.clipping.accel != 0) return;
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
@@ -42,28 +43,28 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
     flown.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
     flight = this->flight(observation, flown.knot, rig);
     if (iteration == kSeekIterations) break;
-    const Eigen::Matrix3d by_hidden = flight.by_knot.leftCols<3>() * hides;
+    const Eigen::Matrix3d by_hidden = flight.jacobian_knot.leftCols<3>() * hides;
     Eigen::Matrix3d H = 1e-9 * Eigen::Matrix3d::Identity();
     Vector3d g = Vector3d::Zero();
     for (int j = 0; j < 3; ++j) {
-      if ((unseen >> j & 1) == 0) continue;
+      if ((unmeasured_axes >> j & 1) == 0) continue;
       g[j] = -by_hidden.col(j).dot(flight.residual);
       for (int i = 0; i < 3; ++i) {
-        if ((unseen >> i & 1) != 0) H(i, j) += by_hidden.col(i).dot(by_hidden.col(j));
+        if ((unmeasured_axes >> i & 1) != 0) H(i, j) += by_hidden.col(i).dot(by_hidden.col(j));
       }
     }
     w += hides * H.llt().solve(g).cwiseMax(-kSeekStep).cwiseMin(kSeekStep);
     for (int j = 0; j < 3; ++j) {
-      if ((unseen & observation.clipping.gyro & 1 << j) == 0) continue;
+      if ((unmeasured_axes & observation.clipping.gyro & 1 << j) == 0) continue;
       const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
       const double along = rows.row(j).dot(w), held = rows.row(j).dot(reading);
       w += (side * std::clamp(side * along, std::abs(held), std::max(high, std::abs(held))) - along) * hides.col(j);
     }
   }
   const double gentle = kGentleShare * observation.sample.specific_force_m_s2.norm();
-  if (flight.residual.norm() > std::min(gentle, 0.5 * estimate.contact_m_s2.norm())) return;
+  if (flight.residual.norm() > std::min(gentle, 0.5 * estimate.contact_force_m_s2.norm())) return;
   estimate.knot = flown.knot;
-  estimate.contact_m_s2 = -flight.residual;
+  estimate.contact_force_m_s2 = -flight.residual;
 }
 
 void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
@@ -71,7 +72,7 @@ void RateModel::start_bounds(const RateObservation& observation, const RigConsta
   estimate.soft_bounds = true;
   const RateFactor off = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
-    if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
+    if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double guess = off.residual[j];
     const bool negative = observation.sample.angular_velocity_rad_s[j] < 0.0;
     estimate.bound_precision[j] = kStartPrecision;
@@ -82,20 +83,20 @@ void RateModel::start_bounds(const RateObservation& observation, const RigConsta
 void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
                               const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
                               double damping, RateEstimate& estimate) const {
-  if ((observation.unseen() & observation.clipping.gyro) == 0) return;
+  if ((observation.unmeasured_axes() & observation.clipping.gyro) == 0) return;
   const RateFactor off = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
-    if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
+    if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;
-    const Vector3d row = off.by_knot.row(j).head<3>();
+    const Vector3d row = off.jacobian_knot.row(j).head<3>();
     Eigen::Matrix<double, 1, RigConstants::kSize> jacobian_calibration = off.jacobian_calibration.row(j);
-    for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.by_border.row(i);
+    for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.jacobian_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // The sign of the residual makes each bound a lower bound: rate_smoother.md (R22). The variance of the residual
     // follows from the covariance of the sample: rate_smoother.md (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
-    const NormalSite site =
+    const GaussianSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
                       params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s,
                       params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
@@ -108,18 +109,18 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
                                const ImuSample* before, RateObservation& now, const ImuSample* after) {
   now.subsample_saturated = 0;
   for (int j = 0; j < 3; ++j) {
-    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.missing_gyro >> j & 1u) == 0;
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.unusable_gyro >> j & 1u) == 0;
     const std::optional<double> rail = rails.rail(state, j);
     if (!flagged || !rail) continue;
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
-    const double neighbour = free_neighbour(std::abs(reading), *rail, j, before, after,
-                                            [&](const Vector3d& beside) { return sign * beside[j]; });
+    const double neighbour = unsaturated_neighbour(std::abs(reading), *rail, j, before, after,
+                                                   [&](const Vector3d& beside) { return sign * beside[j]; });
     if (neighbour > std::abs(reading)) continue;  // a dip within a plateau: the saturation deficit is unknown
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);
-    now.lost_rad_s[j] = sign * loss.lost_rad_s;
-    now.lost_sigma_rad_s[j] = loss.sigma_rad_s;
+    now.expected_deficit_rad_s[j] = sign * loss.expected_deficit_rad_s;
+    now.expected_deficit_sigma_rad_s[j] = loss.sigma_rad_s;
   }
 }
 

@@ -24,11 +24,11 @@ void add_row(const RateFactor& gyro, int j, double age, double information, doub
     information *= share;
     pull *= share;
   }
-  const Eigen::Vector3d row = gyro.by_knot.row(j).head<3>();
+  const Eigen::Vector3d row = gyro.jacobian_knot.row(j).head<3>();
   const Eigen::Vector3d weighted = information * row;
-  const Eigen::RowVector2d by_elements = gyro.jacobian_calibration.block<1, 2>(j, first);
+  const Eigen::RowVector2d is_element_clipped = gyro.jacobian_calibration.block<1, 2>(j, first);
   const Eigen::Matrix3d square = weighted.lazyProduct(row.transpose());
-  const Eigen::Matrix<double, 3, 2> mixed = weighted.lazyProduct(by_elements);
+  const Eigen::Matrix<double, 3, 2> mixed = weighted.lazyProduct(is_element_clipped);
   block.diagonal.topLeftCorner<3, 3>() += square;
   block.border.block<3, 3>(0, kGyroBias) += square;
   block.gradient.head<3>() -= pull * row;
@@ -46,8 +46,8 @@ void add_row(const RateFactor& gyro, int j, double age, double information, doub
   block.border.block<3, 2>(0, first) += mixed;
   corner.matrix.block<3, 2>(kGyroBias, first) += mixed;
   corner.matrix.block<2, 3>(first, kGyroBias) += mixed.transpose();
-  corner.matrix.block<2, 2>(first, first) += information * by_elements.transpose() * by_elements;
-  corner.gradient.segment<2>(first) -= pull * by_elements.transpose();
+  corner.matrix.block<2, 2>(first, first) += information * is_element_clipped.transpose() * is_element_clipped;
+  corner.gradient.segment<2>(first) -= pull * is_element_clipped.transpose();
 }
 
 }  // namespace
@@ -56,11 +56,11 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
                              arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
   const RateFactor gyro = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.missing_gyro >> j & 1u) != 0) continue;
+    if ((observation.clipping.unusable_gyro >> j & 1u) != 0) continue;
     double information = gyro_information(observation, estimate, j);
     double pull = information * gyro.residual[j];
     if ((observation.subsample_saturated >> j & 1u) != 0) {
-      pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
+      pull = information * (gyro.residual[j] - observation.expected_deficit_rad_s[j]);
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
       if (kept && !estimate.soft_bounds) continue;  // a hard bound: rate_smoother.md (R9)
@@ -82,7 +82,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   const SensingDirections& elements = observation.accel_rows;
   if (elements.tilted()) {
     flight.residual = elements.rows * flight.residual;
-    flight.by_knot = (elements.rows * flight.by_knot).eval();
+    flight.jacobian_knot = (elements.rows * flight.jacobian_knot).eval();
     flight.jacobian_calibration = (elements.rows * flight.jacobian_calibration).eval();
   }
   double hidden2 = 0.0;
@@ -93,7 +93,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;
-    flight.by_knot.row(j).setZero();
+    flight.jacobian_knot.row(j).setZero();
     flight.jacobian_calibration.row(j).setZero();
   }
   for (int j = 0; j < 3; ++j) {

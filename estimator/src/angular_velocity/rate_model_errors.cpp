@@ -21,11 +21,11 @@ bool RateModel::is_uninformative(const RateEstimate& estimate) {
 }
 
 // Restricts the effect of a contact force to unmeasured rates. The contact force then does not affect the calibration.
-void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
+void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
     // a measured rate would pass the gradient of the force on to the gyro's bias
-    if ((o.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
+    if ((o.unmeasured_axes() >> j & 1u) == 0) flight.jacobian_knot.col(j).setZero();
   }
 }
 
@@ -37,30 +37,30 @@ RateKnot RateModel::at_reading(const RateObservation& observation, const RateEst
 
 Vector3d RateModel::corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const {
   const Vector3d& reading = observation.sample.angular_velocity_rad_s;
-  if (exact_) return reading;
+  if (uses_raw_readings_) return reading;
   return reading - params_.errors.gyro * estimate.knot.rate_rad_s -
          params_.errors.g_sensitivity_s_m * observation.sample.specific_force_m_s2;
 }
 
 RateFactor RateModel::flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
-                             Vector3d* by_delay) const {
+                             Vector3d* jacobian_delay) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
-  if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
+  if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
-  RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
+  RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
   // The curvature term is small. The code therefore neglects the derivatives of the curvature term: rate_smoother.md
   // (R13).
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
 
-RateFactor RateModel::flight_by_rig(const RateObservation& observation, const RateKnot& knot,
-                                    const RigConstants& rig) const {
+RateFactor RateModel::flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
+                                                  const RigConstants& rig) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
-  if (exact_ && delay_s == 0.0) return flight_factor(knot, rig, reading);
-  RateFactor out = late_flight_by_rig(knot, rig, reading - params_.errors.accel * reading, delay_s);
+  if (uses_raw_readings_ && delay_s == 0.0) return flight_factor(knot, rig, reading);
+  RateFactor out = delayed_flight_jacobian_calibration(knot, rig, reading - params_.errors.accel * reading, delay_s);
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -78,28 +78,28 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     evidence.gradient.noalias() -= information * residual * by_errors.transpose();
   };
 
-  const bool by_elements = observation.by_elements();
-  if (rig_spread && by_elements) return;
+  const bool is_element_clipped = observation.is_element_clipped();
+  if (rig_spread && is_element_clipped) return;
   const Vector3d reading = corrected_rate(observation, estimate);
-  const RateFactor gyro = by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
-                                      : gyro_factor(at_reading(observation, estimate), rig, reading);
+  const RateFactor gyro = is_element_clipped ? element_factor(at_reading(observation, estimate), rig, reading)
+                                             : gyro_factor(at_reading(observation, estimate), rig, reading);
   const unsigned lost =
-      observation.clipping.missing_gyro | (observation.clipping.gyro & ~observation.subsample_saturated);
+      observation.clipping.unusable_gyro | (observation.clipping.gyro & ~observation.subsample_saturated);
   for (int j = 0; j < 3; ++j) {
     if ((lost >> j & 1u) != 0) continue;
-    const Eigen::RowVector3d sees = gyro.by_knot.row(j).head<3>();
+    const Eigen::RowVector3d sees = gyro.jacobian_knot.row(j).head<3>();
     Row by_errors = Row::Zero();
     for (int i = 0; i < 3; ++i) {
       by_errors.segment<3>(3 * i) = sees[i] * rate.transpose();
       by_errors.segment<3>(SensorErrors::kGSensitivity + 3 * i) = sees[i] * force.transpose();
     }
     const double information = gyro_information(observation, estimate, j);
-    const double part = (observation.subsample_saturated >> j & 1u) != 0 ? observation.lost_rad_s[j] : 0.0;
+    const double part = (observation.subsample_saturated >> j & 1u) != 0 ? observation.expected_deficit_rad_s[j] : 0.0;
     const Row pull = information * by_errors;
     block.topRows<3>().noalias() -= sees.transpose() * pull;
     block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
     border.middleRows<3>(kGyroBias).noalias() -= sees.transpose() * pull;
-    if (by_elements) {
+    if (is_element_clipped) {
       const int first = RigConstants::kElements + 2 * j;
       border.middleRows<2>(first).noalias() -= gyro.jacobian_calibration.block<1, 2>(j, first).transpose() * pull;
     }
@@ -109,18 +109,18 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   if (rig_spread || is_uninformative(estimate)) return;
   if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted elements mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
-  Vector3d by_delay;
-  (void)this->flight(observation, estimate.knot, rig, &by_delay);
+  Vector3d jacobian_delay;
+  (void)this->flight(observation, estimate.knot, rig, &jacobian_delay);
   const Vector3d curvature = flight_curvature(estimate.knot, rig);
-  flight.by_knot.rightCols<3>() /= time_scale_s_;
+  flight.jacobian_knot.rightCols<3>() /= time_scale_s_;
   for (int j = 0; j < 3; ++j) {
-    if (flight.by_knot.row(j).isZero()) continue;  // the lower bound of the element is satisfied
+    if (flight.jacobian_knot.row(j).isZero()) continue;  // the lower bound of the element is satisfied
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
-    by_errors[SensorErrors::kDelay] = by_delay[j];
+    by_errors[SensorErrors::kDelay] = jacobian_delay[j];
     by_errors[SensorErrors::kFilterTimeVariance] = 0.5 * curvature[j];
     const Row pull = information[j] * by_errors;
-    block.noalias() -= flight.by_knot.row(j).transpose() * pull;
+    block.noalias() -= flight.jacobian_knot.row(j).transpose() * pull;
     border.topRows<3>().noalias() -= flight.jacobian_calibration.row(j).head<3>().transpose() * pull;
     border.row(kAccelBias + j) -= pull;
     add(by_errors, information[j], flight.residual[j]);
@@ -133,15 +133,15 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.missing_gyro >> j & 1u) != 0)
+    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.unusable_gyro >> j & 1u) != 0)
       wider[j] = factor;
   }
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
-  if (observation.by_elements()) {
+  if (observation.is_element_clipped()) {
     // In contact, the contact force changes the rate within a window. The change also affects measured axes.
-    const double struck =
-        params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm();
+    const double struck = params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m *
+                          estimate.contact_force_m_s2.norm();
     timed.diagonal().array() += struck * struck;
   }
   return wider.asDiagonal() * timed * wider.asDiagonal();

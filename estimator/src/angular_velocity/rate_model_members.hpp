@@ -55,10 +55,10 @@ void members(Self& s, Visitor& visit) {
   visit("observation.clipping", s.clipping);
   visit("observation.at_rest", s.at_rest);
   visit("observation.subsample_saturated", s.subsample_saturated);
-  visit("observation.lone", s.lone);
+  visit("observation.lone", s.isolated_high_axes);
   visit("observation.suspect", s.suspect);
-  visit("observation.lost_rad_s", s.lost_rad_s);
-  visit("observation.lost_sigma_rad_s", s.lost_sigma_rad_s);
+  visit("observation.lost_rad_s", s.expected_deficit_rad_s);
+  visit("observation.lost_sigma_rad_s", s.expected_deficit_sigma_rad_s);
   visit("observation.gyro_age_s", s.gyro_age_s);
   visit("observation.accel_age_s", s.accel_age_s);
   visit("observation.gyro_repeats", s.gyro_repeats);
@@ -70,7 +70,7 @@ template <StateOf<RateEstimate> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("estimate.knot", s.knot);
   visit("estimate.flight_weight", s.flight_weight);
-  visit("estimate.contact_m_s2", s.contact_m_s2);
+  visit("estimate.contact_m_s2", s.contact_force_m_s2);
   visit("estimate.bound_precision", s.bound_precision);
   visit("estimate.bound_shift", s.bound_shift);
   visit("estimate.soft_bounds", s.soft_bounds);
@@ -93,7 +93,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<SensorErrorEvidence> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("evidence.about", s.about);
+  visit("evidence.about", s.linearisation_point);
   visit("evidence.information", s.information);
   visit("evidence.gradient", s.gradient);
 }
@@ -105,7 +105,7 @@ void members(Self& s, Visitor& visit) {
   visit("auxiliary.accel_noise_density", s.accel_noise_density);
   visit("auxiliary.gyro_error_rad_s", s.gyro_error_rad_s);
   visit("auxiliary.accel_error_m_s2", s.accel_error_m_s2);
-  visit("auxiliary.share_error", s.share_error);
+  visit("auxiliary.share_error", s.scale_error);
   visit("auxiliary.position_error_m", s.position_error_m);
   visit("auxiliary.clock_error_s", s.clock_error_s);
   visit("auxiliary.gyro_elements", s.gyro_elements);

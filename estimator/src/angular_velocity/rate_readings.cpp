@@ -22,14 +22,14 @@ void report_rails(const ClippingFinder& finder, const SaturationLevels& rails, R
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   health.planes = rails.planes;
   health.accel_planes = accel_planes;
-  health.clips_after_compensation = rails.upright;
+  health.clips_after_compensation = rails.gyro_clips_after_compensation;
   for (int c = 0; c < 6; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    health.rail[channel] = finder.upright_rails().rail(rails.upright_rails, c);
+    health.rail[channel] = finder.axis_aligned_rails().rail(rails.axis_aligned_rails, c);
     const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) health.rail[channel] = plane->distance_rad_s;
-    health.rail_observed[channel] = plane || rails.upright_rails.channels[channel].rail > 0.0;
-    health.contradicts_stated_range[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
+    health.rail_observed[channel] = plane || rails.axis_aligned_rails.channels[channel].rail > 0.0;
+    health.contradicts_stated_range[channel] = finder.axis_aligned_rails().disagrees(rails.axis_aligned_rails, c);
   }
 }
 
@@ -47,18 +47,19 @@ void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const Clippi
                            const SaturationLevels& rails, const RailPlanes& planes, double noise_rad_s,
                            std::span<const ImuSample> samples, std::span<RateObservation> observations) {
   const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
-  LeastRails least;
+  MinSaturationLevels least;
   for (const RateObservation& o : observations) {
-    if (o.clipping.missing_gyro == 0) least.add(o.sample.angular_velocity_rad_s);
+    if (o.clipping.unusable_gyro == 0) least.add(o.sample.angular_velocity_rad_s);
   }
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const auto [before, after] = beside[k];
-    mark_subsample_saturation(planes, finder.upright_rails(), rails.upright_rails, noise_rad_s, before, observations[k],
-                              after);
-    if (rails.upright) continue;
+    mark_subsample_saturation(planes, finder.axis_aligned_rails(), rails.axis_aligned_rails, noise_rad_s, before,
+                              observations[k], after);
+    if (rails.gyro_clips_after_compensation) continue;
     inflate_possible_saturation(planes, least, noise_rad_s, before, observations[k], after);
   }
-  if (!rails.upright) inflate_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
+  if (!rails.gyro_clips_after_compensation)
+    inflate_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
 }
 
 void mark_repeated(const std::optional<RepeatedReadings>& gyro, const std::optional<RepeatedReadings>& accel,
@@ -86,7 +87,8 @@ RateReadings read_samples(const RateSmoother::Params& params, const ClippingFind
 
   RateReadings out{std::vector<RateObservation>(samples.size()), params.model, found.rails.planes_in_use(), {}};
   const double period_s = median_period_s(samples);
-  out.known.calibration = with_planes(RateModel(params.model, period_s), out.planes, found.rails.upright);
+  out.known.calibration =
+      with_planes(RateModel(params.model, period_s), out.planes, found.rails.gyro_clips_after_compensation);
   const SensingDirections accel_rows = found.rails.rows(Triad::accelerometer, params.model.element_sigma);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     RateObservation& o = out.observations[k];

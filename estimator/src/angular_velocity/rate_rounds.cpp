@@ -79,7 +79,8 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
   if (!again.factorise(model, solution.estimates, solution.rig)) return model.calibration_mahalanobis(solution.rig);
-  const arrow::BorderErrors moved = again.moved_by_errors(model, solution.estimates, solution.rig).of_rig;
+  const arrow::BorderErrors moved =
+      again.moved_by_errors(model, solution.estimates, solution.rig).calibration_by_errors;
   RateModelParams wider = known;
   wider.calibration = RigCalibration{model.prior_constants(), model.prior_covariance()};
   wider.calibration->covariance +=
@@ -93,7 +94,7 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
                         std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
   fit.model = RateModel(known, period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
-    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+    return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_at_prior = health.calibration_mahalanobis > params.calibration_mahalanobis_max;
   if (health.calibration_at_prior && struck) {
@@ -107,7 +108,7 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
   health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
   fit.model = RateModel(fixed_at_prior(known, fit.model), period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
-    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+    return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
   // A fixed calibration is still uncertain. The covariance of the rates therefore includes the calibration's
@@ -128,7 +129,7 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
   evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
-  evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
+  evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.linearisation_point.accel_delay_s);
 }
 
 // If the odds of a device that matches its data sheet are below kPlainOdds, the readings clearly contradict the data
@@ -165,7 +166,7 @@ SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownS
 // relative to the stated errors.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
-  evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
+  evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
   SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
   out.known.errors = SensorErrors::from(out.known.errors.vector() + given.vector());
   return out;
@@ -240,11 +241,11 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
     // If the optimisation has not converged, the remaining gradient must not count as information about sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
-      return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+      return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }
     fit.moved.evidence = again.moved_by_errors(fit.model, solution.estimates, solution.rig).evidence;
   }
-  fit.moved.evidence.about = errors;
+  fit.moved.evidence.linearisation_point = errors;
   add_guess(rounds.guess, fit.moved.evidence);
   return {};
 }
@@ -320,7 +321,7 @@ void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
     fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
     fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
   }
-  fit.solution.rig.add(fit.moved.of_rig * step);
+  fit.solution.rig.add(fit.moved.calibration_by_errors * step);
 }
 
 }  // namespace
@@ -349,7 +350,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   // Sensor errors belong to the device. The next run is affected by the same sensor errors, and includes their
   // uncertainty again.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
-  health.calibration.covariance += fit.moved.of_rig * device_covariance * fit.moved.of_rig.transpose();
+  health.calibration.covariance +=
+      fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();
   return {};
 }
 

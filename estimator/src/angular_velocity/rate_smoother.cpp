@@ -17,11 +17,11 @@ Status check_auxiliary_imus(const RateModelParams& params,
                             std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, std::size_t count) {
   const auto needed = static_cast<double>(params.auxiliary_imus.size());
   if (auxiliary_imus.size() != params.auxiliary_imus.size()) {
-    return {Trouble::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()), needed};
+    return {ErrorCode::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()), needed};
   }
   for (const std::vector<AuxiliaryReading>& readings : auxiliary_imus) {
     if (readings.size() == count) continue;
-    return {Trouble::too_few, "readings of an auxiliary_imu", static_cast<double>(readings.size()),
+    return {ErrorCode::too_few, "readings of an auxiliary_imu", static_cast<double>(readings.size()),
             static_cast<double>(count)};
   }
   return {};
@@ -40,8 +40,8 @@ RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const
 RateSmoother::RateSmoother(const Params& params)
     : params_(params),
       rails_({params.rails, params.expert.planes, params.expert.accel_planes}),
-      rests_(params.expert.rests) {
-  require_fields(params);
+      rest_detector_(params.expert.rests) {
+  require_valid_fields(params);
   if (params.calibrated_errors) require_known(*params.calibrated_errors);
   (void)RateModel(params.model, 0.01);  // the constructor throws for invalid parameters
 }
@@ -55,7 +55,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   RateReport health;
   const ClippingFinder::Found found = rails_.find(samples);
   const Params params = with_offset(params_, samples);
-  const std::vector<bool> rests = rests_.find(samples, params.model.nominal.gyro_bias_rad_s);
+  const std::vector<bool> rests = rest_detector_.find(samples, params.model.nominal.gyro_bias_rad_s);
   RateReadings readings = read_samples(params, rails_, found, rests, samples, auxiliary_imus, health);
   RateFit fit(readings.observations, RateModel(readings.known, median_period_s(samples)));
   if (Status status = fit_rounds(params, readings.known, samples, found.clippings, readings.observations, fit, health);

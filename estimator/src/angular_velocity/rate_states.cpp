@@ -23,7 +23,7 @@ std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSam
   std::vector<std::uint8_t> hidden(samples.size());
   for (std::size_t k = 0; k < hidden.size(); ++k) {
     const RateObservation& o = readings.observations[k];
-    hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.missing_gyro | o.read_in_part());
+    hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.unusable_gyro | o.partly_saturated_axes());
   }
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
@@ -44,9 +44,9 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
                      std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
   if (from.at_rest && to.at_rest) return 0.0;
-  if (((from.clipping.gyro | from.may_hide()) | (to.clipping.gyro | to.may_hide())) != 0)
+  if (((from.clipping.gyro | from.possibly_saturated_axes()) | (to.clipping.gyro | to.possibly_saturated_axes())) != 0)
     return params.expert.contact.gain_rad_m *
-           std::max(estimates[k].contact_m_s2.norm(), estimates[k + 1].contact_m_s2.norm());
+           std::max(estimates[k].contact_force_m_s2.norm(), estimates[k + 1].contact_force_m_s2.norm());
   const double dt_s = seconds(to.sample.time_ns - from.sample.time_ns);
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
@@ -112,8 +112,8 @@ void count(const RateState& state, const RateObservation& observation, RateRepor
   report.recovered_flight += state.source == RateSource::recovered_flight;
   report.recovered_contact += state.source == RateSource::recovered_contact;
   report.bounded_only += state.source == RateSource::bounded_only;
-  report.missing_readings += observation.clipping.missing_gyro != 0;
-  report.suspect_axes.push_back(static_cast<std::uint8_t>(observation.may_hide() & ~state.clipped_axes));
+  report.missing_readings += observation.clipping.unusable_gyro != 0;
+  report.suspect_axes.push_back(static_cast<std::uint8_t>(observation.possibly_saturated_axes() & ~state.clipped_axes));
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
       state.covariance_rad2_s2.diagonal() += own[k]->variance_rad2_s2;
     }
     state.time_ns = samples[k].time_ns;
-    state.clipped_axes = o.clipping.gyro | o.clipping.missing_gyro;
+    state.clipped_axes = o.clipping.gyro | o.clipping.unusable_gyro;
     state.source = rate_source(o, estimate, state.covariance_rad2_s2, params.recovered_sigma_rad_s);
     if (near[k] != 0 && state.source == RateSource::measured) state.source = RateSource::bounded_only;
     count(state, o, health);

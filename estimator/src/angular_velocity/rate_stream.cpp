@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 int clipped_axes(const RateObservation& o) {
-  return o.unseen();
+  return o.unmeasured_axes();
 }
 
 FrozenAxes::Params ranges_of(const RailDetector::Params& rails) {
@@ -30,7 +30,7 @@ double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to)
 
 void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
-    if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
+    if ((o.unmeasured_axes() & o.clipping.gyro & 1u << j) == 0) continue;
     const double reading = o.sample.angular_velocity_rad_s[j];
     rate[j] = reading < 0.0 ? std::min(rate[j], reading) : std::max(rate[j], reading);
   }
@@ -63,13 +63,13 @@ RateModelParams corrected_for(const RateStreamParams& params) {
 RateStream::RateStream(const Params& params)
     : params_(params),
       rails_({.clipping = {params.rails, params.expert.planes, params.expert.accel_planes}}),
-      rests_(params.expert.rests),
+      rest_detector_(params.expert.rests),
       frozen_(ranges_of(params.rails)),
-      sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
-              .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
+      flight_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
+                          .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
       model_(corrected_for(params), params.period_s),
       device_(params.model.expert.error_sizes, params.expert.uncalibrated) {
-  require_fields(params);
+  require_valid_fields(params);
   if (params.calibrated_errors) require_known(*params.calibrated_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
@@ -89,10 +89,10 @@ RateStream::State RateStream::start() const {
   RateStreamDevice& device = state.device.front();
   device.moved.resize(capacity_ + samples_per_step_);
   device_.reset(device.posterior);
-  device.delay.in_use_s = device.delay.estimated_s = prior_delay_s_;
+  device.delay.applied_delay_s = device.delay.estimated_s = prior_delay_s_;
   if (params_.calibrated_errors) {
     device.posterior.covariance = params_.calibrated_errors->covariance;
-    device.posterior.unlike = 0.0;
+    device.posterior.uncalibrated_probability = 0.0;
   }
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -104,33 +104,34 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
                         std::optional<RateState>& out) const {
   out.reset();
   if (!auxiliary_imus.empty() && auxiliary_imus.size() != params_.model.auxiliary_imus.size()) {
-    return {Trouble::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()),
+    return {ErrorCode::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()),
             static_cast<double>(params_.model.auxiliary_imus.size())};
   }
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (!state.window.empty()) {
-    Status status = check_follows(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
+    Status status =
+        check_stamp_order(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
     if (!status.ok()) return status;
   }
-  const bool due = ++state.waiting >= samples_per_step_;
+  const bool due = ++state.samples_since_step >= samples_per_step_;
   if (due) marginalise_leaving(state);
   append(sample, auxiliary_imus, state);
-  if (due) seek_delay(state);
+  if (due) update_delay(state);
   if (!due) {
     predict_covariance(state);
-  } else if (weigh(state); !step(state)) {
+  } else if (compute_flight_weight(state); !step(state)) {
     ++state.failures;
   }
-  if (state.window.size() >= capacity_) out = to_state(state.window.size() - capacity_, state);
+  if (state.window.size() >= capacity_) out = to_rate_state(state.window.size() - capacity_, state);
   return {};
 }
 
 // Removes all samples that leave the window together, so that the window has room for another sample.
 void RateStream::marginalise_leaving(State& state) const {
-  state.waiting = 0;
+  state.samples_since_step = 0;
   std::size_t count = 0;
   for (; state.window.size() - count >= capacity_; ++count) {
-    store_entry(state.window[count], state.window[count + 1], state);
+    store_slope_before_clipping(state.window[count], state.window[count + 1], state);
     marginalise(count, state);
   }
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
@@ -159,8 +160,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   // The flight weight of a marginalised sample is final. The final flight weight therefore assumes the current
   // calibration, without the calibration's uncertainty.
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
-  const double jump = std::min(jump_before(oldest, state), after_it);
-  model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
+  const double jump = std::min(change_before_window(oldest, state), after_it);
+  model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // The 20 calibration constants can explain any short contact as flight. A flight therefore updates the calibration
   // only after a minimum number of samples.
   std::size_t run = state.flight_run;
@@ -187,8 +188,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     reset_prior(state);
     ++state.failures;
   }
-  state.left = oldest.estimate.knot;
-  state.left_ns = oldest.observation.sample.time_ns;
+  state.last_marginalised = oldest.estimate.knot;
+  state.last_marginalised_ns = oldest.observation.sample.time_ns;
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
@@ -200,23 +201,24 @@ void RateStream::marginalise(std::size_t first, State& state) const {
 }
 
 // Returns the normalised change of state between the last marginalised sample and the oldest sample in the window.
-double RateStream::jump_before(const Knot& oldest, const State& state) const {
-  if (!state.left) return std::numeric_limits<double>::max();
-  return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
+double RateStream::change_before_window(const Knot& oldest, const State& state) const {
+  if (!state.last_marginalised) return std::numeric_limits<double>::max();
+  return model_.jump(*state.last_marginalised, oldest.estimate.knot,
+                     seconds(oldest.observation.sample.time_ns - state.last_marginalised_ns));
 }
 
 void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
   frozen_.step(sample, state.frozen);
-  sense_.step(sample, state.sense);
+  flight_sign_check_.step(sample, state.sense);
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
-  knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
-  repeat_detector_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0,
+  knot.by_axis_aligned_rails = rails_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
+  repeat_detector_.observe(sample, (knot.by_axis_aligned_rails.gyro | knot.by_axis_aligned_rails.unusable_gyro) != 0,
                            state.repeat_state);
-  knot.observation = {sample, knot.by_upright_rails,
-                      rests_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
+  knot.observation = {sample, knot.by_axis_aligned_rails,
+                      rest_detector_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
   knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
-               knot.by_upright_rails.accel};
+               knot.by_axis_aligned_rails.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
   const RepeatedReading& repeated = state.repeat_state.of(Triad::gyro);
   knot.repeats = repeated.repeats && !knot.observation.at_rest;
@@ -225,16 +227,16 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   // initial covariance, valid until the first step
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
-  state.window.back().approach_rad_s = approach(state.window);
+  state.window.back().reading_growth_rad_s = reading_growth(state.window);
   const std::size_t paired = pair_newest(state);
   ++state.samples;
-  if (knot.by_upright_rails.missing_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
-  if (changed) classify_again(state);
-  judge_from(changed ? 0 : paired, state);
+  if (knot.by_axis_aligned_rails.unusable_gyro == 0) state.min_levels.add(sample.angular_velocity_rad_s);
+  if (changed) reclassify_window(state);
+  classify_from(changed ? 0 : paired, state);
   accumulate_impacts(state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
-  mark_possible_rails(state);
+  mark_possible_saturation(state);
 }
 
 // Initialises the clipped axes of a new sample. The initial rate is the prediction, or the rate from the centripetal
@@ -270,17 +272,17 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   clamp_to_bounds(knot.observation, rate);
   const double largest = params_.model.rate_max_rad_s;
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
-  model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
-  model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
+  model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
+  model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   // The previous sample may be part of an impact. Between impacts, the body rotates without torque.
-  model_.seek_flight(knot.observation, state.rig, centripetal.estimate);
-  model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
+  model_.search_flight(knot.observation, state.rig, centripetal.estimate);
+  model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
 }
 
-void RateStream::weigh(State& state) const {
+void RateStream::compute_flight_weight(State& state) const {
   constexpr double kNone = std::numeric_limits<double>::max();
-  double before = jump_before(state.window.front(), state);
+  double before = change_before_window(state.window.front(), state);
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     double after = kNone;
@@ -289,11 +291,12 @@ void RateStream::weigh(State& state) const {
       after = model_.jump(knot.estimate.knot, next.estimate.knot, seconds_between(knot, next));
     }
     const bool clipped = clipped_axes(knot.observation) != 0;
-    const double widen = clipped ? std::max(1.0, std::ldexp(params_.expert.widen_first, -knot.age)) : 1.0;
-    model_.weigh(knot.observation, state.rig, state.rig_covariance, widen, std::min(before, after), knot.estimate);
+    const double threshold_factor = clipped ? std::max(1.0, std::ldexp(params_.expert.widen_first, -knot.age)) : 1.0;
+    model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, threshold_factor,
+                                 std::min(before, after), knot.estimate);
     const bool soften = knot.age >= params_.expert.bound_age && knot.estimate.flight_weight < 0.5;
     if (soften && !knot.estimate.soft_bounds) {
-      model_.seek_flight(knot.observation, state.rig, knot.estimate);
+      model_.search_flight(knot.observation, state.rig, knot.estimate);
       model_.start_bounds(knot.observation, state.rig, knot.estimate);
     }
     before = after;
@@ -350,7 +353,7 @@ bool RateStream::step(State& state) const {
 // Returns the inflated covariance of the calibration: rate_stream.md (R97).
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
-  const double samples = static_cast<double>(state.calibration_samples) * model_.distinct_reading_share() /
+  const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
                          params_.expert.inflation.samples;
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;

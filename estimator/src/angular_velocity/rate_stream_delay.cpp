@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kBeside = StrokeSums::kMostSamples;
+constexpr int kBeside = ImpactSums::kDelayMax_samples;
 // Time constant of the impact statistics, as a number of intervals between readings.
 constexpr double kMemory = 2000.0;
 // `kUpdateEvery_ns` is the time between two estimates of the delay. `kMoved_s` is the minimum change of the delay that
@@ -66,7 +66,7 @@ class ForceAbout {
 }  // namespace
 
 std::ptrdiff_t RateStream::force_shift(const State& state) const {
-  return std::lround(state.device.front().delay.in_use_s / params_.period_s);
+  return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
 // Stores the specific force at the time of sample k, or the closest force in the window. Also stores the remaining
@@ -81,14 +81,14 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.sample.specific_force_m_s2 = source.read.force_m_s2;
   o.sample.device_clip_flags =
       static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.read.device_clip_flags);
-  knot.by_upright_rails.accel = source.read.clipped;
-  o.accel_age_s = (state.device.front().delay.in_use_s - prior_delay_s_) - seconds_from(knot, source);
+  knot.by_axis_aligned_rails.accel = source.read.clipped;
+  o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_from(knot, source);
 }
 
 // Updates samples whose force the newest sample replaces by a force that is closer in time.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
-  if (state.device.front().delay.in_use_s == prior_delay_s_ && force_shift(state) == 0) return newest;
+  if (state.device.front().delay.applied_delay_s == prior_delay_s_ && force_shift(state) == 0) return newest;
   const auto waiting = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, force_shift(state)));
   const std::size_t first = newest - std::min(newest, waiting);
   for (std::size_t k = first; k <= newest; ++k) pair_force(k, state);
@@ -103,62 +103,63 @@ void RateStream::accumulate_impacts(State& state) const {
   const Knot &a = state.window[after - 1], &b = state.window[after];
   const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
                         &end = b.observation.sample.angular_velocity_rad_s;
-  if (a.observation.by_elements() || b.observation.by_elements() || !StrokeSums::counts(begin, end)) return;
+  if (a.observation.is_element_clipped() || b.observation.is_element_clipped() || !ImpactSums::counts(begin, end))
+    return;
   const ForceAbout force(state.window, after, first);
-  const double span_s = seconds_from(a, b), step_s = params_.period_s / StrokeSums::kPerSample;
-  StrokeSums::Tried mean;
+  const double span_s = seconds_from(a, b), step_s = params_.period_s / ImpactSums::kDelaysPerSample;
+  ImpactSums::DelayGrid mean;
   std::size_t from = 0, to = 0;
-  for (int i = 0; i < StrokeSums::kTried; ++i) {
-    const double delay_s = (i - StrokeSums::kMost) * step_s;
+  for (int i = 0; i < ImpactSums::kDelayCount; ++i) {
+    const double delay_s = (i - ImpactSums::kDelayMax) * step_s;
     mean[i] = (force.to(delay_s, to) - force.to(delay_s - span_s, from)) / span_s;
   }
-  StrokeSums& strokes = state.device.front().delay.strokes;
-  strokes.decay(1.0 - 1.0 / kMemory);
-  strokes.add((end - begin).norm() / span_s, mean);
+  ImpactSums& impacts = state.device.front().delay.impacts;
+  impacts.decay(1.0 - 1.0 / kMemory);
+  impacts.add((end - begin).norm() / span_s, mean);
 }
 
 // Returns the delay estimated from impacts. The result is empty if the log repeats readings, since each repetition
 // would count as a reading.
 TriadDelay RateStream::guessed_delay(const State& state) const {
-  const StrokeSums& strokes = state.device.front().delay.strokes;
-  if (repeats_readings(state) || strokes.intervals < kIntervalsMin) return {};
-  return strokes.estimate_delay(params_.period_s, params_.period_s);
+  const ImpactSums& impacts = state.device.front().delay.impacts;
+  if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};
+  return impacts.estimate_delay(params_.period_s, params_.period_s);
 }
 
 // Before a step, decides whether to change the delay: rate_stream.md (R106).
-void RateStream::seek_delay(State& state) const {
+void RateStream::update_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
   if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
   delay.updated_ns = now_ns;
   if (delay.found && repeats_readings(state)) return apply_delay(prior_delay_s_, false, state);
-  const auto correlates = [&](double at_s) { return delay.strokes.correlation_at(at_s, params_.period_s); };
-  if (delay.found && correlates(prior_delay_s_) - correlates(delay.in_use_s) > kGainMin)
+  const auto correlates = [&](double at_s) { return delay.impacts.correlation_at(at_s, params_.period_s); };
+  if (delay.found && correlates(prior_delay_s_) - correlates(delay.applied_delay_s) > kGainMin)
     return apply_delay(prior_delay_s_, false, state);
   if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
     const bool gains =
         correlates(guess.delay_s) - correlates(prior_delay_s_) > kGainMin &&
         std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_sizes.delay_uncalibrated_s;
-    const bool plain = gains && device_.odds_of_sheet(guess.delay_s - prior_delay_s_, guess.sigma_s) < kPlainOdds;
-    const bool far = std::abs(guess.delay_s - delay.in_use_s) > kGuessFar * guess.sigma_s;
+    const bool plain = gains && device_.data_sheet_odds(guess.delay_s - prior_delay_s_, guess.sigma_s) < kPlainOdds;
+    const bool far = std::abs(guess.delay_s - delay.applied_delay_s) > kGuessFar * guess.sigma_s;
     delay.guess = guess;
     if (plain && (!delay.found || far)) return apply_delay(guess.delay_s, true, state);
     if (!plain && delay.found) return apply_delay(prior_delay_s_, false, state);
   }
-  if (delay.found && std::abs(delay.estimated_s - delay.in_use_s) > kMoved_s) refine_delay(state);
+  if (delay.found && std::abs(delay.estimated_s - delay.applied_delay_s) > kMoved_s) refine_delay(state);
 }
 
 // Applies a different delay. The window restarts, and the calibration estimated with the previous delay is discarded.
 void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
-  delay.in_use_s = delay.estimated_s = delay_s;
+  delay.applied_delay_s = delay.estimated_s = delay_s;
   delay.found = found;
   reset_rig(state);
   for (std::size_t k = 0; k < state.window.size(); ++k) pair_force(k, state);
-  judge(true, state);
+  classify_samples(true, state);
   for (std::size_t k = 1; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
-    if (knot.observation.unseen() == 0) continue;
+    if (knot.observation.unmeasured_axes() == 0) continue;
     knot.age = 0;
     knot.estimate.soft_bounds = false;
     guess(knot, state.window[k - 1], state);
@@ -170,8 +171,8 @@ void RateStream::apply_delay(double delay_s, bool found, State& state) const {
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);
-  const double step_s = device.delay.estimated_s - device.delay.in_use_s;
-  device.delay.in_use_s = device.delay.estimated_s;
+  const double step_s = device.delay.estimated_s - device.delay.applied_delay_s;
+  device.delay.applied_delay_s = device.delay.estimated_s;
   state.prior.gradient += step_s * device.prior.col(SensorErrors::kDelay);
   state.prior_corner.gradient += step_s * device.corner.col(SensorErrors::kDelay);
   device.evidence.gradient -= step_s * device.evidence.information.col(SensorErrors::kDelay);
@@ -180,7 +181,7 @@ void RateStream::refine_delay(State& state) const {
     return;
   }
   for (std::size_t k = 0; k < state.window.size(); ++k) pair_force(k, state);
-  judge(true, state);
+  classify_samples(true, state);
 }
 
 }  // namespace tumble

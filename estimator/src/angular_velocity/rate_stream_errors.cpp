@@ -65,7 +65,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   const RateStreamDevice& device = state.device.front();
   KnownSensorErrors out{params_.calibrated_errors ? params_.calibrated_errors->errors : params_.model.errors,
                         device.posterior.covariance};
-  out.errors.accel_delay_s = device.delay.in_use_s;
+  out.errors.accel_delay_s = device.delay.applied_delay_s;
   return out;
 }
 
@@ -79,7 +79,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
     return;
   }
   std::vector<arrow::ErrorMatrix>& errors = device.moved;
-  auto& [border, of_rig, window_evidence, posterior_work] = device.work;
+  auto& [border, calibration_by_errors, window_evidence, posterior_work] = device.work;
   border = device.corner;
   window_evidence = device.evidence;
   errors[0] = device.prior;
@@ -91,26 +91,26 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
     window_evidence.information.noalias() -= errors[k].transpose().lazyProduct(errors[k]);
     window_evidence.gradient.noalias() += errors[k].transpose().lazyProduct(state.work[k].gradient);
   }
-  of_rig.noalias() = state.rig_covariance.lazyProduct(border);
+  calibration_by_errors.noalias() = state.rig_covariance.lazyProduct(border);
   for (std::size_t k = count; k-- > 0;)
-    errors[k] =
-        arrow::back_substitute_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], of_rig);
+    errors[k] = arrow::back_substitute_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1],
+                                              calibration_by_errors);
 
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
   if (params_.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdateEvery_ns)) return;
   device.updated_ns = now_ns;
-  window_evidence.information.noalias() -= border.transpose().lazyProduct(of_rig);
+  window_evidence.information.noalias() -= border.transpose().lazyProduct(calibration_by_errors);
   window_evidence.gradient.noalias() += border.transpose().lazyProduct(rig_step);
-  discount_unobservable(model_.distinct_reading_share(), window_evidence);
+  discount_unobservable(model_.independent_reading_ratio(), window_evidence);
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
       // Information from impacts has full weight. The division cancels the evidence weight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
-      window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
+      window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
     }
-    delay.estimated_s = std::clamp(delay.in_use_s + device_.further_delay_s(window_evidence, delay_reach_s()),
+    delay.estimated_s = std::clamp(delay.applied_delay_s + device_.delay_correction_s(window_evidence, delay_reach_s()),
                                    -delay_reach_s(), delay_reach_s());
   }
   device_.update(window_evidence, posterior_work, device.posterior, delay.found);
@@ -123,9 +123,9 @@ Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const 
   if (!moves(knot)) return Matrix3d::Zero();
   const RateStreamDevice& device = state.device.front();
   Matrix3d out = considered(device.moved[k], device.posterior.covariance, params_.model.rate_max_rad_s);
-  const double shared_s2 = device_.common_delay_s2(device.posterior);
+  const double shared_s2 = device_.common_delay_variance_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
-  const double struck = params_.model.expert.contact.gain_rad_m * knot.estimate.contact_m_s2.norm();
+  const double struck = params_.model.expert.contact.gain_rad_m * knot.estimate.contact_force_m_s2.norm();
   out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());
   return out;
 }

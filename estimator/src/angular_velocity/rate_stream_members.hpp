@@ -26,17 +26,17 @@ template <StateOf<RateStream::Knot> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("knot.observation", s.observation);
   visit("knot.read", s.read);
-  visit("knot.by_upright_rails", s.by_upright_rails);
+  visit("knot.by_upright_rails", s.by_axis_aligned_rails);
   visit("knot.estimate", s.estimate);
   visit("knot.covariance_rad2_s2", s.covariance_rad2_s2);
-  visit("knot.approach_rad_s", s.approach_rad_s);
+  visit("knot.approach_rad_s", s.reading_growth_rad_s);
   visit("knot.age", s.age);
   visit("knot.repeats", s.repeats);
   visit("knot.repeated", s.repeated);
   visit("knot.near", s.near);
 }
 
-template <StateOf<FlightSense::Reading> Self, class Visitor>
+template <StateOf<FlightSignCheck::Reading> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("reading.time_ns", s.time_ns);
   visit("reading.rate_rad_s", s.rate_rad_s);
@@ -45,34 +45,34 @@ void members(Self& s, Visitor& visit) {
   visit("reading.known", s.known);
 }
 
-template <StateOf<FlightSense::State> Self, class Visitor>
+template <StateOf<FlightSignCheck::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("sense.average", s.average);
   visit("sense.before", s.before);
   visit("sense.readings", s.readings, 0.0, 2.0);
   visit("sense.run_s", s.run_s);
-  visit("sense.flown_s", s.flown_s);
-  visit("sense.flown_ns", s.flown_ns);
+  visit("sense.flown_s", s.flight_duration_s);
+  visit("sense.flown_ns", s.last_flight_end_ns);
   visit("sense.last_time_ns", s.last_time_ns);
   visit("sense.started", s.started);
 }
 
-template <StateOf<StrokeSums> Self, class Visitor>
+template <StateOf<ImpactSums> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("strokes.intervals", s.intervals);
-  visit("strokes.turn", s.turn);
-  visit("strokes.turn_squared", s.turn_squared);
+  visit("strokes.turn", s.acceleration_sum);
+  visit("strokes.turn_squared", s.acceleration_squared);
   visit("strokes.force", s.force);
   visit("strokes.force_squared", s.force_squared);
   visit("strokes.product", s.product);
-  visit("strokes.strokes", s.strokes);
+  visit("strokes.strokes", s.impacts);
   visit("strokes.flying", s.flying);
 }
 
 template <StateOf<RateStreamDelay> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("delay.strokes", s.strokes);
-  visit("delay.in_use_s", s.in_use_s);
+  visit("delay.strokes", s.impacts);
+  visit("delay.in_use_s", s.applied_delay_s);
   visit("delay.estimated_s", s.estimated_s);
   visit("delay.found", s.found);
   visit("delay.guess_s", s.guess.delay_s);
@@ -86,7 +86,7 @@ void members(Self& s, Visitor& visit) {
   visit("device.corner", s.corner);
   visit("device.evidence", s.evidence);
   visit("device.covariance", s.posterior.covariance);
-  visit("device.unlike", s.posterior.unlike);
+  visit("device.unlike", s.posterior.uncalibrated_probability);
   visit("device.updated_ns", s.updated_ns);
   visit("device.delay", s.delay);
   visit.scratch(s.moved);
@@ -107,15 +107,15 @@ void members(Self& s, Visitor& visit) {
   visit("rate.prior_corner", s.prior_corner);
   visit("rate.device", s.device.front());
   visit("rate.extremes", s.extremes);
-  visit("rate.least", s.least);
-  visit("rate.entry_rad_s", s.entry_rad_s);
+  visit("rate.least", s.min_levels);
+  visit("rate.entry_rad_s", s.slope_before_clipping_rad_s);
   visit("rate.entry_samples", s.entry_samples);
-  visit("rate.left", s.left);
-  visit("rate.left_ns", s.left_ns);
+  visit("rate.left", s.last_marginalised);
+  visit("rate.left_ns", s.last_marginalised_ns);
   visit("rate.prior_knot", s.prior_knot);
   visit("rate.prior_rig", s.prior_rig);
   visit("rate.samples", s.samples);
-  visit("rate.waiting", s.waiting);
+  visit("rate.waiting", s.samples_since_step);
   visit("rate.calibration_samples", s.calibration_samples);
   visit("rate.flight_run", s.flight_run);
   visit("rate.rig_resets", s.rig_resets);

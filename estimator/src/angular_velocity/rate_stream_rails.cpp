@@ -7,7 +7,7 @@
 #include "element_clipping.hpp"
 #include "near_rails.hpp"
 #include "possible_saturation.hpp"
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 // `kOpen` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted saturation level
-// needs at least `kPossibleMin` readings within kBesideRail of the axis' largest reading. A rounded maximum of n
+// needs at least `kPossibleMin` readings within kNearRailRatio of the axis' largest reading. A rounded maximum of n
 // readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height. If saturation cuts
 // off a motion, the extrapolated height exceeds `kKink` times the measured height. The extrapolated height also exceeds
 // `kPossibleNoise` standard deviations of the noise.
@@ -75,23 +75,23 @@ Beside readings_beside(std::size_t k, const RateStream::State& state) {
 
 }  // namespace
 
-void RateStream::classify_again(State& state) const {
-  RailDetector::State& upright_rails = state.rails.known.upright_rails;
-  for (RailDetector::Channel& channel : upright_rails.channels) channel.clipped = false;
+void RateStream::reclassify_window(State& state) const {
+  RailDetector::State& axis_aligned_rails = state.rails.known.axis_aligned_rails;
+  for (RailDetector::Channel& channel : axis_aligned_rails.channels) channel.clipped = false;
   for (Knot& knot : state.window) {
     ImuSample sample = knot.observation.sample;
     sample.specific_force_m_s2 = knot.read.force_m_s2;
     sample.device_clip_flags =
         static_cast<std::uint8_t>((sample.device_clip_flags & kClipGyro) | knot.read.device_clip_flags);
-    knot.by_upright_rails = rails_.upright_rails().classify(sample, upright_rails);
-    knot.read.clipped = knot.by_upright_rails.accel;
+    knot.by_axis_aligned_rails = rails_.axis_aligned_rails().classify(sample, axis_aligned_rails);
+    knot.read.clipped = knot.by_axis_aligned_rails.accel;
   }
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
 // Classifies samples of the window again with the current saturation levels. The update starts at the previous reading,
 // because the classification of a reading depends on its neighbours. A newly clipped sample gets a new initial rate.
-void RateStream::judge_from(std::size_t changed, State& state) const {
+void RateStream::classify_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
@@ -105,21 +105,22 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
     const ImuSample* const sample_before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
     const ImuSample* const sample_after =
         k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
-    const std::uint8_t read = now.unseen();
-    Clipping by_upright_rails = knot.by_upright_rails;
+    const std::uint8_t read = now.unmeasured_axes();
+    Clipping by_axis_aligned_rails = knot.by_axis_aligned_rails;
     if (sample_after != nullptr) {
-      rails_.upright_rails().add_edge(now.sample, *sample_after, state.window[k + 1].by_upright_rails,
-                                      rails.upright_rails, by_upright_rails);
+      rails_.axis_aligned_rails().add_rising_edge(now.sample, *sample_after, state.window[k + 1].by_axis_aligned_rails,
+                                                  rails.axis_aligned_rails, by_axis_aligned_rails);
     }
-    now.clipping = clip_by_planes(planes, Triad::gyro, by_upright_rails, before, now.sample, after);
+    now.clipping = clip_by_planes(planes, Triad::gyro, by_axis_aligned_rails, before, now.sample, after);
     now.clipping =
         clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_rows = accel_rows;
-    mark_subsample_saturation(planes, rails_.upright_rails(), rails.upright_rails, noise, before, now, after);
-    knot.near = rails.upright ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
+    mark_subsample_saturation(planes, rails_.axis_aligned_rails(), rails.axis_aligned_rails, noise, before, now, after);
+    knot.near =
+        rails.gyro_clips_after_compensation ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
     mark_undetected_clipping(k, state);
     const bool newest = k + 1 == state.window.size();
-    if (!newest && (now.unseen() & ~read) == 0) continue;
+    if (!newest && (now.unmeasured_axes() & ~read) == 0) continue;
     if (!newest) {
       knot.age = 0;
       knot.estimate.soft_bounds = false;
@@ -139,39 +140,39 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   if (plane && plane->seen(sign)) {
     const Eigen::Vector4d by(y[(axis + 1) % 3], y[(axis + 2) % 3], -sign, -1.0);
     const double open = std::sqrt(std::max(0.0, by.dot(plane->covariance * by)));
-    return plane->short_of(y, sign) <= plane->tolerance_rad_s + kOpen * open;
+    return plane->margin_rad_s(y, sign) <= plane->tolerance_rad_s + kOpen * open;
   }
   const double extreme = std::abs(state.extremes[sign > 0 ? 1 : 0][axis]);
   const bool high = extreme >= params_.expert.planes.distance_min_rad_s && may_be_rail(planes, extreme);
-  return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
+  return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
 // Computes the possible saturation deficit of a single sample near the saturation level of another sensing element.
 void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
-  now.lone = 0;
-  if (state.rails.known.upright) return;
+  now.isolated_high_axes = 0;
+  if (state.rails.known.gyro_clips_after_compensation) return;
   const auto [before, after] = readings_beside(k, state);
-  inflate_possible_saturation(state.rails.known.planes_in_use(), state.least, model_.gyro_sigma_rad_s(), before, now,
-                              after);
+  inflate_possible_saturation(state.rails.known.planes_in_use(), state.min_levels, model_.gyro_sigma_rad_s(), before,
+                              now, after);
 }
 
 // Clears the suspect marks in the window that a larger reading refutes. Also clears marks for which a saturation level
 // is now known.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
-    if (state.window[k].observation.may_hide() == 0) continue;
+    if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
     state.window[k].observation.suspect = 0;
     mark_undetected_clipping(k, state);
   }
 }
 
 // Marks runs of three or more unflagged readings that may be saturated. Each new sample repeats the marking.
-void RateStream::mark_possible_rails(State& state) const {
+void RateStream::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspect;
   clear_suspects(state);
   for (int j = 0; j < 3; ++j) {
-    if (rails_.upright_rails().rail(state.rails.known.upright_rails, j)) continue;
+    if (rails_.axis_aligned_rails().rail(state.rails.known.axis_aligned_rails, j)) continue;
     for (std::size_t k = 0; k < state.window.size();) {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
@@ -193,7 +194,8 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
   };
-  const double in = first > 0 ? state.window[first - 1].approach_rad_s[axis] : state.entry_rad_s[axis];
+  const double in =
+      first > 0 ? state.window[first - 1].reading_growth_rad_s[axis] : state.slope_before_clipping_rad_s[axis];
   const std::size_t one = reading_after(last, state.window), two = reading_after(one, state.window),
                     three = reading_after(two, state.window);
   const bool left = three < state.window.size();
@@ -221,17 +223,17 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   if (cut < kKink * (highest - lowest) || cut < kPossibleNoise * noise) return;
   for (std::size_t k = first; k <= last; ++k) {
     RateObservation& observation = state.window[k].observation;
-    if (((observation.clipping.gyro | observation.clipping.missing_gyro) & bit) != 0) continue;
-    observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
+    if (((observation.clipping.gyro | observation.clipping.unusable_gyro) & bit) != 0) continue;
+    observation.isolated_high_axes = static_cast<std::uint8_t>(observation.isolated_high_axes & ~bit);
     observation.suspect = static_cast<std::uint8_t>(observation.suspect | bit);
     // saturation cuts off all readings of the run together, so the run counts as one reading
-    observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
+    observation.expected_deficit_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
 }
 
 // Returns the growth of the gyro's reading before the newest sample, per sample. The growth is the smaller of two
 // steps, because an impact causes a single step. A constant spin after an impact is not saturation.
-Vector3d RateStream::approach(const std::vector<Knot>& window) {
+Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
   if (!two) return Vector3d::Zero();
@@ -246,14 +248,14 @@ Vector3d RateStream::approach(const std::vector<Knot>& window) {
 
 // Stores the slope before a run of clipped readings. The slope is needed while the run continues after its first
 // reading left the window.
-void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state) {
+void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
-    return ((knot.observation.clipping.gyro | knot.observation.read_in_part()) >> j & 1) != 0;
+    return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
   };
   for (int j = 0; j < 3; ++j) {
     const bool goes_on = hidden(leaving, j) && hidden(next, j);
     state.entry_samples[j] = goes_on ? state.entry_samples[j] + 1.0 : 0.0;
-    if (!goes_on) state.entry_rad_s[j] = hidden(next, j) ? leaving.approach_rad_s[j] : 0.0;
+    if (!goes_on) state.slope_before_clipping_rad_s[j] = hidden(next, j) ? leaving.reading_growth_rad_s[j] : 0.0;
   }
 }
 
@@ -264,8 +266,8 @@ void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const RailPlanes planes = rails.planes_in_use();
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;
-    const auto prior_slopes =
-        estimated_slopes(planes, rails.upright, j, model_.prior_covariance().block<2, 2>(first, first));
+    const auto prior_slopes = estimated_slopes(planes, rails.gyro_clips_after_compensation, j,
+                                               model_.prior_covariance().block<2, 2>(first, first));
     if (!prior_slopes) continue;
     const Eigen::Matrix2d information = prior_slopes->covariance.inverse();
     corner.matrix.block<2, 2>(first, first) += information;

@@ -22,11 +22,11 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
 
 // Returns the saturation deficit of a sample according to the slopes at the ends of a run of clipped readings:
 // rate_stream.md (R99). The start of a flight also ends the run, since the specific force then determines the rate.
-double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
+double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
     const RateObservation& o = window[k].observation;
-    return ((o.clipping.gyro | o.read_in_part()) >> axis & 1) != 0 && !in_long_flight(k, state);
+    return ((o.clipping.gyro | o.partly_saturated_axes()) >> axis & 1) != 0 && !in_long_flight(k, state);
   };
   std::size_t first = at, last = at;
   while (first > 0 && hidden(first - 1)) --first;
@@ -47,15 +47,15 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (knot.estimate.flight_weight >= 0.5) return out;
-  const double samples = static_cast<double>(state.calibration_samples) * model_.distinct_reading_share() /
+  const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
                          params_.expert.inflation.samples;
   const double share = params_.model.calibration ? 0.0 : params_.expert.inflation.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
-    if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
+    if ((knot.observation.unmeasured_axes() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
     const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
     const double beyond = std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
     const double least =
-        std::max(share * beyond, params_.expert.inflation.slopes * (hidden_by_slopes(at, j, state) - beyond));
+        std::max(share * beyond, params_.expert.inflation.slopes * (deficit_from_slopes_rad_s(at, j, state) - beyond));
     out(j, j) = std::max(out(j, j), least * least);
   }
   return out;
@@ -63,7 +63,7 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
 
 // Returns whether the readings that determine a rate may be partly saturated. The rate depends on the reading of its
 // sample. If the log repeats readings, the rate also depends on the neighbouring readings.
-bool RateStream::near_rails(std::size_t at, const State& state) const {
+bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
   if (!window[at].repeated.is_slower_than_log()) return false;
@@ -71,13 +71,13 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
   while (next < window.size() && window[next].repeats) ++next;
   if (next == window.size()) return false;
   const RateObservation& after = window[next].observation;
-  return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
+  return (window[next].near | after.clipping.gyro | after.possibly_saturated_axes()) != 0;
 }
 
 // Evaluates the rate some time after the sample, for a gyro that is delayed relative to the accelerometer:
 // rate_stream.md (R108). Between knots, the rate is a cubic. After the newest knot, the angular acceleration is assumed
 // to be constant, and the covariance contains the error of this assumption.
-void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
+void RateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];
     return model_.reported(suspect_covariance(k, state), knot.observation, knot.estimate);
@@ -102,38 +102,38 @@ void RateStream::move_later(std::size_t at, double late_s, const State& state, R
   out.covariance_rad2_s2 = reported(at) + moved * moved.transpose();
 }
 
-RateState RateStream::to_state(std::size_t at, const State& state) const {
+RateState RateStream::to_rate_state(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   const Eigen::Matrix3d covariance = suspect_covariance(at, state);
   RateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
-  const double gyro_late_s = -state.device.front().delay.in_use_s;
+  const double gyro_late_s = -state.device.front().delay.applied_delay_s;
   if (gyro_late_s > 0.0) {
-    move_later(at, gyro_late_s, state, out);
-    out.covariance_rad2_s2.diagonal() += knot.repeated.stale().cwiseAbs2();
+    extrapolate_estimate(at, gyro_late_s, state, out);
+    out.covariance_rad2_s2.diagonal() += knot.repeated.change_since_reading().cwiseAbs2();
   } else if (const std::optional<InterpolatedRate> own = rate_between_readings(state.window, at, params_.period_s)) {
     out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
     out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
   } else {
-    out.covariance_rad2_s2.diagonal() += knot.repeated.stale().cwiseAbs2();
+    out.covariance_rad2_s2.diagonal() += knot.repeated.change_since_reading().cwiseAbs2();
   }
   out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
-  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.missing_gyro;
+  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.unusable_gyro;
   out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
-  if (out.source == RateSource::measured && near_rails(at, state)) out.source = RateSource::bounded_only;
+  if (out.source == RateSource::measured && may_be_partly_saturated(at, state)) out.source = RateSource::bounded_only;
   return out;
 }
 
 std::optional<RateState> RateStream::newest(const State& state) const {
   if (state.window.empty()) return std::nullopt;
-  return to_state(state.window.size() - 1, state);
+  return to_rate_state(state.window.size() - 1, state);
 }
 
 void RateStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
-  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(k, state));
+  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_rate_state(k, state));
 }
 
 }  // namespace tumble

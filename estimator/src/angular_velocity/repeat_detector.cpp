@@ -20,16 +20,16 @@ RepeatedReading repeated_reading(const RepeatDetector::Memory& memory, const Eig
   if (memory.moving < kMovingLeast || memory.repeated < kRepeatsMin * memory.moving) return out;
   out.period_samples = memory.moving / std::max(1.0, memory.moving - memory.repeated);
   if (out.period_samples > kSlowest) return {};
-  out.repeats = memory.run_samples > 1.0 && memory.run_samples <= kSlowest;
-  out.age_samples = std::min(memory.run_samples, kSlowest) - 0.5;
+  out.repeats = memory.equal_samples > 1.0 && memory.equal_samples <= kSlowest;
+  out.age_samples = std::min(memory.equal_samples, kSlowest) - 0.5;
   out.change = out.repeats ? memory.now.change : reading - memory.reading;
   return out;
 }
 
 }  // namespace
 
-Eigen::Vector3d RepeatedReading::stale() const {
-  return behind_samples() / period_samples * change;
+Eigen::Vector3d RepeatedReading::change_since_reading() const {
+  return delay_samples() / period_samples * change;
 }
 
 void RepeatDetector::observe(const ImuSample& sample, bool clipped, State& state) const {
@@ -37,13 +37,13 @@ void RepeatDetector::observe(const ImuSample& sample, bool clipped, State& state
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     Memory& memory = state.memory[static_cast<std::size_t>(triad)];
     const Eigen::Vector3d& reading = reading_of(sample, triad);
-    const bool again = memory.run_samples > 0.0 && reading == memory.reading;
+    const bool again = memory.equal_samples > 0.0 && reading == memory.reading;
     if (moves) {
       const double kept = 1.0 - 1.0 / kMemory;
       memory.moving = kept * memory.moving + 1.0;
       memory.repeated = kept * memory.repeated + (again ? 1.0 : 0.0);
     }
-    memory.run_samples = again ? memory.run_samples + 1.0 : 1.0;
+    memory.equal_samples = again ? memory.equal_samples + 1.0 : 1.0;
     memory.now = repeated_reading(memory, reading);
     memory.reading = reading;
   }

@@ -8,7 +8,7 @@
 namespace tumble {
 
 RestDetector::RestDetector(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Eigen::Vector3d RestDetector::State::mean_rate_rad_s() const {

@@ -71,22 +71,22 @@ void RigConstants::add(const Vector& step) {
   elements += step.segment<6>(kElements);
 }
 
-Status check_rig(const RigConstants& rig) {
-  constexpr double kMost = RigConstants::kMost;
-  const auto beyond = [](double value) { return !(std::abs(value) <= kMost); };
+Status check_rig_constants(const RigConstants& rig) {
+  constexpr double kMagnitudeMax = RigConstants::kMagnitudeMax;
+  const auto beyond = [](double value) { return !(std::abs(value) <= kMagnitudeMax); };
   const RigConstants::Vector all = rig.vector();
   const auto first = std::find_if(all.begin(), all.end(), beyond);
   if (first == all.end()) return {};
   const char* const name = first - all.begin() < rig.lever_arm_m.size() ? "lever_arm_m" : "rig constants";
-  return {Trouble::out_of_range, name, *first, std::copysign(kMost, *first)};
+  return {ErrorCode::out_of_range, name, *first, std::copysign(kMagnitudeMax, *first)};
 }
 
 Status check_calibration(const RigCalibration& calibration) {
-  if (const Status status = check_rig(calibration.constants); !status.ok()) return status;
+  if (const Status status = check_rig_constants(calibration.constants); !status.ok()) return status;
   const RigConstants::Matrix& P = calibration.covariance;
   const RigConstants::Matrix symmetric = 0.5 * (P + P.transpose());
   if (symmetric.allFinite() && dense::Cholesky(symmetric).ok()) return {};
-  return {Trouble::degenerate, "calibration covariance", symmetric.trace(), 0.0};
+  return {ErrorCode::degenerate, "calibration covariance", symmetric.trace(), 0.0};
 }
 
 }  // namespace tumble

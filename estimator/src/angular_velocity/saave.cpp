@@ -29,13 +29,13 @@ double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axi
 }  // namespace
 
 Saave::Saave(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const {
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (state.started) {
-    Status status = check_follows(sample.time_ns, state.last_time_ns, params_.gap_max_s);
+    Status status = check_stamp_order(sample.time_ns, state.last_time_ns, params_.gap_max_s);
     if (!status.ok()) return status;
   }
   state.started = true;
@@ -71,7 +71,7 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
 }
 
 Status Saave::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
-  if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::empty, "samples", 0.0, 1.0};
   State state;
   std::vector<Recovered> recovered(samples.size());
   std::vector<WnojSmoother::Measurement> measurements(samples.size());

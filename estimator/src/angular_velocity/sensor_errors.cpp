@@ -69,12 +69,12 @@ struct Hypothesis {
 
 // Computes the posterior of the sensor errors, in units of the prior's standard deviations: rate_smoother.md (R40),
 // (R41), (R43). The input is h = gamma + information * errors.
-Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
+Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
-  const Matrix scaled = deviation.asDiagonal() * (information + learnt) * deviation.asDiagonal();
+  const Matrix scaled = deviation.asDiagonal() * (information + earlier_runs) * deviation.asDiagonal();
   const Matrix scaled_weighted =
-      deviation.asDiagonal() * (kEvidenceWeight * information + learnt) * deviation.asDiagonal();
+      deviation.asDiagonal() * (kEvidenceWeight * information + earlier_runs) * deviation.asDiagonal();
   const Vector scaled_h = deviation.cwiseProduct(h);
   Hypothesis out;
   const Matrix sharp = Matrix::Identity() + scaled;
@@ -122,15 +122,16 @@ SensorErrors SensorErrors::from(const Vector& v) {
   return out;
 }
 
-void require_known(const KnownSensorErrors& learnt) {
-  for (const double value : learnt.errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
-  for (const double value : learnt.covariance.reshaped()) require_within("learnt errors' covariance", value, -1.0, 1.0);
-  const Vector pivots = learnt.covariance.ldlt().vectorD();
+void require_known(const KnownSensorErrors& earlier_runs) {
+  for (const double value : earlier_runs.errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
+  for (const double value : earlier_runs.covariance.reshaped())
+    require_within("learnt errors' covariance", value, -1.0, 1.0);
+  const Vector pivots = earlier_runs.covariance.ldlt().vectorD();
   require_within("minimum pivot of the covariance of the estimated sensor errors", pivots.minCoeff(),
                  -1e-9 * pivots.maxCoeff(), 1.0);
 }
 
-Vector prior_deviations(const SensorErrorPriors& sizes, double share) {
+Vector prior_sigmas(const SensorErrorPriors& sizes, double share) {
   return deviations(sizes, {share, share, share, share});
 }
 
@@ -155,10 +156,10 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
 }
 
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
-                                 const SensorErrorEvidence& learnt) {
+                                 const SensorErrorEvidence& earlier_runs) {
   const Matrix information = evidence_of(evidence.information, sizes);
-  const Vector h = evidence.gradient + information * evidence.about.vector() + learnt.gradient +
-                   learnt.information * learnt.about.vector();
+  const Vector h = evidence.gradient + information * evidence.linearisation_point.vector() + earlier_runs.gradient +
+                   earlier_runs.information * earlier_runs.linearisation_point.vector();
   const bool one_matrix = sizes.gyro_uncalibrated <= sizes.gyro && sizes.accel_uncalibrated <= sizes.accel;
   const bool one_g_sensitivity = sizes.g_sensitivity_uncalibrated_s_m <= sizes.g_sensitivity_s_m,
              one_delay = sizes.delay_uncalibrated_s <= sizes.delay_s;
@@ -171,7 +172,8 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
                      delay = kDelaySizes[d];
           const Shares shares{scale.share, cross.share, g_sensitivity.share, delay.share};
           const double prior = scale.probability * cross.probability * g_sensitivity.probability * delay.probability;
-          all.push_back(posterior(information, learnt.information, h, deviations(sizes, shares), std::log(prior)));
+          all.push_back(
+              posterior(information, earlier_runs.information, h, deviations(sizes, shares), std::log(prior)));
           all.back().shares = shares;
         }
       }
@@ -205,9 +207,9 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
 }
 
 // Converts the sensor errors of an earlier run to information: rate_smoother.md (R43).
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorPriors& sizes) {
+SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes) {
   const Vector unit = deviations(sizes, {});
-  const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
+  const Matrix symmetric = 0.5 * (earlier_runs.covariance + earlier_runs.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();
   Vector values;
   Matrix vectors;
@@ -222,7 +224,7 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const 
   };
   SensorErrorEvidence out;
   out.information = in_units((precision_ratio.array() - 1.0).cwiseMax(0.0));
-  out.gradient = in_units(of_mean) * learnt.errors.vector();
+  out.gradient = in_units(of_mean) * earlier_runs.errors.vector();
   return out;
 }
 

@@ -21,8 +21,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // unknowns: lever arm, accelerometer bias
 
-constexpr int kDelayMost = StrokeSums::kMostSamples;  // largest delay, in samples
-constexpr int kPerSample = 4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
+constexpr int kDelayMost = ImpactSums::kDelayMax_samples;  // largest delay, in samples
+constexpr int kDelaysPerSample =
+    4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
@@ -55,7 +56,7 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
     const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (repeated ? repeated->behind_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
     if (triad == Triad::gyro) {
-      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].missing_gyro) != 0);
+      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].unusable_gyro) != 0);
     } else {
       out.add(at_s, samples[k].specific_force_m_s2, clippings[k].accel != 0);
     }
@@ -162,16 +163,16 @@ class ForceIntegral {
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
-  const double step_s = period_s / StrokeSums::kPerSample;
-  std::array<std::size_t, StrokeSums::kTried> begin{}, end{};
-  StrokeSums sums;
+  const double step_s = period_s / ImpactSums::kDelaysPerSample;
+  std::array<std::size_t, ImpactSums::kDelayCount> begin{}, end{};
+  ImpactSums sums;
   for (std::size_t k = 1; k < gyro.size(); ++k) {
-    if (gyro.clipped[k] || gyro.clipped[k - 1] || !StrokeSums::counts(gyro.value[k - 1], gyro.value[k])) continue;
+    if (gyro.clipped[k] || gyro.clipped[k - 1] || !ImpactSums::counts(gyro.value[k - 1], gyro.value[k])) continue;
     const double begin_s = gyro.time_s[k - 1], end_s = gyro.time_s[k], span_s = end_s - begin_s;
-    StrokeSums::Tried mean;
-    for (int i = 0; i < StrokeSums::kTried; ++i) {
+    ImpactSums::DelayGrid mean;
+    for (int i = 0; i < ImpactSums::kDelayCount; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const double delay_s = (i - StrokeSums::kMost) * step_s;
+      const double delay_s = (i - ImpactSums::kDelayMax) * step_s;
       mean[i] = (force.to(end_s + delay_s, end[at]) - force.to(begin_s + delay_s, begin[at])) / span_s;
     }
     sums.add((gyro.value[k] - gyro.value[k - 1]).norm() / span_s, mean);
@@ -184,23 +185,24 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
 }
 
 // Estimates the delay from flight. If there is too little flight, returns 0.
-double flown_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m, double period_s) {
+double flight_duration_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
+                         double period_s) {
   const std::vector<Instant> turning = instants_of(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
   const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
   const double none = of(0.0);
   double best = none, shift = 0.0;
-  for (int i = -kDelayMost * kPerSample; i <= kDelayMost * kPerSample; ++i) {
+  for (int i = -kDelayMost * kDelaysPerSample; i <= kDelayMost * kDelaysPerSample; ++i) {
     if (i == 0) continue;
-    const double tried = static_cast<double>(i) / kPerSample, found = of(tried);
+    const double tried = static_cast<double>(i) / kDelaysPerSample, found = of(tried);
     if (found < best) {
       best = found;
       shift = tried;
     }
   }
   const double about = shift;
-  for (int i = -kPerSample; i <= kPerSample; ++i) {
-    const double tried = about + static_cast<double>(i) / (kPerSample * kPerSample), found = of(tried);
+  for (int i = -kDelaysPerSample; i <= kDelaysPerSample; ++i) {
+    const double tried = about + static_cast<double>(i) / (kDelaysPerSample * kDelaysPerSample), found = of(tried);
     if (found < best) {
       best = found;
       shift = tried;
@@ -219,7 +221,7 @@ TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const
   const double period_s = median_period_s(samples);
   const TriadDelay of_strokes = struck(gyro, accel, period_s);
   if (of_strokes.sigma_s > 0.0) return of_strokes;
-  return {flown_s(gyro, accel, lever_arm_m, period_s), 0.0};
+  return {flight_duration_s(gyro, accel, lever_arm_m, period_s), 0.0};
 }
 
 }  // namespace tumble

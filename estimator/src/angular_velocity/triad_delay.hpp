@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "tumble/angular_velocity/detail/stroke_sums.hpp"
+#include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/common/imu.hpp"
 

@@ -20,8 +20,8 @@ double density_over_share(double z) {
 }  // namespace
 
 // Computes mean and variance of a normal variable with a soft lower bound: rate_smoother.md (R23), (R24).
-NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2) {
-  const double spread2 = from.variance + softness2, spread = std::sqrt(spread2);
+NormalMoments truncated_below(const NormalMoments& from, double bound, double bound_variance) {
+  const double spread2 = from.variance + bound_variance, spread = std::sqrt(spread2);
   const double z = (from.mean - bound) / spread, r = density_over_share(z);
   return {from.mean + from.variance * r / spread,
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
@@ -29,11 +29,11 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double so
 
 // Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The update first
 // removes the old Gaussian factor from the marginal (cavity distribution).
-NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
-                         double widest2, double share) {
-  const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);
+GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
+                           double variance_max, double share) {
+  const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);
   const NormalMoments cavity{(marginal.mean / marginal.variance - now.shift) / precision, 1.0 / precision};
-  const NormalMoments wanted = truncated_below(cavity, bound, softness2);
+  const NormalMoments wanted = truncated_below(cavity, bound, bound_variance);
   const double found = std::max(0.0, 1.0 / wanted.variance - precision);
   const double shift = wanted.mean / wanted.variance - precision * cavity.mean;
   return {now.precision + share * (found - now.precision), now.shift + share * (shift - now.shift)};

@@ -81,25 +81,25 @@ void measure(Carried& carried, double rate, double deviation) {
 }
 
 Status check(std::span<const WnojSmoother::Measurement> measurements) {
-  if (measurements.empty()) return {Trouble::empty, "measurements", 0.0, 1.0};
+  if (measurements.empty()) return {ErrorCode::empty, "measurements", 0.0, 1.0};
   for (std::size_t k = 0; k < measurements.size(); ++k) {
     const auto& m = measurements[k];
     for (int j = 0; j < 3; ++j) {
       if (!std::isfinite(m.rate_rad_s[j])) {
-        return {Trouble::non_finite, "rate_rad_s", m.rate_rad_s[j], std::numeric_limits<double>::max()};
+        return {ErrorCode::non_finite, "rate_rad_s", m.rate_rad_s[j], std::numeric_limits<double>::max()};
       }
       if (!std::isfinite(m.variance_rad2_s2[j])) {
-        return {Trouble::non_finite, "variance_rad2_s2", m.variance_rad2_s2[j], kVarianceMax};
+        return {ErrorCode::non_finite, "variance_rad2_s2", m.variance_rad2_s2[j], kVarianceMax};
       }
       if (m.variance_rad2_s2[j] < kVarianceMin) {
-        return {Trouble::out_of_range, "variance_rad2_s2", m.variance_rad2_s2[j], kVarianceMin};
+        return {ErrorCode::out_of_range, "variance_rad2_s2", m.variance_rad2_s2[j], kVarianceMin};
       }
       if (m.variance_rad2_s2[j] > kVarianceMax) {
-        return {Trouble::out_of_range, "variance_rad2_s2", m.variance_rad2_s2[j], kVarianceMax};
+        return {ErrorCode::out_of_range, "variance_rad2_s2", m.variance_rad2_s2[j], kVarianceMax};
       }
     }
     if (k > 0 && m.time_ns <= measurements[k - 1].time_ns) {
-      return {Trouble::time_order, "time_ns", static_cast<double>(m.time_ns),
+      return {ErrorCode::time_order, "time_ns", static_cast<double>(m.time_ns),
               static_cast<double>(measurements[k - 1].time_ns)};
     }
   }
@@ -141,7 +141,7 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
 }  // namespace
 
 WnojSmoother::WnojSmoother(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status WnojSmoother::smooth(std::span<const Measurement> measurements, std::vector<Smoothed>& out) const {

@@ -22,7 +22,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("position_sigma_m", p.position_sigma_m, 0.0, 10.0);
   require_within("noise_m_s2", p.noise_m_s2, 1e-12, 1e3);
   require_within("acceleration_share", p.acceleration_share, 0.0, 1.0);
-  require_within("gate_deviations", p.gate_deviations, 1e-12, 1e3);
+  require_within("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
 }
 
 /// Averages the terms of the force difference between IMUs: imu_merge.md (I10), (I11). The terms are the force
@@ -39,7 +39,7 @@ void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen
     }
     state.started = true;
   }
-  const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
+  const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
   Eigen::Vector3d mean_force = Eigen::Vector3d::Zero(), mean_position = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     mean_force += forces[k] / params_.count;
@@ -47,10 +47,11 @@ void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto column = static_cast<Eigen::Index>(k);
-    state.difference_m_s2.col(column) += forces[k] - mean_force - by_position * (params_.p_C_m[k] - mean_position);
+    state.difference_m_s2.col(column) +=
+        forces[k] - mean_force - jacobian_position * (params_.p_C_m[k] - mean_position);
     state.force_m_s2.col(column) += forces[k];
   }
-  state.by_position += by_position;
+  state.jacobian_position += jacobian_position;
   state.acceleration_rad_s2 += acceleration.norm();
   ++state.samples;
   state.span_s += dt_s;
@@ -77,13 +78,13 @@ void ForceErrors::update(State& state) const {
         auto own = row.segment<kPerUnit>(kPerUnit * j);
         own[kForceBias + axis] = weight;
         own.segment<3>(kScale + 3 * axis) = weight / samples * state.force_m_s2.col(j);
-        own.segment<3>(kPosition) = weight / samples * state.by_position.row(axis).transpose();
+        own.segment<3>(kPosition) = weight / samples * state.jacobian_position.row(axis).transpose();
       }
       Vector PHt = Vector::Zero();
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
-      if (squared(innovation) > squared(params_.gate_deviations) * s) continue;  // an impact within the samples
+      if (squared(innovation) > squared(params_.gate_sigmas) * s) continue;  // an impact within the samples
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
     }
@@ -91,7 +92,7 @@ void ForceErrors::update(State& state) const {
   state.P = (0.5 * (state.P + state.P.transpose())).eval();
   state.difference_m_s2.setZero();
   state.force_m_s2.setZero();
-  state.by_position.setZero();
+  state.jacobian_position.setZero();
   state.acceleration_rad_s2 = 0.0;
   state.samples = 0;
   state.span_s = 0.0;

@@ -20,7 +20,7 @@ constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for es
 constexpr double kCertainDeviations = 4.0;
 constexpr int kRecovering = 3;     // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnharmed = 0.8;  // fraction of the accelerometer's range up to which errors are estimated
-constexpr int kOffset = ImuMerge::kErrors - 1;
+constexpr int kOffset = ImuMerge::kErrorCount - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
@@ -56,7 +56,7 @@ RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
 }
 
 ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), recovery_(recovery_params(p)) {
-  require_fields(p);
+  require_valid_fields(p);
   for (int k = 0; k < p.count; ++k) {
     const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
     require_within("T_CI", T.translation().norm(), 0.0, 1e3);
@@ -68,7 +68,7 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), reco
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const {
   merged.reset();
   if (samples.size() != static_cast<std::size_t>(params_.count)) {
-    return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
+    return {ErrorCode::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
   }
   const bool received =
       std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check_sample(s).ok(); });
@@ -84,7 +84,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
       unit.P(kOffset, kOffset) = params_.offset_sigma_s * params_.offset_sigma_s;
     }
   }
-  gather(samples, dt_s, state);
+  accumulate_window(samples, dt_s, state);
   const bool full = state.samples == 0 || state.window_s >= params_.window_s - 0.5 * dt_s;
   state.last_time_ns = samples[0].time_ns;
   ++state.samples;
@@ -93,12 +93,12 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
 }
 
 /// Adds finite readings to the averaging windows of their IMUs, with the flags of saturated axes.
-void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& state) const {
+void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     Unit& unit = state.units[k];
     if (!check_sample(samples[k]).ok()) {
-      if (unit.absent++ == 0) unit.absent_since_ns = samples[0].time_ns;
+      if (unit.missing_samples++ == 0) unit.missing_since_ns = samples[0].time_ns;
       continue;
     }
     ImuSample sample = samples[k];
@@ -119,7 +119,7 @@ ImuSample ImuMerge::merge(State& state) const {
   const double h = state.window_s;
   const TimeNs time_ns = state.last_time_ns;
   Readings readings{};
-  Flags finite{}, present{};
+  UnitMask finite{}, present{};
   Vectors raw_rates, raw_forces, rates{}, forces{};
   raw_rates.fill(Eigen::Vector3d::Zero());  // units without readings keep zero
   raw_forces.fill(Eigen::Vector3d::Zero());
@@ -131,11 +131,11 @@ ImuSample ImuMerge::merge(State& state) const {
     raw_rates[k] = R_CI * readings[k].angular_velocity_rad_s;
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
-  watch_repeats(finite, raw_rates, raw_forces, h, time_ns, state);
+  detect_frozen_units(finite, raw_rates, raw_forces, h, time_ns, state);
   const double since_s = 0.5 * (h + state.length_s);  // time between the middles of the last two windows
   for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.units[k];
-    present[k] = finite[k] && !unit.left_out_for_long();
+    present[k] = finite[k] && !unit.is_excluded();
     rates[k] = raw_rates[k];
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
@@ -150,12 +150,12 @@ ImuSample ImuMerge::merge(State& state) const {
   for (std::size_t k = 0; k < count; ++k) state.all_frozen = state.all_frozen && (!finite[k] || state.units[k].frozen);
   if (std::none_of(present.begin(), present.end(), [](bool one) { return one; })) present = finite;
 
-  const Flags used = choose(readings, present, rates, forces, h, state);
+  const UnitMask used = select_units(readings, present, rates, forces, h, state);
   ImuSample merged = mean_of_used(rates, forces, used, h, state);
-  merged.device_clip_flags = flags_of(readings, used);
-  const bool railed = (flags_of(readings, present) & kClipGyro) != 0;
+  merged.device_clip_flags = combined_flags(readings, used);
+  const bool railed = (combined_flags(readings, present) & kClipGyro) != 0;
   const bool silent = !std::all_of(finite.begin(), finite.begin() + params_.count, [](bool one) { return one; });
-  state.free_windows = railed || silent ? 0 : std::min(state.free_windows + 1, kAccelerationWindows);
+  state.unclipped_windows = railed || silent ? 0 : std::min(state.unclipped_windows + 1, kAccelerationWindows);
   merged.time_ns = time_ns;
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
   close_windows(present, raw_rates, raw_forces, all_used, merged, state);
@@ -165,7 +165,7 @@ ImuSample ImuMerge::merge(State& state) const {
   } else {
     state.recovery.running = false;  // no prediction is valid across a gap in the data
   }
-  const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
+  const auto suspect = [](const Unit& unit) { return unit.exclusion_left_s > 0.0; };
   if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
     merged.device_clip_flags =
         static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
@@ -174,15 +174,15 @@ ImuSample ImuMerge::merge(State& state) const {
 }
 
 /// Selects the unsaturated IMUs whose rate and specific force agree with the median: imu_merge.md (I5).
-ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
-                                 const Vectors& forces, double h, State& state) const {
+ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
+                                          const Vectors& forces, double h, State& state) const {
   // Rotation causes different forces at different positions. The tolerance of the median test must cover the difference
   // due to rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
       params_.expert.outliers.rate_rad_s + params_.expert.outliers.rate_share * middle_rate.norm();
-  Flags used{};
+  UnitMask used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
@@ -201,12 +201,12 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].left_out += !used[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].excluded_windows += !used[i];
   return used;
 }
 
 /// Returns the mean of the selected IMUs, transformed to the mean position of all IMUs: imu_merge.md (I1), (I2).
-ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
+ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
   Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), position = Eigen::Vector3d::Zero();
@@ -230,28 +230,28 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
 }
 
 /// Returns the ratio between measured and modelled forces due to the lever arms: imu_merge.md (I8).
-std::optional<double> ImuMerge::arm_share(const State& state) {
-  if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
-  return state.lever_arm_correlation / state.arm_square_m2_s3;
+std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
+  if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
+  return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;
 }
 
 /// Updates the error estimates with the means over the averaging windows, and starts the next windows.
-void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
+void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
   // An IMU with a repeated reading may be frozen, and therefore does not update the errors. If all IMUs repeat their
   // readings, the rate is constant.
   const auto end = state.units.begin() + params_.count;
-  const auto some_repeat = [&](Hold Unit::*hold) {
+  const auto some_repeat = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
                                        [&](const Unit& unit) { return (unit.*hold).repeated_s >= kRepeated_s; });
     return holding > 0 && holding < params_.count;
   };
   const bool repeated = some_repeat(&Unit::rate_repeat) || some_repeat(&Unit::force_repeat);
-  const bool free = state.free_windows == kAccelerationWindows;
+  const bool free = state.unclipped_windows == kAccelerationWindows;
   if (all_used && !repeated && params_.count > 1 && follows && free) calibrate(rates, state);
-  watch_misfits(present, rates, forces, merged.time_ns, state);
+  detect_disagreeing_units(present, rates, forces, merged.time_ns, state);
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
     Unit& unit = state.units[k];
     if (unit.window.readings > 0) {
@@ -278,8 +278,8 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 /// prediction along the connecting line does not need the angular acceleration. The reference is the IMU whose force
 /// agrees with most other IMUs. IMUs that disagree with the reference are excluded. If no two IMUs agree, the function
 /// first estimates a common angular acceleration that started within the window: (I7).
-void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
-                                           const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
+void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
+                                           const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
   const double apart_s = 0.5 * (state.length_s + state.length_before_s);
   const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / apart_s;
@@ -307,15 +307,15 @@ void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags&
   }
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
-    double& suspect_s = state.units[k].suspect_s;
+    double& exclusion_left_s = state.units[k].exclusion_left_s;
     const bool fits = k == agreed.unit || rigid.agree(k, agreed.unit);
-    suspect_s = fits ? std::max(0.0, suspect_s - h) : kSuspect_s;
-    used[k] = used[k] && suspect_s == 0.0;
+    exclusion_left_s = fits ? std::max(0.0, exclusion_left_s - h) : kSuspect_s;
+    used[k] = used[k] && exclusion_left_s == 0.0;
   }
   if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[agreed.unit] = true;
 }
 
-void ImuMerge::recover(const Readings& readings, const Flags& present, double h, State& state,
+void ImuMerge::recover(const Readings& readings, const UnitMask& present, double h, State& state,
                        ImuSample& merged) const {
   Readings corrected = readings;
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
@@ -354,12 +354,13 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   if (peak < kUnharmed * params_.accel_range_m_s2) {
     forces_.calibrate({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
   }
-  const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
+  const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_, by_rotation = by_position * from_mean_m;
+    const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_,
+                          by_rotation = jacobian_position * from_mean_m;
     state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
     state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all IMUs cancels
-    state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
+    state.lever_arm_effect_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;
   const double variance = params_.rate_noise_rad_s * params_.rate_noise_rad_s;
@@ -367,7 +368,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     Unit& unit = state.units[k];
     const Eigen::Vector3d residual = unit.last_rate_rad_s - mean;
     for (int axis = 0; axis < 3; ++axis) {
-      Eigen::Matrix<double, kErrors, 1> row = Eigen::Matrix<double, kErrors, 1>::Zero();
+      Eigen::Matrix<double, kErrorCount, 1> row = Eigen::Matrix<double, kErrorCount, 1>::Zero();
       row[axis] = 1.0;
       row.segment<3>(3 + 3 * axis) = mean;
       row[kOffset] = acceleration[axis];

@@ -17,7 +17,7 @@ constexpr double kComparable = 0.8;  // fraction of the gyro's range up to which
 constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
 /// Returns the rotation across the direction of the repeated force, which is mostly gravity.
-double turned_across(const ImuMerge::Hold& hold) {
+double turned_across(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
 
@@ -25,7 +25,7 @@ double turned_across(const ImuMerge::Hold& hold) {
 
 /// Returns the saturation flags of the selected IMUs, for the axes of the common frame C. An axis of C is flagged if a
 /// clipped axis of an IMU contributes to the axis of C.
-std::uint8_t ImuMerge::flags_of(const Readings& readings, const Flags& which) const {
+std::uint8_t ImuMerge::combined_flags(const Readings& readings, const UnitMask& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
     const unsigned flags = readings[k].device_clip_flags;
@@ -42,7 +42,7 @@ std::uint8_t ImuMerge::flags_of(const Readings& readings, const Flags& which) co
   return static_cast<std::uint8_t>(out);
 }
 
-Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
+Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     std::array<double, kImus> sorted;
@@ -60,12 +60,12 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
 
 /// Detects triads that repeat readings while the median of the IMUs changes. For accelerometers, a rotation of the body
 /// replaces the change of the median, since all IMUs may freeze together.
-void ImuMerge::watch_repeats(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
-                             TimeNs time_ns, State& state) const {
-  Flags counted = present;
-  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].left_out_for_long();
+void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
+                                   TimeNs time_ns, State& state) const {
+  UnitMask counted = present;
+  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].is_excluded();
   const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
-  const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Hold& hold) {
+  const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Repetition& hold) {
     const bool same = state.samples > 0 && reading == hold.reading;
     hold.repeated_s = same ? hold.repeated_s + dt_s : 0.0;
     hold.turned_rad += dt_s * middle_rate;
@@ -89,9 +89,9 @@ void ImuMerge::watch_repeats(const Flags& present, const Vectors& rates, const V
     const bool force_frozen = unit.force_repeat.repeated_s >= params_.expert.frozen.after_s &&
                               ((middle_force - unit.force_repeat.others).norm() > params_.expert.frozen.force_m_s2 ||
                                turned_across(unit.force_repeat) > params_.expert.frozen.turned_rad);
-    unit.thawing_s = rate_same || force_same ? 0.0 : unit.thawing_s + dt_s;
+    unit.changing_readings_s = rate_same || force_same ? 0.0 : unit.changing_readings_s + dt_s;
     if (unit.frozen) {
-      unit.frozen = unit.thawing_s < params_.expert.frozen.thawed_after_s;
+      unit.frozen = unit.changing_readings_s < params_.expert.frozen.thawed_after_s;
     } else if (!railed && (rate_frozen || force_frozen)) {
       unit.frozen = true;
       unit.frozen_since_ns = rate_frozen ? unit.rate_repeat.since_ns : unit.force_repeat.since_ns;
@@ -105,13 +105,13 @@ Status ImuMerge::verdict(const State& state) const {
   for (const Unit& unit : state.units) {
     if (unit.frozen) repeated_s = std::max({repeated_s, unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s});
   }
-  return {Trouble::out_of_range, "time in s for which every IMU repeats one reading while the body rotates", repeated_s,
-          params_.expert.frozen.after_s};
+  return {ErrorCode::out_of_range, "time in s for which every IMU repeats one reading while the body rotates",
+          repeated_s, params_.expert.frozen.after_s};
 }
 
 /// Detects IMUs that disagree with the other IMUs for a long time.
-void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
-                             State& state) const {
+void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces,
+                                        TimeNs time_ns, State& state) const {
   if (std::count(present.begin(), present.end(), true) < kBlaming) return;
   const double h = state.windows > 0 ? state.window_s : params_.window_s, share = -std::expm1(-h / kMisfitTau_s);
   bool railed = false;
@@ -129,17 +129,17 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     Unit& unit = state.units[k];
     const double turned = (params_.T_CI[k].translation() - p_C_m_).norm() * 2.0 * middle_rate.squaredNorm();
     const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
-    unit.misfit_rate_rad_s += share * ((rates[k] - middle_rate).norm() - unit.misfit_rate_rad_s);
-    unit.misfit_force_m_s2 += share * (force - unit.misfit_force_m_s2);
+    unit.rate_disagreement_rad_s += share * ((rates[k] - middle_rate).norm() - unit.rate_disagreement_rad_s);
+    unit.force_disagreement_m_s2 += share * (force - unit.force_disagreement_m_s2);
     const double rate_bound =
         params_.expert.disagreeing.rate_rad_s + params_.expert.disagreeing.rate_share * state.rotation_rate_rad_s;
-    const bool off =
-        unit.misfit_rate_rad_s > rate_bound || unit.misfit_force_m_s2 > params_.expert.disagreeing.force_m_s2;
-    if (off && unit.misfits_s == 0.0) unit.misfits_since_ns = time_ns;
-    unit.misfits_s = off ? unit.misfits_s + h : 0.0;
-    if (unit.misfits_s < params_.expert.disagreeing.after_s) continue;
+    const bool off = unit.rate_disagreement_rad_s > rate_bound ||
+                     unit.force_disagreement_m_s2 > params_.expert.disagreeing.force_m_s2;
+    if (off && unit.disagreement_s == 0.0) unit.disagreement_since_ns = time_ns;
+    unit.disagreement_s = off ? unit.disagreement_s + h : 0.0;
+    if (unit.disagreement_s < params_.expert.disagreeing.after_s) continue;
     unit.disagrees = true;
-    unit.disagrees_since_ns = unit.misfits_since_ns;
+    unit.disagrees_since_ns = unit.disagreement_since_ns;
     break;  // if the faulty IMU is removed, the median changes
   }
 }

@@ -14,7 +14,7 @@ void members(Self& s, Visitor& visit) {
   visit("forces.P", s.P);
   visit("forces.difference_m_s2", s.difference_m_s2);
   visit("forces.force_m_s2", s.force_m_s2);
-  visit("forces.by_position", s.by_position);
+  visit("forces.by_position", s.jacobian_position);
   visit("forces.acceleration_rad_s2", s.acceleration_rad_s2);
   visit("forces.samples", s.samples);
   visit("forces.span_s", s.span_s);
@@ -29,13 +29,13 @@ void members(Self& s, Visitor& visit) {
   visit("recovery.running", s.running);
 }
 
-template <StateOf<UnitSenses> Self, class Visitor>
+template <StateOf<UnitSignCheck> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("senses.gain_m2_s3", s.gain_m2_s3);
-  visit("senses.size_m2_s3", s.size_m2_s3);
+  visit("senses.gain_m2_s3", s.explained_m2_s3);
+  visit("senses.size_m2_s3", s.effect_m2_s3);
 }
 
-template <StateOf<ImuMerge::Hold> Self, class Visitor>
+template <StateOf<ImuMerge::Repetition> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hold.reading", s.reading);
   visit("hold.others", s.others);
@@ -51,21 +51,21 @@ void members(Self& s, Visitor& visit) {
   visit("unit.window", s.window);
   visit("unit.last_rate_rad_s", s.last_rate_rad_s);
   visit("unit.last_force_m_s2", s.last_force_m_s2);
-  visit("unit.suspect_s", s.suspect_s);
-  visit("unit.left_out", s.left_out);
+  visit("unit.suspect_s", s.exclusion_left_s);
+  visit("unit.left_out", s.excluded_windows);
   visit("unit.rate_repeat", s.rate_repeat);
   visit("unit.force_repeat", s.force_repeat);
-  visit("unit.thawing_s", s.thawing_s);
-  visit("unit.misfit_rate_rad_s", s.misfit_rate_rad_s);
-  visit("unit.misfit_force_m_s2", s.misfit_force_m_s2);
-  visit("unit.misfits_s", s.misfits_s);
-  visit("unit.misfits_since_ns", s.misfits_since_ns);
+  visit("unit.thawing_s", s.changing_readings_s);
+  visit("unit.misfit_rate_rad_s", s.rate_disagreement_rad_s);
+  visit("unit.misfit_force_m_s2", s.force_disagreement_m_s2);
+  visit("unit.misfits_s", s.disagreement_s);
+  visit("unit.misfits_since_ns", s.disagreement_since_ns);
   visit("unit.frozen", s.frozen);
   visit("unit.disagrees", s.disagrees);
-  visit("unit.absent", s.absent);
+  visit("unit.absent", s.missing_samples);
   visit("unit.frozen_since_ns", s.frozen_since_ns);
   visit("unit.disagrees_since_ns", s.disagrees_since_ns);
-  visit("unit.absent_since_ns", s.absent_since_ns);
+  visit("unit.absent_since_ns", s.missing_since_ns);
 }
 
 template <StateOf<ImuMerge::State> Self, class Visitor>
@@ -80,11 +80,11 @@ void members(Self& s, Visitor& visit) {
   visit("merge.length_s", s.length_s);
   visit("merge.length_before_s", s.length_before_s);
   visit("merge.lever_arm_correlation", s.lever_arm_correlation);
-  visit("merge.arm_square_m2_s3", s.arm_square_m2_s3);
+  visit("merge.arm_square_m2_s3", s.lever_arm_effect_m2_s3);
   visit("merge.senses", s.senses);
   visit("merge.samples", s.samples);
   visit("merge.windows", s.windows);
-  visit("merge.free_windows", s.free_windows);
+  visit("merge.free_windows", s.unclipped_windows);
   visit("merge.last_time_ns", s.last_time_ns);
   visit("merge.all_frozen", s.all_frozen);
 }

@@ -29,7 +29,7 @@ double together_rad2(const ImuPlausibility::State& state) {
 }  // namespace
 
 ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
-  require_fields(p);
+  require_valid_fields(p);
 }
 
 void ImuPlausibility::step(const ImuSample& sample, State& state) const {
@@ -37,19 +37,19 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
   double dt_s = 0.0;
   if (state.started) {
     const Status follows = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
-    if (follows.trouble == Trouble::time_order) return;
+    if (follows.error_code == ErrorCode::time_order) return;
     if (follows.ok()) {
       hold(sample.angular_velocity_rad_s, dt_s, state.gyro);
       hold(sample.specific_force_m_s2, dt_s, state.accel);
     }
     if (!follows.ok()) {
-      state.open = false;
+      state.window_started = false;
       state.average = {};
       state.in_range = true;
     } else {
       state.in_range = state.in_range && sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s;
       state.average.add(sample, dt_s);
-      if (state.average.full(params_.reading_s, dt_s)) take(state);
+      if (state.average.full(params_.reading_s, dt_s)) process_average(state);
     }
   } else {
     state.gyro.reading = sample.angular_velocity_rad_s;
@@ -59,63 +59,64 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
   state.last_time_ns = sample.time_ns;
 }
 
-void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const {
+void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Repetition& hold) const {
   if (reading != hold.reading) {
     hold.longest_s = std::max(hold.longest_s, hold.repeated_s);
     hold.repeated_s = 0.0;
-    hold.moved_s += dt_s;
+    hold.changing_s += dt_s;
     hold.reading = reading;
     return;
   }
   hold.repeated_s += dt_s;
   const bool froze = hold.repeated_s >= params_.expert.frozen.repeats_s &&
-                     hold.moved_s >= params_.expert.frozen.repeats_s &&
+                     hold.changing_s >= params_.expert.frozen.repeats_s &&
                      hold.repeated_s >= params_.expert.frozen.longest_share * hold.longest_s;
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
 /// Adds an averaged reading to the comparison of gyro and force: imu_merge.md (I18), (I19).
-void ImuPlausibility::take(State& state) const {
+void ImuPlausibility::process_average(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
   const double length_s = state.average.length_s;
   state.average = {};
-  if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2) state.pushed_s += length_s;
-  if (state.open) {
+  if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2)
+    state.non_rest_force_s += length_s;
+  if (state.window_started) {
     // Each averaged force refers to the centre of its average. The first and the last rotation therefore count by half.
     // To first order, the result equals the sum of all rotations except for the first rotation.
-    state.turned = (state.turned * so3::exp(turned)).normalized();
+    state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
-    state.steady = state.steady && std::abs(force.norm() - start) <= params_.steady_share * start;
+    state.force_is_constant = state.force_is_constant && std::abs(force.norm() - start) <= params_.steady_share * start;
     if (state.length_s >= params_.window_s - 0.5 * length_s) {
-      if (state.steady && state.in_range) {
+      if (state.force_is_constant && state.in_range) {
         state.force_sum_m_s2 += force.norm();
         state.windows += 1.0;
-        compare(force, state);
+        compare_rotations(force, state);
       }
-      state.open = false;
+      state.window_started = false;
     }
   }
-  if (!state.open) {
+  if (!state.window_started) {
     state.force_start_m_s2 = force;
-    state.turned.setIdentity();
+    state.gyro_rotation.setIdentity();
     state.length_s = 0.0;
-    state.open = true;
+    state.window_started = true;
     state.in_range = true;
-    state.steady = force.norm() >= kWeightless;
+    state.force_is_constant = force.norm() >= kWeightless;
   }
 }
 
 /// Adds a window with constant force to the sums: imu_merge.md (I19), (I22).
-void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) const {
+void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
   };
   if (!near_gravity(state.force_start_m_s2) || !near_gravity(force_m_s2)) return;
   const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
   const double by_force = (to - from).squaredNorm();
-  const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
+  const double by_gyro = (state.gyro_rotation.conjugate() * from - from).squaredNorm();
   const double least = params_.expert.turning.rotation_least_rad * params_.expert.turning.rotation_least_rad;
   if (std::max(by_force, by_gyro) < least) return;
   state.all_force_rad2 += by_force;
@@ -124,65 +125,66 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   state.force_rotation_rad2 += by_force;
   state.gyro_rotation_rad2 += by_gyro;
   state.rotated_windows += 1.0;
-  const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
+  const Eigen::Matrix3d back = state.gyro_rotation.conjugate().toRotationMatrix(), forth = back.transpose();
   for (std::size_t k = 0; k < state.unexplained_rad2.size(); ++k) {
     const AxisLabels& labels = axis_labels()[k];
-    const Eigen::Vector3d renamed = labels.renamed(from);
-    const Eigen::Vector3d expected = (labels.gyro_flipped ? forth : back) * renamed;
-    state.unexplained_rad2[k] += (labels.renamed(to) - expected).squaredNorm();
+    const Eigen::Vector3d relabelled = labels.relabelled(from);
+    const Eigen::Vector3d expected = (labels.gyro_flipped ? forth : back) * relabelled;
+    state.unexplained_rad2[k] += (labels.relabelled(to) - expected).squaredNorm();
   }
 }
 
-double ImuPlausibility::force_share(const State& state) const {
+double ImuPlausibility::force_ratio(const State& state) const {
   if (state.windows < params_.expert.force.windows_min) return 1.0;
   return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
 }
 
-bool ImuPlausibility::turned(const State& state) const {
+bool ImuPlausibility::rotated_enough(const State& state) const {
   return state.force_rotation_rad2 >= params_.expert.turning.rotation_min_rad2 &&
          state.rotated_windows >= params_.expert.turning.rotated_windows_min;
 }
 
-double ImuPlausibility::unexplained_share(const State& state) const {
-  return turned(state) ? state.unexplained_rad2.front() / std::max(state.force_rotation_rad2, state.gyro_rotation_rad2)
-                       : 0.0;
+double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
+  return rotated_enough(state)
+             ? state.unexplained_rad2.front() / std::max(state.force_rotation_rad2, state.gyro_rotation_rad2)
+             : 0.0;
 }
 
 /// Returns how long a reading has been frozen. A device that never changed counts as frozen only while the body moves.
 /// If the gyro is frozen, a rotating force or a force that excludes rest indicates motion. If the accelerometer is
 /// frozen at zero for longer than a free fall lasts, the gyro indicates motion.
 double ImuPlausibility::frozen_s(const State& state) const {
-  const auto never_moved = [&](const Hold& hold) {
-    return hold.moved_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
+  const auto never_moved = [&](const Repetition& hold) {
+    return hold.changing_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
   };
-  const bool rotates_unseen = unexplained_share(state) >= params_.expert.frozen.unexplained_least;
-  const bool gyro = never_moved(state.gyro) && (rotates_unseen || state.pushed_s >= kPushedLeast_s);
+  const bool rotates_unseen = unexplained_rotation_ratio(state) >= params_.expert.frozen.unexplained_least;
+  const bool gyro = never_moved(state.gyro) && (rotates_unseen || state.non_rest_force_s >= kPushedLeast_s);
   const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
-                     state.gyro.moved_s >= params_.expert.frozen.repeats_s;
+                     state.gyro.changing_s >= params_.expert.frozen.repeats_s;
   return std::max({state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.repeated_s : 0.0,
                    accel ? state.accel.repeated_s : 0.0});
 }
 
 /// Returns the ratio of the force's rotation to the gyro's rotation, by linear regression: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
-  if (!turned(state)) return 1.0;
+  if (!rotated_enough(state)) return 1.0;
   return together_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
 }
 
 double ImuPlausibility::rotation_agreement(const State& state) const {
-  if (!turned(state)) return 1.0;
+  if (!rotated_enough(state)) return 1.0;
   return together_rad2(state) /
          std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
 }
 
-double ImuPlausibility::force_rotated_share(const State& state) const {
+double ImuPlausibility::force_rotation_ratio(const State& state) const {
   return state.all_gyro_rad2 < params_.expert.turning.rotation_min_rad2 ? 1.0
                                                                         : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
 /// Returns the axis labels that explain the readings better than the current labels: imu_merge.md (I22).
 std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state) const {
-  if (unexplained_share(state) < params_.expert.naming.unexplained_least) return std::nullopt;
+  if (unexplained_rotation_ratio(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);
   if (*least >= params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front()) return std::nullopt;
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
@@ -190,7 +192,7 @@ std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state
 
 /// Returns whether another gyro scale explains the readings better than pushes: imu_merge.md (I21). Pushes also rotate
 /// the force, but leave an equal residual for any gyro scale.
-bool ImuPlausibility::explains_more(const State& state) const {
+bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
   // Pushes often reduce the slope. Pushes rarely invert the slope or increase the slope by half.
@@ -200,33 +202,33 @@ bool ImuPlausibility::explains_more(const State& state) const {
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
-  const double force = force_share(state);
+  const double force = force_ratio(state);
   if (force < params_.expert.force.share_min) {
-    return {Trouble::out_of_range, "mean specific force in steady windows (share of gravity)", force,
+    return {ErrorCode::out_of_range, "mean specific force in steady windows (share of gravity)", force,
             params_.expert.force.share_min};
   }
   if (force > params_.expert.force.share_max) {
-    return {Trouble::out_of_range, "mean specific force in steady windows (share of gravity)", force,
+    return {ErrorCode::out_of_range, "mean specific force in steady windows (share of gravity)", force,
             params_.expert.force.share_max};
   }
   if (const double frozen = frozen_s(state); frozen > 0.0) {
-    return {Trouble::out_of_range, "time in s for which gyro or accelerometer repeats one reading", frozen,
+    return {ErrorCode::out_of_range, "time in s for which gyro or accelerometer repeats one reading", frozen,
             params_.expert.frozen.repeats_s};
   }
   if (better_axis_labels(state)) {
     const double least = *least_unexplained(state);
-    return {Trouble::out_of_range,
+    return {ErrorCode::out_of_range,
             "rotation left unexplained by other gyro axes or signs (share of that for the stated axes)",
             least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_share_max};
   }
-  if (const double still = force_rotated_share(state); still < params_.expert.turning.still_share) {
-    return {Trouble::out_of_range, "rotation of a steady force (share of the rotation measured by the gyro)", still,
+  if (const double still = force_rotation_ratio(state); still < params_.expert.turning.still_share) {
+    return {ErrorCode::out_of_range, "rotation of a steady force (share of the rotation measured by the gyro)", still,
             params_.expert.turning.still_share};
   }
   const double slope = rotation_slope(state);
   const double least = params_.expert.turning.slope_min, most = params_.expert.turning.slope_max;
-  if ((slope > most || slope < least) && explains_more(state))
-    return {Trouble::out_of_range, "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
+  if ((slope > most || slope < least) && fits_better(state))
+    return {ErrorCode::out_of_range, "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
             slope, slope < least ? least : most};
   return {};
 }

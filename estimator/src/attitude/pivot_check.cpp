@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pivot_sums.hpp"
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/attitude/detail/axis_labels.hpp"
 #include "tumble/common/parameters.hpp"
 
@@ -31,7 +31,7 @@ Readings all_readings() {
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
     const AxisLabels& labels = axis_labels()[k];
     Eigen::Matrix3d renaming;
-    for (int axis = 0; axis < 3; ++axis) renaming.col(axis) = labels.renamed(Eigen::Vector3d::Unit(axis));
+    for (int axis = 0; axis < 3; ++axis) renaming.col(axis) = labels.relabelled(Eigen::Vector3d::Unit(axis));
     out[k] = (labels.gyro_flipped ? -1.0 : 1.0) * renaming.determinant() * renaming.transpose();
   }
   out[kHalf] = 0.5 * Eigen::Matrix3d::Identity();
@@ -139,7 +139,7 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& foun
 }  // namespace
 
 PivotCheck::PivotCheck(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
@@ -149,7 +149,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
-  const double rail_m_s2 = (1.0 - kBesideRail) * params_.accel_range_m_s2;
+  const double rail_m_s2 = (1.0 - kNearRailRatio) * params_.accel_range_m_s2;
   for (std::size_t k = 1; k < std::min(samples.size(), rates.size()); ++k) {
     const Eigen::Vector3d& force = samples[k].specific_force_m_s2;
     const double dt_s = seconds(samples[k].time_ns - samples[k - 1].time_ns);
@@ -181,31 +181,32 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
     if (found.reading != 0 && evidence <= found.evidence) continue;
     found.reading = static_cast<int>(k);
     found.evidence = evidence;
-    found.counted = series[0].counted[k] + series[1].counted[k];
-    found.better = series[0].better[k] + series[1].better[k];
-    found.worse = series[0].worse[k] + series[1].worse[k];
+    found.compared_segments = series[0].counted[k] + series[1].counted[k];
+    found.better_segments = series[0].better[k] + series[1].better[k];
+    found.worse_segments = series[0].worse[k] + series[1].worse[k];
   }
   std::vector<ScaleVote> votes = std::move(series[0].votes);
   votes.insert(votes.end(), series[1].votes.begin(), series[1].votes.end());
   conclude_scale(votes, found);
-  found.explained = series[0].explained + series[1].explained;
+  found.explained_segments = series[0].explained + series[1].explained;
   return found;
 }
 
 /// Returns an error if the evidence against the unchanged rates exceeds its limits: imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
-  const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
-  const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);
+  const double least =
+      std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.compared_segments));
+  const auto better = static_cast<double>(found.better_segments), worse = static_cast<double>(found.worse_segments);
   if (found.evidence > least && better >= params_.segments_least && better >= params_.better_over_worse * worse) {
-    return {Trouble::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
+    return {ErrorCode::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
             found.evidence, least};
   }
   const double off = std::abs(found.scale - 1.0);
   const double bound = std::max(params_.scale_off, params_.scale_deviations * found.scale_sigma);
   const double segments_least =
-      std::max(params_.scale_segments_least, params_.scale_share_least * static_cast<double>(found.explained));
+      std::max(params_.scale_segments_least, params_.scale_share_least * static_cast<double>(found.explained_segments));
   if (static_cast<double>(found.scale_segments) >= segments_least && off > bound) {
-    return {Trouble::out_of_range, "scale of the gyro estimated from rotation about a pivot", found.scale,
+    return {ErrorCode::out_of_range, "scale of the gyro estimated from rotation about a pivot", found.scale,
             found.scale < 1.0 ? 1.0 - bound : 1.0 + bound};
   }
   return {};

@@ -79,26 +79,26 @@ RateRecovery::RateRecovery(const Params& p) : params_(p) {
   require_within("recovered_sigma_rad_s", p.recovered_sigma_rad_s, kSmallest, 1e3);
 }
 
-bool RateRecovery::rate_railed(const ImuSample& unit, int axis) const {
+bool RateRecovery::is_rate_saturated(const ImuSample& unit, int axis) const {
   return std::abs(unit.angular_velocity_rad_s[axis]) >= params_.gyro_range_rad_s ||
          (unit.device_clip_flags & (kClipGyroX << axis)) != 0;
 }
 
-bool RateRecovery::force_railed(const ImuSample& unit, int axis) const {
+bool RateRecovery::is_force_saturated(const ImuSample& unit, int axis) const {
   return std::abs(unit.specific_force_m_s2[axis]) >= params_.accel_range_m_s2 ||
          (unit.device_clip_flags & (kClipAccelX << axis)) != 0;
 }
 
-RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
-  Met out;
+RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<const ImuSample> units) const {
+  SaturatedSensors out;
   std::size_t clipped = 0, received = 0;
   for (const ImuSample& unit : units) {
     if (!is_finite(unit)) continue;
     ++received;
     bool force = false;
     for (int axis = 0; axis < 3; ++axis) {
-      out.rate |= rate_railed(unit, axis);
-      force |= force_railed(unit, axis);
+      out.rate |= is_rate_saturated(unit, axis);
+      force |= is_force_saturated(unit, axis);
     }
     clipped += force;
   }
@@ -109,11 +109,11 @@ RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
-  const Met met = met_by(units);
+  const SaturatedSensors met = find_saturated_sensors(units);
   // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated IMUs therefore has a bias in
   // one direction of the world frame W.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
-  const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kFast * params_.gyro_range_rad_s;
+  const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kActiveRangeRatio * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
     state.running = false;
     return;
@@ -174,7 +174,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
-    const auto railed = [&](int axis) { return rate_railed(units[k], axis); };
+    const auto railed = [&](int axis) { return is_rate_saturated(units[k], axis); };
     const Seen seen = seen_by(params_.gyro_elements[k], R_IC, units[k].angular_velocity_rad_s, railed);
     const double hidden = seen.hidden(seen.rows_C * state.x.segment<3>(kRate));
     for (int axis = 0; axis < 3; ++axis) {
@@ -197,7 +197,7 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s,
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
-    const auto railed = [&](int axis) { return force_railed(units[k], axis); };
+    const auto railed = [&](int axis) { return is_force_saturated(units[k], axis); };
     const Seen seen = seen_by(params_.accel_elements[k], R_IC, units[k].specific_force_m_s2, railed);
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
@@ -205,14 +205,14 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s,
       if (seen.railed[static_cast<std::size_t>(axis)]) continue;
       const Eigen::Vector3d rate = state.x.segment<3>(kRate), acceleration = state.x.segment<3>(kAcceleration);
       const Eigen::Vector3d position = params_.T_CI[k].translation() + state.x.segment<3>(arm);
-      const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
+      const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
       const auto axis_C = seen.rows_C.row(axis);
       Row row = Row::Zero();
       row.segment<3>(kRate) = -axis_C * (so3::hat(rate.cross(position)) + so3::hat(rate) * so3::hat(position));
       row.segment<3>(kAcceleration) = -axis_C * so3::hat(position);
       row.segment<3>(kForce) = axis_C;
-      row.segment<3>(arm) = axis_C * by_position;
-      const Eigen::Vector3d force = state.x.segment<3>(kForce) + by_position * position;
+      row.segment<3>(arm) = axis_C * jacobian_position;
+      const Eigen::Vector3d force = state.x.segment<3>(kForce) + jacobian_position * position;
       const double hidden = seen.slope_sigma[axis] > 0.0 ? seen.hidden(seen.rows_C * force) : 0.0;
       const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
       update(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.slope_sigma[axis] * hidden),

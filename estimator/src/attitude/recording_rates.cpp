@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
-#include "tumble/attitude/carried_elements.hpp"
+#include "tumble/attitude/clipped_readings.hpp"
 
 namespace tumble {
 
@@ -53,11 +53,11 @@ RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const
   out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
   out.sources.assign(samples.size(), RateSource::measured);
   ClippingFinder::Params clipping;
-  clipping.upright_rails = params.rate.rails;
+  clipping.axis_aligned_rails = params.rate.rails;
   const ClippingFinder::Found found = ClippingFinder(clipping).find(samples);
   out.rails = found.rails;
   std::vector<RateState> rates;
-  out.estimated = any_clips(carried_elements(samples, found).signs) &&
+  out.estimated = any_clips(to_clipped_readings(samples, found).signs) &&
                   estimate_rates(samples, auxiliary_imus, params, rates, out.report).ok();
   if (!out.estimated) rates.clear();
   const Eigen::Vector3d bias = out.estimated ? bias_rad_s(samples, rates, replaced) : Eigen::Vector3d::Zero();

@@ -5,14 +5,14 @@
 #include <cstddef>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
-#include "tumble/attitude/carried_elements.hpp"
+#include "tumble/attitude/clipped_readings.hpp"
 
 namespace tumble {
 
 namespace {
 
 /// Returns whether a reading is clipped or suspect (possibly saturated). A partly saturated reading counts as measured.
-bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
+bool unusable_count(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
@@ -28,8 +28,8 @@ std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
 }  // namespace
 
 RegimeSmoother::RegimeSmoother(const Params& params)
-    : params_(params), rate_(params.rate), evidence_(params.evidence), carried_(params.carried) {
-  require_fields(params);
+    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(params.hand_held) {
+  require_valid_fields(params);
 }
 
 Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
@@ -46,32 +46,33 @@ Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
 void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
-  std::vector<RegimeProbabilities> shares;
-  if (!evidence_.find(forces_in_time(samples), rates, rig.constants.lever_arm_m, lever_covariance, shares).ok()) return;
+  std::vector<RegimeProbabilities> probabilities;
+  if (!evidence_.find(forces_in_time(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities).ok())
+    return;
   report.judged = true;
-  const double each = 1.0 / static_cast<double>(shares.size());
-  for (const RegimeProbabilities& share : shares) {
-    report.shares.flight += each * share.flight;
-    report.shares.contact += each * share.contact;
-    report.shares.carried += each * share.carried;
+  const double each = 1.0 / static_cast<double>(probabilities.size());
+  for (const RegimeProbabilities& share : probabilities) {
+    report.probabilities.flight += each * share.flight;
+    report.probabilities.contact += each * share.contact;
+    report.probabilities.hand_held += each * share.hand_held;
   }
-  const std::vector<double> by_segment = carried_segments(shares, report.rate, rates);
-  report.carried_clipped_max = *std::max_element(by_segment.begin(), by_segment.end());
-  if (report.carried_clipped_max < params_.carried_min) return;
+  const std::vector<double> by_segment = hand_held_by_segment(probabilities, report.rate, rates);
+  report.hand_held_probability_max = *std::max_element(by_segment.begin(), by_segment.end());
+  if (report.hand_held_probability_max < params_.carried_min) return;
 
   ClippingFinder::Params finding;
-  finding.upright_rails = params_.rate.rails;
-  ClippedReadings known = carried_elements(samples, ClippingFinder(finding).find(samples));
+  finding.axis_aligned_rails = params_.rate.rails;
+  ClippedReadings known = to_clipped_readings(samples, ClippingFinder(finding).find(samples));
   known.mark_suspect(samples, report.rate.suspect_axes);
   std::vector<RateState> other;
   std::vector<AttitudeState> attitudes;
-  if (!carried_.estimate(samples, known.clipped(), other, attitudes, report.carried).ok()) return;
+  if (!hand_held_.estimate(samples, known.clipped(), other, attitudes, report.hand_held).ok()) return;
   known.mark_partly_saturated(other);
-  report.carried_asked = true;
+  report.hand_held_smoother_ran = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (by_segment[k] <= params_.carried_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
-    rates[k] = either(rates[k], other[k], by_segment[k]);
+    rates[k] = mix_rates(rates[k], other[k], by_segment[k]);
     // the sample remains unclipped, because no clipping was detected for any motion type
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
@@ -80,18 +81,19 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 /// Returns the probability of hand-held motion for samples in a segment of clipped or suspect readings: carried.md
 /// (C40). The probability is the smallest value within `near_s` of the sample and within its segment. Outside such
 /// segments, the probability is 0.
-std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeProbabilities> shares,
-                                                     const RateReport& report, std::span<const RateState> rates) const {
+std::vector<double> RegimeSmoother::hand_held_by_segment(std::span<const RegimeProbabilities> probabilities,
+                                                         const RateReport& report,
+                                                         std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.near_s);
   for (std::size_t k = 0; k < rates.size();) {
-    if (!unread(report, rates[k], k)) {
+    if (!unusable_count(report, rates[k], k)) {
       ++k;
       continue;
     }
     std::size_t first = k, last = k;
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
-      if (unread(report, rates[k], k)) last = k;
+      if (unusable_count(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
     std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within near_s of sample i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
@@ -99,7 +101,7 @@ std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeProba
       while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;
       while (b < last && rates[b + 1].time_ns <= rates[i].time_ns + near_ns) ++b;
       double least = 1.0;
-      for (std::size_t j = a; j <= std::max(a, b); ++j) least = std::min(least, shares[j].carried);
+      for (std::size_t j = a; j <= std::max(a, b); ++j) least = std::min(least, probabilities[j].hand_held);
       out[i] = std::max(out[i], least);
     }
   }

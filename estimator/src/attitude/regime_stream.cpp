@@ -11,35 +11,35 @@ namespace {
 constexpr double kTurn_s = 0.01;     // time base of the angular acceleration, equal to model_error_s of the rate model
 constexpr double kResetShare = 0.5;  // fraction of the steps within a lag that reset the calibration
 
-CarriedStream::Params joined(const RegimeStream::Params& params) {
-  CarriedStream::Params out = params.carried;
+HandHeldStream::Params joined(const RegimeStream::Params& params) {
+  HandHeldStream::Params out = params.hand_held;
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // After a gap longer than gap_max_s, CarriedStream restarts. Without a restart, samples would leave the window before
-  // CarriedStream reports the samples.
+  // After a gap longer than gap_max_s, HandHeldStream restarts. Without a restart, samples would leave the window
+  // before HandHeldStream reports the samples.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 
 // Returns whether a reading is clipped, partly saturated, or suspect (possibly saturated).
 bool clips(const RateStream::Knot& knot) {
-  return (knot.observation.unseen() | knot.observation.read_in_part()) != 0;
+  return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
 // Returns the saturation signs of a sample. A run of suspect readings is a lower bound, like a clipped reading.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
-  clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.read_in_part());
+  clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rates of RateStream and CarriedStream. A suspect reading counts as `bounded_only`, not as clipped, in
+// Combines the rates of RateStream and HandHeldStream. A suspect reading counts as `bounded_only`, not as clipped, in
 // all motion types.
-RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
-  RateState out = either(rate, carried, share);
+RateState joined_rate(const RateState& rate, const RateState& hand_held, double share) {
+  RateState out = mix_rates(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  // CarriedStream does not detect which readings may be partly saturated
+  // HandHeldStream does not detect which readings may be partly saturated
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
@@ -63,14 +63,14 @@ Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, s
 }  // namespace
 
 RegimeStream::RegimeStream(const Params& params)
-    : params_(params), rate_(params.rate), evidence_(params.evidence), carried_(joined(params)) {
-  require_fields(params);
+    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(joined(params)) {
+  require_valid_fields(params);
 }
 
 RegimeStream::State RegimeStream::start() const {
   State state;
   state.rate = rate_.start();
-  state.carried = carried_.start();
+  state.hand_held = hand_held_.start();
   state.signs.reserve(state.rate.window.capacity());
   state.near.reserve(static_cast<std::size_t>(std::ceil(params_.near_s / params_.rate.period_s)) + 2);
   return state;
@@ -78,7 +78,7 @@ RegimeStream::State RegimeStream::start() const {
 
 Status RegimeStream::check_state(const State& state) const {
   if (const Status status = rate_.check_state(state.rate); !status.ok()) return status;
-  return carried_.check_state(state.carried);
+  return hand_held_.check_state(state.hand_held);
 }
 
 Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
@@ -86,33 +86,35 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   if (const Status status = rate_.push(sample, auxiliary_imus, state.rate, out); !status.ok()) return status;
   double share = 0.0;
   if (out) {
-    judge(*out, state);
-    share = share_of(*out, state);
+    update_probabilities(*out, state);
+    share = hand_held_weight(*out, state);
   }
-  std::optional<RateState> carried;
-  // CarriedStream accepts all input of RateStream, except for sensing directions that do not span three dimensions
-  if (state.shares.carried >= params_.carried_min) {
-    if (!state.carrying) {
-      carried_.restart(state.carried);
-      state.carrying = true;
+  std::optional<RateState> hand_held;
+  // HandHeldStream accepts all input of RateStream, except for sensing directions that do not span three dimensions
+  if (state.probabilities.hand_held >= params_.carried_min) {
+    if (!state.hand_held_running) {
+      hand_held_.restart(state.hand_held);
+      state.hand_held_running = true;
       ++state.starts;
     }
     const bool wanted = share > params_.carried_min;
     ImuSample without_offset = sample;
     without_offset.angular_velocity_rad_s -= params_.rate.model.nominal.gyro_bias_rad_s;
-    state.carrying =
-        carried_.push(without_offset, known_of(state), state.carried, carried, wanted, state.rate.repeat_state).ok();
+    state.hand_held_running =
+        hand_held_
+            .push(without_offset, update_clip_signs(state), state.hand_held, hand_held, wanted, state.rate.repeat_state)
+            .ok();
   } else {
-    state.carrying = false;
+    state.hand_held_running = false;
   }
-  if (share > params_.carried_min && carried && carried->time_ns == out->time_ns) {
-    *out = joined_rate(*out, *carried, share);
-    ++state.joined;
+  if (share > params_.carried_min && hand_held && hand_held->time_ns == out->time_ns) {
+    *out = joined_rate(*out, *hand_held, share);
+    ++state.combined_samples;
   }
   return {};
 }
 
-ClippedElements RegimeStream::known_of(State& state) const {
+ClippedElements RegimeStream::update_clip_signs(State& state) const {
   state.signs.clear();
   for (const RateStream::Knot& knot : state.rate.window) state.signs.push_back(signs_of(knot.observation));
   ClippedElements out;
@@ -129,11 +131,11 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
   // A rate fitted to the force with an invalid calibration agrees with the force in any kind of motion.
-  if (unstable && knot.observation.unseen() != 0) return before;
+  if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   rate.covariance_rad2_s2 = knot.covariance_rad2_s2;
-  rate.clipped_axes = static_cast<std::uint8_t>(knot.observation.unseen());
+  rate.clipped_axes = static_cast<std::uint8_t>(knot.observation.unmeasured_axes());
   return evidence_.next(before, dt_s, knot.observation.sample, rate, angular_acceleration(window, k),
                         rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
@@ -154,24 +156,24 @@ bool RegimeStream::calibration_is_unstable(const State& state) const {
 
 // Updates the probabilities of the motion types with the reported sample and its rate: forward pass of carried.md
 // (C38).
-void RegimeStream::judge(const RateState& rate, State& state) const {
+void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
-  state.shares = next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate),
-                      calibration_is_unstable(state));
+  state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
+                             rate_.calibration(state.rate), calibration_is_unstable(state));
   const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
   state.rig_resets = state.rate.rig_resets;
   state.resets = std::exp(-dt_s / params_.rate.lag_s) * state.resets + dropped;
   state.reported_ns = rate.time_ns;
   ++state.reported;
-  state.sum.flight += state.shares.flight;
-  state.sum.contact += state.shares.contact;
-  state.sum.carried += state.shares.carried;
+  state.sum.flight += state.probabilities.flight;
+  state.sum.contact += state.probabilities.contact;
+  state.sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of CarriedStream for the reported sample: s in carried.md (C40). The weight is the smallest
+// Returns the weight of HandHeldStream for the reported sample: s in carried.md (C40). The weight is the smallest
 // probability of hand-held motion among nearby samples in the segment of clipped samples. Outside segments of clipped
 // samples, the weight is 0.
-double RegimeStream::share_of(const RateState& rate, State& state) const {
+double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
   const std::size_t here = index_of(rate, state);
@@ -182,21 +184,22 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   const bool before = next_clipped != window.end() && next_ns - rate.time_ns <= near_ns;
   const bool within = after && before && next_ns - *state.clipped_ns <= near_ns;
   std::erase_if(state.near, [&](const ReportedProbability& reported) {
-    return reported.time_ns < rate.time_ns - near_ns || (within && reported.carried >= state.shares.carried);
+    return reported.time_ns < rate.time_ns - near_ns || (within && reported.hand_held >= state.probabilities.hand_held);
   });
-  if (within) state.near.push_back({rate.time_ns, state.shares.carried});
+  if (within) state.near.push_back({rate.time_ns, state.probabilities.hand_held});
   if (!after && !before) return 0.0;
-  double out = state.near.empty() ? 1.0 : state.near.front().carried;
+  double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
   if (out < params_.carried_min || !before) return out;
   // continues with the provisional rates of the samples that are not reported yet
-  RegimeProbabilities shares = state.shares;
+  RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);
   for (std::size_t k = here + 1; k < window.size(); ++k) {
     const TimeNs now_ns = window[k].observation.sample.time_ns;
     if (now_ns - rate.time_ns > near_ns) break;
-    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, unstable);
-    if (clips(window[k])) out = std::min(out, shares.carried);
+    probabilities =
+        next(probabilities, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, unstable);
+    if (clips(window[k])) out = std::min(out, probabilities.hand_held);
   }
   return out;
 }
@@ -204,15 +207,15 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
 void RegimeStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t first = out.size();
   rate_.flush(state.rate, out);
-  if (!state.carrying || !(state.shares.carried > params_.carried_min)) return;
-  std::vector<RateState> carried;
-  carried_.flush(state.carried, carried);
-  const std::size_t count = std::min(out.size() - first, carried.size());
+  if (!state.hand_held_running || !(state.probabilities.hand_held > params_.carried_min)) return;
+  std::vector<RateState> hand_held;
+  hand_held_.flush(state.hand_held, hand_held);
+  const std::size_t count = std::min(out.size() - first, hand_held.size());
   State last = state;
   for (std::size_t k = 0; k < count; ++k) {
     RateState& rate = out[out.size() - count + k];
-    const RateState& other = carried[carried.size() - count + k];
-    const double share = share_of(rate, last);
+    const RateState& other = hand_held[hand_held.size() - count + k];
+    const double share = hand_held_weight(rate, last);
     if (share > params_.carried_min && rate.time_ns == other.time_ns) rate = joined_rate(rate, other, share);
   }
 }

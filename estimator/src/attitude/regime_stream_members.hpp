@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../angular_velocity/rate_stream_members.hpp"
-#include "carried_stream_members.hpp"
+#include "hand_held_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
 /// regime_stream_members.hpp lists the members of RegimeStream's state, and members of RegimeStream::Params that are
@@ -13,28 +13,28 @@ template <StateOf<RegimeProbabilities> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("shares.flight", s.flight);
   visit("shares.contact", s.contact);
-  visit("shares.carried", s.carried);
+  visit("shares.carried", s.hand_held);
 }
 
 template <StateOf<RegimeStream::ReportedProbability> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("near.time_ns", s.time_ns);
-  visit("near.carried", s.carried);
+  visit("near.carried", s.hand_held);
 }
 
 template <StateOf<RegimeStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("regime.rate", s.rate);
-  visit("regime.carried", s.carried);
+  visit("regime.carried", s.hand_held);
   visit.scratch(s.signs);
-  visit("regime.shares", s.shares);
+  visit("regime.shares", s.probabilities);
   visit("regime.sum", s.sum);
   visit("regime.reported", s.reported);
-  visit("regime.joined", s.joined);
+  visit("regime.joined", s.combined_samples);
   visit("regime.starts", s.starts);
   visit("regime.rig_resets", s.rig_resets);
   visit("regime.resets", s.resets);
-  visit("regime.carrying", s.carrying);
+  visit("regime.carrying", s.hand_held_running);
   visit("regime.near", s.near);
   visit("regime.reported_ns", s.reported_ns);
   visit("regime.clipped_ns", s.clipped_ns);

@@ -72,7 +72,7 @@ Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
 }  // namespace
 
 RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 // Returns the likelihood of a sample for each motion type: carried.md (C31), (C32), (C33), (C34), (C36).
@@ -102,7 +102,7 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
 RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                                          const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
                                          const Matrix3d& lever_arm_covariance_m2) const {
-  const Vector3d predicted = changes(params_, dt_s) * Vector3d(before.flight, before.contact, before.carried);
+  const Vector3d predicted = changes(params_, dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
   Vector3d after =
       predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
   after /= after.sum();
@@ -115,9 +115,9 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
                             std::vector<RegimeProbabilities>& out) const {
   out.clear();
   const std::size_t count = samples.size();
-  if (count == 0) return {Trouble::empty, "samples", 0.0, 1.0};
+  if (count == 0) return {ErrorCode::empty, "samples", 0.0, 1.0};
   if (rates.size() != count)
-    return {Trouble::out_of_range, "rates", static_cast<double>(rates.size()), static_cast<double>(count)};
+    return {ErrorCode::out_of_range, "rates", static_cast<double>(rates.size()), static_cast<double>(count)};
 
   const double arm_variance = lever_arm_covariance_m2.trace();
   std::vector<Vector3d> likelihood(count), forward(count);
@@ -144,7 +144,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
 }
 
 // Combines two rate estimates by their probability: carried.md (C39).
-RateState either(const RateState& first, const RateState& second, double share) {
+RateState mix_rates(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
   // The difference `apart` of the two estimates adds to the covariance of the more probable estimate.

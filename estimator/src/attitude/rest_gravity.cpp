@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -38,40 +38,40 @@ RestGravity::RestGravity(const Params& params)
     : params_(params),
       detector_(params.rests),
       weightless_(without_force(params.rests)),
-      heavy_(of_larger_numbers(params.rests)) {
-  require_fields(params);
+      above_gravity_(of_larger_numbers(params.rests)) {
+  require_valid_fields(params);
 }
 
-RestGravity::Step RestGravity::follow(const ImuSample& sample, Size& state) const {
+RestGravity::Step RestGravity::follow(const ImuSample& sample, MagnitudeState& state) const {
   if (!check_sample(sample).ok()) return {};
   double dt_s = 0.0;
   const Status follows =
       state.started ? elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s) : Status{};
-  if (follows.trouble == Trouble::time_order) return {};
+  if (follows.error_code == ErrorCode::time_order) return {};
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
-    state.rest = state.weightless = state.heavy = {};
+    state.rest = state.weightless = state.above_gravity = {};
     state.rests = false;
   }
   if (weightless_.observe(sample, state.weightless)) state.weightless_s += dt_s;
-  const bool heavy = heavy_.observe(sample, state.heavy);
+  const bool above_gravity = above_gravity_.observe(sample, state.above_gravity);
   state.rests = detector_.observe(sample, state.rest);
-  if (state.rests || heavy) {
+  if (state.rests || above_gravity) {
     state.rest_s += dt_s;
     state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
   }
-  return {follows.ok() ? Follows::directly : Follows::after_gap, dt_s};
+  return {follows.ok() ? Continuity::directly : Continuity::after_gap, dt_s};
 }
 
 void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
   const bool before = state.rests;
   const auto [follows, dt_s] = follow(sample, state);
-  if (follows == Follows::not_at_all) return;
-  if (follows == Follows::after_gap) state.from_m_s2.setZero();
-  const bool rested = before && follows == Follows::directly;
+  if (follows == Continuity::unrelated) return;
+  if (follows == Continuity::after_gap) state.last_rest_force_m_s2.setZero();
+  const bool rested = before && follows == Continuity::directly;
   if (!state.rests) {
-    turn(sample, rate, dt_s, state);
+    integrate_rotation(sample, rate, dt_s, state);
     if (rate.source != RateSource::measured) {
       state.segment_s += dt_s;
       state.segment_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
@@ -81,25 +81,25 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
     }
     return;
   }
-  if (!rested) arrive(state);
-  state.from_m_s2 = state.rest.mean_force_m_s2();
-  state.turned.setIdentity();
+  if (!rested) finish_span(state);
+  state.last_rest_force_m_s2 = state.rest.mean_force_m_s2();
+  state.rotation.setIdentity();
   state.velocity_sum_m_s.setZero();
-  state.span_s = state.hidden_m_s = 0.0;
+  state.span_s = state.saturation_deficit_m_s = 0.0;
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
 /// Integrates the rotation. A reading is a mean over its window and refers to the window's middle: imu_merge.md (I25).
-void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
+void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
-  state.velocity_sum_m_s += dt_s * ((state.turned * half) * force);
-  state.turned = (state.turned * half * half).normalized();
+  state.velocity_sum_m_s += dt_s * ((state.rotation * half) * force);
+  state.rotation = (state.rotation * half * half).normalized();
   state.span_angle_rad += dt_s * rate.w_WI_I_rad_s.norm();
   state.span_s += dt_s;
   const double peak = force.cwiseAbs().maxCoeff();
-  const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kBesideRail) * params_.accel_range_m_s2;
-  if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
+  const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kNearRailRatio) * params_.accel_range_m_s2;
+  if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.saturation_deficit_m_s += dt_s * peak;
 }
 
 /// Ends a clipped segment. Saturation deficits within a segment are correlated: imu_merge.md (I23).
@@ -110,33 +110,35 @@ void RestGravity::end_segment(State& state) const {
 
 /// Starts a rest. Compares the change of gravity's direction since the previous rest with the gyro's rotation:
 /// imu_merge.md (I23).
-void RestGravity::arrive(State& state) const {
+void RestGravity::finish_span(State& state) const {
   end_segment(state);
-  if (state.from_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
+  if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
       state.span_s > params_.span_most_s)
     return;
   const Eigen::Vector3d here_m_s2 = state.rest.mean_force_m_s2();
-  const double miss_rad = (state.turned.conjugate() * state.from_m_s2.normalized() - here_m_s2.normalized()).norm();
+  const double angle_error_rad =
+      (state.rotation.conjugate() * state.last_rest_force_m_s2.normalized() - here_m_s2.normalized()).norm();
   const double sigma_rad = std::sqrt(state.variance_rad2);
   ++state.spans;
-  close_velocity(here_m_s2, sigma_rad, state);
-  if (miss_rad / allowed_rad(sigma_rad) < state.miss_rad / allowed_rad(state.miss_sigma_rad)) return;
-  state.miss_rad = miss_rad;
-  state.miss_sigma_rad = sigma_rad;
+  check_velocity(here_m_s2, sigma_rad, state);
+  if (angle_error_rad / allowed_rad(sigma_rad) < state.angle_error_rad / allowed_rad(state.angle_error_sigma_rad))
+    return;
+  state.angle_error_rad = angle_error_rad;
+  state.angle_error_sigma_rad = sigma_rad;
 }
 
 /// Compares the mean specific force between two rests with the specific force during the rests: imu_merge.md (I25),
 /// (I26).
-void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
+void RestGravity::check_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
-  const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
-  const double from_end = (state.turned.conjugate() * mean_m_s2 - here_m_s2).norm() / here_m_s2.norm();
+  const double from_start = (mean_m_s2 - state.last_rest_force_m_s2).norm() / state.last_rest_force_m_s2.norm();
+  const double from_end = (state.rotation.conjugate() * mean_m_s2 - here_m_s2).norm() / here_m_s2.norm();
   const double share = from_start + from_end;
-  const double hidden = 2.0 * state.hidden_m_s / (state.span_s * state.from_m_s2.norm());
+  const double hidden = 2.0 * state.saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
   const double allowed = std::hypot(allowed_rad(sigma_rad), hidden);
-  if (share * state.velocity_allowed_share < state.velocity_share * allowed) return;
-  state.velocity_share = share;
-  state.velocity_allowed_share = allowed;
+  if (share * state.velocity_error_ratio_max < state.velocity_error_ratio * allowed) return;
+  state.velocity_error_ratio = share;
+  state.velocity_error_ratio_max = allowed;
 }
 
 /// Returns the maximum allowed error of the rotation between two rests: imu_merge.md (I24).
@@ -144,23 +146,23 @@ double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
 }
 
-double RestGravity::size_share(const Size& state) const {
+double RestGravity::magnitude_error_ratio(const MagnitudeState& state) const {
   if (state.rest_s >= kRested_s) return state.force_sum_m / state.rest_s / params_.gravity_m_s2;
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;
 }
 
-void RestGravity::limit_memory(Size& state) {
+void RestGravity::limit_memory(MagnitudeState& state) {
   constexpr double kMemory_s = 60.0;
   if (state.rest_s <= kMemory_s) return;
   state.rest_s *= 0.5;
   state.force_sum_m *= 0.5;
 }
 
-Status RestGravity::size_verdict(const Size& state) const {
-  const double size = size_share(state);
+Status RestGravity::magnitude_verdict(const MagnitudeState& state) const {
+  const double size = magnitude_error_ratio(state);
   if (std::abs(size - 1.0) > params_.size_share_max) {
     const bool unit = size > 0.0 && (size < 1.0 / kOtherUnit || size > kOtherUnit);
-    return {Trouble::out_of_range,
+    return {ErrorCode::out_of_range,
             unit ? "accelerometer unit: specific force at rest (share of gravity)"
                  : "specific force at rest (share of gravity)",
             size, 1.0 + std::copysign(params_.size_share_max, size - 1.0)};
@@ -169,17 +171,17 @@ Status RestGravity::size_verdict(const Size& state) const {
 }
 
 Status RestGravity::verdict(const State& state) const {
-  if (const Status size = size_verdict(state); !size.ok()) return size;
-  const double allowed = allowed_rad(state.miss_sigma_rad);
-  if (state.miss_rad > allowed) {
-    return {Trouble::out_of_range,
-            "error in rad of gravity's direction after gyro integration from one rest to the next", state.miss_rad,
-            allowed};
+  if (const Status size = magnitude_verdict(state); !size.ok()) return size;
+  const double allowed = allowed_rad(state.angle_error_sigma_rad);
+  if (state.angle_error_rad > allowed) {
+    return {ErrorCode::out_of_range,
+            "error in rad of gravity's direction after gyro integration from one rest to the next",
+            state.angle_error_rad, allowed};
   }
-  if (state.velocity_share > state.velocity_allowed_share) {
-    return {Trouble::out_of_range,
+  if (state.velocity_error_ratio > state.velocity_error_ratio_max) {
+    return {ErrorCode::out_of_range,
             "velocity error after integration from one rest to the next (share of gravity times elapsed time)",
-            state.velocity_share, state.velocity_allowed_share};
+            state.velocity_error_ratio, state.velocity_error_ratio_max};
   }
   return {};
 }

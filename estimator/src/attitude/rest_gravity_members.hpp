@@ -7,11 +7,11 @@
 /// rest_gravity_members.hpp lists the members of RestGravity's states, as state_visitor.hpp describes.
 namespace tumble {
 
-template <StateOf<RestGravity::Size> Self, class Visitor>
+template <StateOf<RestGravity::MagnitudeState> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("gravity.rest", s.rest);
   visit("gravity.weightless", s.weightless);
-  visit("gravity.heavy", s.heavy);
+  visit("gravity.heavy", s.above_gravity);
   visit("gravity.rest_s", s.rest_s);
   visit("gravity.force_sum_m", s.force_sum_m);
   visit("gravity.weightless_s", s.weightless_s);

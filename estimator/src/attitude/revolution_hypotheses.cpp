@@ -12,7 +12,7 @@
 
 #include "tumble/common/so3.hpp"
 
-namespace tumble::carried {
+namespace tumble::hand_held {
 
 namespace {
 
@@ -47,7 +47,7 @@ struct Open {
 
 /// Returns the jerk cost of an additional revolution within `steps` node intervals.
 double revolution_cost(const Problem& problem, std::size_t steps) {
-  return carried::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
+  return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
 /// Returns the segments that may contain an additional revolution: carried.md (C28).
@@ -62,7 +62,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
       double angle_rad = 0.0, beyond_rad_s = 0.0, clipped = 0.0;
       for (; i < count; ++i) {
         const ElementSums& element = problem.readings(i).gyro[j];
-        if (element.n > 0.0 && !(element.clipped > 0.0)) break;
+        if (element.count > 0.0 && !(element.clipped > 0.0)) break;
         if (element.clipped > 0.0) {
           segment.last = i;
           clipped += 1.0;
@@ -219,7 +219,7 @@ std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const
   return out;
 }
 
-Status solve_again(Problem& problem, CarriedSmoother::Report& report) {
+Status solve_again(Problem& problem, HandHeldSmoother::Report& report) {
   const Status status = problem.solve(report);
   return status.ok() ? problem.covariances(report) : status;
 }
@@ -230,13 +230,13 @@ double revolution_cost(double span_s, double jerk) {
   return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
 }
 
-void test_revolutions(Problem& problem, CarriedSmoother::Report& report) {
+void test_revolutions(Problem& problem, HandHeldSmoother::Report& report) {
   test_revolutions(problem, report, solve_again);
 }
 
-void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
+void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveAgain again) {
   const std::vector<Segment> segments = suspect_segments(problem);
-  report.revolutions_asked = static_cast<int>(segments.size());
+  report.revolutions_tested = static_cast<int>(segments.size());
   if (segments.empty()) return;
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
@@ -251,7 +251,7 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
     open = left_open(tested, true);  // replaces the alternatives of the previous round
     if (taken == 0) break;
     const Problem::Answer before = problem.answer();
-    const CarriedSmoother::Report report_before = report;
+    const HandHeldSmoother::Report report_before = report;
     for (const TestedSegment& each : tested) {
       if (each.another) problem.place(each.from, each.found.front().nodes);
     }
@@ -262,9 +262,9 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
       open = left_open(tested, false);
       break;
     }
-    report.revolutions_taken += static_cast<int>(taken);
+    report.revolutions_corrected += static_cast<int>(taken);
   }
-  report.revolutions_open = static_cast<int>(open.size());
+  report.revolutions_ambiguous = static_cast<int>(open.size());
   // the alternative solutions increase the covariance: carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
@@ -276,4 +276,4 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
   }
 }
 
-}  // namespace tumble::carried
+}  // namespace tumble::hand_held

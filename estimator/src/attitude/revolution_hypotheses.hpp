@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "carried_problem.hpp"
+#include "hand_held_problem.hpp"
 
-namespace tumble::carried {
+namespace tumble::hand_held {
 
 inline constexpr double kAngleShare = 1.0 / 3.0;  ///< fraction of pi, so that a revolution is six sigma
 inline constexpr double kLogOdds = 6.9;           ///< 1 to 1000: less probable alternatives are ignored
@@ -33,10 +33,10 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// The covariances of `problem` must be computed. The function sets the counters in `report`. The test does not model
 /// correlated revolutions of two segments, or the effect of a revolution on the constants. Alternatives are only whole
 /// revolutions about the clipped element's axis.
-void test_revolutions(Problem& problem, CarriedSmoother::Report& report);
+void test_revolutions(Problem& problem, HandHeldSmoother::Report& report);
 
 /// Tests the revolutions, and uses `again` to solve the whole problem, so that a unit test can let the solver fail.
-using SolveAgain = Status (*)(Problem& problem, CarriedSmoother::Report& report);
-void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again);
+using SolveAgain = Status (*)(Problem& problem, HandHeldSmoother::Report& report);
+void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveAgain again);
 
-}  // namespace tumble::carried
+}  // namespace tumble::hand_held

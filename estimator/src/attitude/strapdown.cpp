@@ -13,7 +13,7 @@ constexpr double kForceMin_m_s2 = 1e-6;
 }  // namespace
 
 Strapdown::Strapdown(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status Strapdown::step(const ImuSample& sample, State& state) const {
@@ -33,9 +33,9 @@ Status Strapdown::step(const ImuSample& sample, State& state) const {
 /// Computes the attitude with zero heading from the specific force at rest: attitude.md (A1).
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI) {
   const Eigen::Vector3d& f = specific_force_m_s2;
-  if (!f.allFinite()) return {Trouble::non_finite, "specific_force_m_s2", f.sum(), kForceMin_m_s2};
+  if (!f.allFinite()) return {ErrorCode::non_finite, "specific_force_m_s2", f.sum(), kForceMin_m_s2};
   const double length = f.stableNorm();
-  if (length < kForceMin_m_s2) return {Trouble::degenerate, "specific_force_m_s2", length, kForceMin_m_s2};
+  if (length < kForceMin_m_s2) return {ErrorCode::degenerate, "specific_force_m_s2", length, kForceMin_m_s2};
   const double across_x = std::hypot(f.y(), f.z());
   const double roll = across_x > 0.0 ? std::atan2(f.y(), f.z()) : 0.0;
   const double pitch = std::atan2(-f.x(), across_x);

@@ -30,7 +30,7 @@ void update(int index, double innovation, double variance, TumbleAttitude::State
   state.q_WI = (so3::exp({correction[kTilt], correction[kTilt + 1], 0.0}) * state.q_WI).normalized();
   state.bias_rad_s += correction.segment<3>(kBias);
   state.v_W_m_s += correction.segment<2>(kVelocity);
-  state.d_W_m += correction.segment<2>(kDisplacement);
+  state.displacement_W_m += correction.segment<2>(kDisplacement);
   state.covariance(kHeading, kHeading) = heading;
 }
 
@@ -47,21 +47,21 @@ double reported_tilt_rad2(const TumbleAttitude::State& state) {
 
 void clear_node(TumbleAttitude::State& state) {
   state.R_WI_s.setZero();
-  state.f_W_m_s.setZero();
-  state.rotated_rad2_s = 0.0;
-  state.recovered_rad2.setZero();
+  state.force_integral_W_m_s.setZero();
+  state.squared_rate_integral_rad2_s = 0.0;
+  state.recovered_variance_rad2.setZero();
   state.node_s = 0.0;
 }
 
 Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
   if (covariance_rad2_s2.allFinite() && covariance_rad2_s2.diagonal().minCoeff() >= 0.0) return {};
-  return {Trouble::out_of_range, "rate_covariance_rad2_s2", covariance_rad2_s2.diagonal().minCoeff(), 0.0};
+  return {ErrorCode::out_of_range, "rate_covariance_rad2_s2", covariance_rad2_s2.diagonal().minCoeff(), 0.0};
 }
 
 }  // namespace
 
-TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rests_(p.expert.rest) {
-  require_fields(p);
+TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rest_detector_(p.expert.rest) {
+  require_valid_fields(p);
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
 
@@ -83,14 +83,15 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     }
     // while readings are averaged, the attitude is extrapolated from the start of the average
     if (state.average.readings == 0) {
-      state.q_taken_WI = state.q_WI;
+      state.q_processed_WI = state.q_WI;
     } else {
-      state.q_WI = state.q_taken_WI;
+      state.q_WI = state.q_processed_WI;
     }
     state.average.add(sample, dt_s);
-    state.recovered_rad2_s2 += dt_s / state.average.length_s * (rate_covariance_rad2_s2 - state.recovered_rad2_s2);
+    state.recovered_covariance_rad2_s2 +=
+        dt_s / state.average.length_s * (rate_covariance_rad2_s2 - state.recovered_covariance_rad2_s2);
     if (state.average.full(params_.expert.reading_s, dt_s)) {
-      take_average(state);
+      process_average(state);
     } else {
       const Eigen::Vector3d rate = state.average.mean.angular_velocity_rad_s - state.bias_rad_s;
       if (!state.at_rest) state.q_WI = (state.q_WI * so3::exp(state.average.length_s * rate)).normalized();
@@ -111,12 +112,12 @@ Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   return covariance;
 }
 
-void TumbleAttitude::take_average(State& state) const {
+void TumbleAttitude::process_average(State& state) const {
   const ImuSample reading = state.average.mean;
   const double length_s = state.average.length_s;
   state.average = {};
-  state.q_taken_WI.setIdentity();
-  state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && rotates_by_bias_alone(state);
+  state.q_processed_WI.setIdentity();
+  state.at_rest = rest_detector_.observe(reading, state.rest, state.bias_rad_s) && rotates_within_bias(state);
   integrate(reading, length_s, state);
   add_recovered(length_s, state);
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
@@ -124,7 +125,7 @@ void TumbleAttitude::take_average(State& state) const {
 
 /// Returns whether the mean rate of the run agrees with the bias, within the uncertainties of rate and bias:
 /// attitude.md (A16).
-bool TumbleAttitude::rotates_by_bias_alone(const State& state) const {
+bool TumbleAttitude::rotates_within_bias(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
                                   squared(params_.expert.at_rest.rate_sigma_rad_sqrts);  // variance of a mean over 1 s
@@ -148,8 +149,8 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   const Eigen::Matrix3d R_mid = q_mid.toRotationMatrix();
   state.q_WI = (q_mid * half).normalized();
   state.R_WI_s += dt_s * R_mid;
-  state.f_W_m_s += dt_s * (R_mid * sample.specific_force_m_s2);
-  state.rotated_rad2_s += dt_s * rate.squaredNorm();
+  state.force_integral_W_m_s += dt_s * (R_mid * sample.specific_force_m_s2);
+  state.squared_rate_integral_rad2_s += dt_s * rate.squaredNorm();
   state.rate_rad_s = rate;
   state.node_s += dt_s;
 }
@@ -157,8 +158,8 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
 /// Propagates the attitude and its covariance across a gap in the data: attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
-  if (state.average.readings > 0) take_average(state);
-  state.at_rest = rests_.observe(after, state.rest, state.bias_rad_s) && rotates_by_bias_alone(state);
+  if (state.average.readings > 0) process_average(state);
+  state.at_rest = rest_detector_.observe(after, state.rest, state.bias_rad_s) && rotates_within_bias(state);
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
@@ -168,19 +169,19 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   straight.specific_force_m_s2 = q_mid.conjugate() * Eigen::Vector3d(0.0, 0.0, params_.gravity_m_s2);
   integrate(straight, gap_s, state);
   state.rate_rad_s = to;
-  state.recovered_rad2_s2 = rate_covariance_rad2_s2;
+  state.recovered_covariance_rad2_s2 = rate_covariance_rad2_s2;
   add_recovered(gap_s, state);
   if (!state.at_rest) {
     const AttitudeGapParams& gap = params_.expert.gap;
     const double turn =
         squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.rate_walk_rad_s_sqrts) * gap_s);
-    state.recovered_rad2.array() += turn;
+    state.recovered_variance_rad2.array() += turn;
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
   // A sphere without slip has its rolling velocity after a gap. The change of velocity during the gap does not count as
   // slip.
-  if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
+  if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
   // The tilt variance must be computed before the correction, because an update with a single reading is not linear.
   // The new alignment replaces an earlier alignment.
   const double tilt = reported_tilt_rad2(state);
@@ -188,12 +189,12 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   correct_node(state);
   clear_node(state);
   if (tilt > squared(params_.expert.gap.lost_tilt_rad))
-    state.alignment.begin(own_velocity_m2_s2(state.velocity_power_m2_s2, state), tilt);
+    state.alignment.begin(body_velocity_variance_m2_s2(state.velocity_power_m2_s2, state), tilt);
 }
 
 void TumbleAttitude::end_node(State& state) const {
   predict_node(state);
-  if (state.alignment.running) state.alignment.add(state.f_W_m_s, state.node_s);
+  if (state.alignment.running) state.alignment.add(state.force_integral_W_m_s, state.node_s);
   const Eigen::Quaterniond before = state.q_WI;
   correct_node(state);
   if (state.alignment.running) align(state.q_WI * before.conjugate(), state);
@@ -201,7 +202,7 @@ void TumbleAttitude::end_node(State& state) const {
 }
 
 /// Returns the variance of a body's velocity per axis, derived only from the body's earlier motion and its rotation.
-double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state) const {
+double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
   const double turning = 0.5 * squared(params_.radius_m) * state.rate_rad_s.squaredNorm();
@@ -214,7 +215,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
   // The alignment does not use the filter's velocity since the gap, because that velocity depends on a tilt that may be
   // wrong.
-  const double velocity = own_velocity_m2_s2(alignment.velocity_m2_s2, state);
+  const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
     // if the body came to rest, the alignment restarts and uses only later data
@@ -222,7 +223,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
     return;
   }
   const double filtered = tilt_variance_rad2(state);
-  const bool contradicts = squared(alignment.off_rad()) > kContradicts_sigma2 * (variance + filtered);
+  const bool contradicts = squared(alignment.mean_force_tilt_rad()) > kContradicts_sigma2 * (variance + filtered);
   if (contradicts || variance < filtered) restart(alignment.levelling(), variance, velocity, state);
   alignment = {};
 }
@@ -241,33 +242,34 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   const double displacement = squared(params_.displacement_m_sqrts) / params_.motion_tau_s;
   state.covariance.diagonal().segment<2>(kDisplacement).setConstant(displacement);
   state.covariance(kHeading, kHeading) = heading;
-  state.v_W_m_s = state.at_rest ? Eigen::Vector2d::Zero().eval() : velocity_of_rotation(state);
-  state.d_W_m.setZero();
+  state.v_W_m_s = state.at_rest ? Eigen::Vector2d::Zero().eval() : velocity_from_rotation(state);
+  state.displacement_W_m.setZero();
   state.velocity_power_m2_s2 = velocity_m2_s2;
   state.displacement_power_m2 = 0.0;
 }
 
 /// Adds the variance of recovered rates to the attitude: attitude.md (A10).
 void TumbleAttitude::add_recovered(double dt_s, State& state) const {
-  if (state.at_rest || state.recovered_rad2_s2.isZero(0.0)) {
-    state.recovered_rad.setZero();
+  if (state.at_rest || state.recovered_covariance_rad2_s2.isZero(0.0)) {
+    state.recovered_sigma_sum_rad.setZero();
   } else {
     const Eigen::Matrix3d R = state.q_WI.toRotationMatrix();
-    const Eigen::Vector3d variance = (R * state.recovered_rad2_s2 * R.transpose()).diagonal().cwiseMax(0.0);
+    const Eigen::Vector3d variance = (R * state.recovered_covariance_rad2_s2 * R.transpose()).diagonal().cwiseMax(0.0);
     const Eigen::Vector2d step_rad =
         dt_s * Eigen::Vector2d(std::sqrt(variance.head<2>().mean()), std::sqrt(variance.z()));
-    state.recovered_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_rad + step_rad);
-    state.recovered_rad = std::exp(-dt_s / params_.expert.recovered_tau_s) * state.recovered_rad + step_rad;
+    state.recovered_variance_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_sigma_sum_rad + step_rad);
+    state.recovered_sigma_sum_rad =
+        std::exp(-dt_s / params_.expert.recovered_tau_s) * state.recovered_sigma_sum_rad + step_rad;
   }
-  state.recovered_rad2_s2.setZero();
+  state.recovered_covariance_rad2_s2.setZero();
 }
 
 /// Predicts the states and their covariance over one node interval: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
-  const Eigen::Vector2d gained = state.f_W_m_s.head<2>();  // gravity has no horizontal component
-  state.d_W_m = keep * state.d_W_m + h * (state.v_W_m_s + 0.5 * gained);
+  const Eigen::Vector2d gained = state.force_integral_W_m_s.head<2>();  // gravity has no horizontal component
+  state.displacement_W_m = keep * state.displacement_W_m + h * (state.v_W_m_s + 0.5 * gained);
   state.v_W_m_s += gained;
 
   State::Covariance F = State::Covariance::Identity();
@@ -277,28 +279,28 @@ void TumbleAttitude::predict_node(State& state) const {
   }
   // The derivative is the horizontal part of phi x f. The derivative by the heading is omitted, because the velocity is
   // no reference for the heading.
-  F(kVelocity, kTilt + 1) = state.f_W_m_s.z();
-  F(kVelocity + 1, kTilt) = -state.f_W_m_s.z();
+  F(kVelocity, kTilt + 1) = state.force_integral_W_m_s.z();
+  F(kVelocity + 1, kTilt) = -state.force_integral_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
   F.block<2, 2>(kDisplacement, kDisplacement) = keep * Eigen::Matrix2d::Identity();
   state.covariance = (F * state.covariance * F.transpose()).eval();
 
-  const double turn =
-      squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.rotated_rad2_s;
-  state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_rad2[0];
-  if (state.alignment.running) state.alignment.grown_rad2 += turn + state.recovered_rad2[0];
-  state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_rad2[1];
+  const double turn = squared(params_.gyro_noise_rad_sqrts) * h +
+                      squared(params_.rate_error_sqrts) * state.squared_rate_integral_rad2_s;
+  state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_variance_rad2[0];
+  if (state.alignment.running) state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_variance_rad2[0];
+  state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_variance_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.bias_walk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
 /// Returns whether the sphere slips at the current node. During slip, the rolling constraint is unusable.
-bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
+bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
-  state.fits_s = misfit < 0.5 * params_.expert.rolling.slip_velocity_m_s ? state.fits_s + state.node_s : 0.0;
+  state.grip_s = misfit < 0.5 * params_.expert.rolling.slip_velocity_m_s ? state.grip_s + state.node_s : 0.0;
   if (state.slipping) {
-    state.slipping = !state.at_rest && state.fits_s <= params_.expert.rolling.slip_quiet_s;
+    state.slipping = !state.at_rest && state.grip_s <= params_.expert.rolling.slip_quiet_s;
     if (state.slip_s > params_.expert.rolling.slip_timeout_s) {
       // after a slip, the velocity from rolling is more accurate than the integrated velocity
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
@@ -332,15 +334,15 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
     }
   }
   double& power = state.displacement_power_m2;
-  power = motion_variance(-state.d_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
+  power = motion_variance(-state.displacement_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
   for (int axis = 0; axis < 2; ++axis) {
-    update(kDisplacement + axis, -state.d_W_m[axis], power * memories, state);
+    update(kDisplacement + axis, -state.displacement_W_m[axis], power * memories, state);
   }
 }
 
 /// Returns the horizontal velocity of the IMU due to the body's rotation: attitude.md (A11). The velocity is the sum of
 /// the IMU's velocity about the centre and the centre's rolling velocity.
-Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
+Eigen::Vector2d TumbleAttitude::velocity_from_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
   return w_W.cross(arm_W).head<2>();
@@ -349,14 +351,14 @@ Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
 /// Corrects the velocity of a sphere or of a body at rest, and the gyro bias at rest: attitude.md (A11), (A12).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
-  const Eigen::Vector2d turned = velocity_of_rotation(state);
+  const Eigen::Vector2d turned = velocity_from_rotation(state);
   const bool rolls = params_.radius_m > 0.0;
   if (state.at_rest) {
-    if (rolls) watch_slip(turned - state.v_W_m_s, state);
+    if (rolls) detect_slip(turned - state.v_W_m_s, state);
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.expert.at_rest.velocity_sigma_m_s), state);
     }
-  } else if (rolls && !watch_slip(turned - state.v_W_m_s, state)) {
+  } else if (rolls && !detect_slip(turned - state.v_W_m_s, state)) {
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.expert.rolling.velocity_sigma_m_s),
              state);

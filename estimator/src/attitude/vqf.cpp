@@ -28,7 +28,7 @@ double steady_noise(double sigma, double growth) {
 }  // namespace
 
 Vqf::Vqf(const Params& p) : params_(p) {
-  require_fields(p);
+  require_valid_fields(p);
 }
 
 Status Vqf::step(const ImuSample& sample, State& state) const {
@@ -56,7 +56,7 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
 }
 
 void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
-  const double warp = low_pass_warp(params_.expert.rest_tau_s, dt_s);
+  const double warp = low_pass_prewarp(params_.expert.rest_tau_s, dt_s);
   state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.expert.rest_tau_s, dt_s, warp);
   state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.expert.rest_tau_s, dt_s, warp);
   const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < params_.rest_rate_rad_s &&
@@ -70,7 +70,7 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
 /// the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // low-pass filter of the specific force: attitude.md (A3)
-  state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));
+  state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
   const double length = state.f_N_m_s2.value.norm();
   if (length < kNoDirection_m_s2) return Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
@@ -80,7 +80,7 @@ Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, doubl
 }
 
 void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) const {
-  const double warp = low_pass_warp(params_.tau_s, dt_s);
+  const double warp = low_pass_prewarp(params_.tau_s, dt_s);
   Eigen::Matrix3d R = (state.q_WN * state.q_NI).toRotationMatrix();
   const Eigen::Vector3d& b = state.bias_rad_s;
   state.bias_W_rad_s.advance((R * b).head<2>(), params_.tau_s, dt_s, warp);

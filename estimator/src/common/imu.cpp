@@ -13,8 +13,8 @@ namespace {
 
 Status check_reading(const Eigen::Vector3d& reading, const char* field) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(reading[axis])) return {Trouble::non_finite, field, reading[axis], kReadingMax};
-    if (std::abs(reading[axis]) > kReadingMax) return {Trouble::out_of_range, field, reading[axis], kReadingMax};
+    if (!std::isfinite(reading[axis])) return {ErrorCode::non_finite, field, reading[axis], kReadingMax};
+    if (std::abs(reading[axis]) > kReadingMax) return {ErrorCode::out_of_range, field, reading[axis], kReadingMax};
   }
   return {};
 }
@@ -26,27 +26,27 @@ Status check_sample(const ImuSample& sample) {
   return rate.ok() ? check_reading(sample.specific_force_m_s2, "specific_force_m_s2") : rate;
 }
 
-Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
+Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
   if (time_ns <= previous_ns) {
-    return {Trouble::time_order, "time_ns", static_cast<double>(time_ns), static_cast<double>(previous_ns)};
+    return {ErrorCode::time_order, "time_ns", static_cast<double>(time_ns), static_cast<double>(previous_ns)};
   }
   // The type is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
   const std::uint64_t gap_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(previous_ns);
   const double gap_s = static_cast<double>(gap_ns) * 1e-9;
-  if (gap_s > gap_max_s) return {Trouble::gap, "time_s since the last sample", gap_s, gap_max_s};
+  if (gap_s > gap_max_s) return {ErrorCode::gap, "time_s since the last sample", gap_s, gap_max_s};
   return {};
 }
 
 Status check_stamp(TimeNs stamp_ns, const char* field) {
   if (stamp_ns >= -kStampMax_ns && stamp_ns <= kStampMax_ns) return {};
-  return {Trouble::out_of_range, field, static_cast<double>(stamp_ns), static_cast<double>(kStampMax_ns)};
+  return {ErrorCode::out_of_range, field, static_cast<double>(stamp_ns), static_cast<double>(kStampMax_ns)};
 }
 
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (const Status status = check_sample(samples[k]); !status.ok()) return status;
     if (k == 0) continue;
-    const Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
+    const Status status = check_stamp_order(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
     if (!status.ok()) return status;
   }
   return {};

@@ -40,7 +40,7 @@ struct Triad {
   const Vector3d& of(const ImuSample& sample) const { return sample.*reading; }
   double largest(const ImuSample& sample) const { return of(sample).cwiseAbs().maxCoeff(); }
   bool beyond_range(const ImuSample& sample) const {
-    return range > 0.0 && largest(sample) > OutlierFilter::kRangesMax * range;
+    return range > 0.0 && largest(sample) > OutlierFilter::kStatedRangesMax * range;
   }
   bool may_clip(const ImuSample& from, const ImuSample& to) const {
     if (((from.device_clip_flags | to.device_clip_flags) & clip_flags) != 0) return true;
@@ -77,8 +77,9 @@ struct Sequence {
 
 Sequence passed_near(const OutlierFilter::State& state) {
   Sequence out;
-  if (state.count == 2 && step_s(state.passed[0], state.passed[1]) <= kNear_s) out.add(state.passed[0]);
-  out.add(state.passed[1]);
+  if (state.count == 2 && step_s(state.recent_inliers[0], state.recent_inliers[1]) <= kNear_s)
+    out.add(state.recent_inliers[0]);
+  out.add(state.recent_inliers[1]);
   return out;
 }
 
@@ -119,7 +120,7 @@ double departure(const Vector3d& before, const Vector3d& now, const Vector3d& af
 /// Returns the smaller of two distances of a reading: outliers.md (O2). The first is the distance from the last
 /// accepted reading. The second is the distance from the line through the last two accepted readings.
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
-  const ImuSample &first = state.passed[0], &last = state.passed[1];
+  const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
   const double apart = step.cwiseAbs().maxCoeff();
   if (passed_near(state).count < 2) return apart;
@@ -144,26 +145,26 @@ double accel_threshold(const OutlierFilter::Device& device, const Sequence& sequ
 }  // namespace
 
 void OutlierFilter::pass(const ImuSample& sample, State& state) {
-  state.passed[0] = state.passed[1];
-  state.passed[1] = sample;
-  state.count = std::min<std::size_t>(state.count + 1, state.passed.size());
+  state.recent_inliers[0] = state.recent_inliers[1];
+  state.recent_inliers[1] = sample;
+  state.count = std::min<std::size_t>(state.count + 1, state.recent_inliers.size());
 }
 
 void OutlierFilter::finish(State& state) {
-  state.rejected += state.held ? 1 : 0;
-  state.held.reset();
+  state.rejected += state.delayed ? 1 : 0;
+  state.delayed.reset();
 }
 
-std::optional<ImuSample> OutlierFilter::settle(const ImuSample& next, State& state) const {
-  if (!state.held) return std::nullopt;
+std::optional<ImuSample> OutlierFilter::filter_sample(const ImuSample& next, State& state) const {
+  if (!state.delayed) return std::nullopt;
   const bool confirmed = confirms(next, state);
-  const std::optional<ImuSample> held = std::exchange(state.held, std::nullopt);
-  if (confirmed) return held;
+  const std::optional<ImuSample> delayed = std::exchange(state.delayed, std::nullopt);
+  if (confirmed) return delayed;
   ++state.rejected;
   return std::nullopt;
 }
 
-bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
+bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
   const bool beyond_all =
       gyro_of(device_).largest(sample) > kRateMax_rad_s || accel_of(device_).largest(sample) > kForceMax_m_s2;
   if (beyond_all) {
@@ -171,7 +172,7 @@ bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
     return true;
   }
   if (!is_suspicious(sample, state)) return false;
-  state.held = sample;
+  state.delayed = sample;
   return true;
 }
 
@@ -180,19 +181,19 @@ bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
 double OutlierFilter::period_s(const State& state) const {
   if (!(device_.period_s > 0.0)) return kUnknown;
   if (state.count < 2) return device_.period_s;
-  return std::max(device_.period_s, step_s(state.passed[0], state.passed[1]));
+  return std::max(device_.period_s, step_s(state.recent_inliers[0], state.recent_inliers[1]));
 }
 
 bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
   if (state.count == 0) return false;
-  const double after_s = step_s(state.passed[1], sample);
+  const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > device_.gap_max_s) return false;
   return after_s > kPeriodsAhead * period_s(state) || jumps(sample, state);
 }
 
 /// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
-  const double after_s = step_s(state.passed[1], sample);
+  const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > kNear_s) return false;
   const double step = std::max(after_s, device_.period_s);
   Sequence sequence = passed_near(state);
@@ -202,36 +203,36 @@ bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
 }
 
 /// Returns whether the delayed reading is an outlier, given the following reading: outliers.md (O6).
-bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const {
-  const ImuSample& before = state.passed[1];
-  if (state.count == 0 || step_s(before, held) > kNear_s || step_s(held, after) > kNear_s) return false;
-  const double step = std::max(step_s(before, held), device_.period_s);
+bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const {
+  const ImuSample& before = state.recent_inliers[1];
+  if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;
+  const double step = std::max(step_s(before, delayed), device_.period_s);
   Sequence sequence = passed_near(state);
-  sequence.add(held);
+  sequence.add(delayed);
   sequence.add(after);
   const auto stands_out = [&](const Triad& triad, double threshold) {
-    const double by = departure(triad.of(before), triad.of(held), triad.of(after));
+    const double by = departure(triad.of(before), triad.of(delayed), triad.of(after));
     return by > threshold && by > kAgreement * distance(after, state, triad);
   };
-  return stands_out(gyro_of(device_), gyro_threshold(device_, sequence, held, step)) ||
-         stands_out(accel_of(device_), accel_threshold(device_, sequence, held, step));
+  return stands_out(gyro_of(device_), gyro_threshold(device_, sequence, delayed, step)) ||
+         stands_out(accel_of(device_), accel_threshold(device_, sequence, delayed, step));
 }
 
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples) {
   std::vector<bool> out(samples.size(), false);
   OutlierFilter::State state;
-  std::size_t held = 0;
+  std::size_t delayed = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (filter.first_is_refuted(samples[k], state)) {
-      std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(held), false);
+    if (filter.first_is_outlier(samples[k], state)) {
+      std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(delayed), false);
       state.count = 0;
     }
-    if (const std::optional<ImuSample> confirmed = filter.settle(samples[k], state)) {
+    if (const std::optional<ImuSample> confirmed = filter.filter_sample(samples[k], state)) {
       OutlierFilter::pass(*confirmed, state);
-      out[held] = true;
+      out[delayed] = true;
     }
-    if (filter.keeps_back(samples[k], state)) {
-      held = k;
+    if (filter.must_delay(samples[k], state)) {
+      delayed = k;
       continue;
     }
     OutlierFilter::pass(samples[k], state);

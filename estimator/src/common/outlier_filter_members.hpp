@@ -9,9 +9,9 @@ namespace tumble {
 
 template <StateOf<OutlierFilter::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("outliers.passed", s.passed);
+  visit("outliers.passed", s.recent_inliers);
   visit("outliers.count", s.count, 0.0, 2.0);
-  visit("outliers.held", s.held);
+  visit("outliers.held", s.delayed);
   visit("outliers.rejected", s.rejected);
 }
 

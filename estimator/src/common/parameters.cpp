@@ -5,16 +5,16 @@
 
 namespace tumble::detail {
 
-void FindOutOfBounds::check(double value, const Field& field) {
+void BoundsChecker::check(double value, const Field& field) {
   if (!out_.status.ok() || (value >= field.low && value <= field.high)) return;
   out_.names.at(out_.depth++) = field.name;
   const bool above = value > field.high;
-  out_.status = {Trouble::out_of_range, field.name, value, above ? field.high : field.low};
+  out_.status = {ErrorCode::out_of_range, field.name, value, above ? field.high : field.low};
   out_.low = field.low;
   out_.high = field.high;
 }
 
-void throw_if(const OutOfBounds& found) {
+void throw_if_out_of_bounds(const OutOfBounds& found) {
   if (found.status.ok()) return;
   std::string name;
   for (std::size_t k = 0; k < found.depth; ++k) name += found.names.at(k);

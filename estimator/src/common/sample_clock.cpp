@@ -28,28 +28,30 @@ double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
 
 struct Line {
   double period_ns = 0.0, last_ns = 0.0;  ///< slope; value of the line at the last stamp, relative to the first stamp
-  double weighted_sum_number = 0.0, sum_nn = 0.0;  ///< sums over the sample numbers, counted from the last stamp
-  double mean_square_error_ns2 = 0.0;              ///< variance of the stamps about the line
+  double weighted_number_sum = 0.0,
+         weighted_number_squared_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
+  double mean_square_error_ns2 = 0.0;        ///< variance of the stamps about the line
 };
 
-using Offsets = std::array<double, SampleClock::kStart>;  // times relative to the first stamp [ns]
-using Numbers = std::array<double, SampleClock::kStart>;
+using Offsets = std::array<double, SampleClock::kFirstFitStamps>;  // times relative to the first stamp [ns]
+using Numbers = std::array<double, SampleClock::kFirstFitStamps>;
 
 Line fit(const Offsets& x_ns, const Numbers& n) {
-  constexpr auto kCount = static_cast<double>(SampleClock::kStart);
+  constexpr auto kCount = static_cast<double>(SampleClock::kFirstFitStamps);
   Line line;
   double sum_x = 0.0, sum_nx = 0.0;
-  for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
+  for (std::size_t k = 0; k < SampleClock::kFirstFitStamps; ++k) {
     const double from_last = n[k] - n.back();
-    line.weighted_sum_number += from_last;
-    line.sum_nn += from_last * from_last;
+    line.weighted_number_sum += from_last;
+    line.weighted_number_squared_sum += from_last * from_last;
     sum_x += x_ns[k];
     sum_nx += from_last * x_ns[k];
   }
-  const double determinant = kCount * line.sum_nn - line.weighted_sum_number * line.weighted_sum_number;
-  line.last_ns = (line.sum_nn * sum_x - line.weighted_sum_number * sum_nx) / determinant;
-  line.period_ns = (kCount * sum_nx - line.weighted_sum_number * sum_x) / determinant;
-  for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
+  const double determinant =
+      kCount * line.weighted_number_squared_sum - line.weighted_number_sum * line.weighted_number_sum;
+  line.last_ns = (line.weighted_number_squared_sum * sum_x - line.weighted_number_sum * sum_nx) / determinant;
+  line.period_ns = (kCount * sum_nx - line.weighted_number_sum * sum_x) / determinant;
+  for (std::size_t k = 0; k < SampleClock::kFirstFitStamps; ++k) {
     const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
     line.mean_square_error_ns2 += residual * residual / (kCount - 2.0);
   }
@@ -57,8 +59,8 @@ Line fit(const Offsets& x_ns, const Numbers& n) {
 }
 
 double median_step(const Offsets& x_ns) {
-  std::array<double, SampleClock::kStart - 1> steps{};
-  for (std::size_t k = 0; k + 1 < SampleClock::kStart; ++k) steps[k] = x_ns[k + 1] - x_ns[k];
+  std::array<double, SampleClock::kFirstFitStamps - 1> steps{};
+  for (std::size_t k = 0; k + 1 < SampleClock::kFirstFitStamps; ++k) steps[k] = x_ns[k + 1] - x_ns[k];
   std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
   return steps[steps.size() / 2];
 }
@@ -83,14 +85,14 @@ Numbers index_from_fit(const Offsets& x_ns, const Numbers& before, const Line& l
 }  // namespace
 
 SampleClock::SampleClock(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 bool SampleClock::corrects_stamps(const State& state) const {
   if (!state.line_fitted) return false;
   const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
   return jitter >= params_.jitter_min && jitter <= params_.jitter_max &&
-         state.mean_error_product_ns2 <= kWander * state.mean_square_error_ns2;
+         state.lag_one_error_product_ns2 <= kWander * state.mean_square_error_ns2;
 }
 
 std::optional<double> SampleClock::jitter_s(const State& state) {
@@ -100,13 +102,13 @@ std::optional<double> SampleClock::jitter_s(const State& state) {
 
 Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   if (state.stamp_ns && stamp_ns <= *state.stamp_ns)
-    return {Trouble::time_order, "time_ns", double(stamp_ns), double(*state.stamp_ns)};
+    return {ErrorCode::time_order, "time_ns", double(stamp_ns), double(*state.stamp_ns)};
   const double step_ns = state.stamp_ns ? after_ns(stamp_ns, *state.stamp_ns) : 0.0;
   if (state.line_fitted) {
-    follow(step_ns, stamp_ns, state);
+    update_line(step_ns, stamp_ns, state);
   } else {
     state.start[state.samples++] = stamp_ns;
-    if (state.samples == kStart) begin(state);
+    if (state.samples == kFirstFitStamps) begin(state);
   }
   time_ns = stamp_ns;
   if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
@@ -125,7 +127,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
 /// Fits a line to the first stamps, if the stamps have a period.
 void SampleClock::begin(State& state) const {
   Offsets x_ns{};
-  for (std::size_t k = 0; k < kStart; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
+  for (std::size_t k = 0; k < kFirstFitStamps; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
   state.samples = 0;
   Numbers numbers = by_steps(x_ns, median_step(x_ns));
   Line line = fit(x_ns, numbers);
@@ -136,24 +138,25 @@ void SampleClock::begin(State& state) const {
   state.line_fitted = true;
   state.period_ns = line.period_ns;
   state.fit_residual_ns = line.last_ns - x_ns.back();
-  state.sum = kStart;
-  state.weighted_sum_number = line.weighted_sum_number;
-  state.sum_nn = line.sum_nn;
+  state.sum = kFirstFitStamps;
+  state.weighted_number_sum = line.weighted_number_sum;
+  state.weighted_number_squared_sum = line.weighted_number_squared_sum;
   state.mean_square_error_ns2 = line.mean_square_error_ns2;
-  state.mean_error_product_ns2 = state.error_ns = 0.0;
+  state.lag_one_error_product_ns2 = state.prediction_error_ns = 0.0;
   state.outliers = 0;
 }
 
 /// Updates the line with a stamp: sample_clock.md (S1), (S2), (S3). If the sample number is uncertain, restarts the
 /// fit.
-void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
+void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
-  const double error_ns = passed_ns - number * state.period_ns;
+  const double prediction_error_ns = passed_ns - number * state.period_ns;
   const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.jitter_min * state.period_ns);
-  const double before = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
+  const double before =
+      state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
   const double unsure_ns = number * jitter_ns * std::sqrt(state.sum / before);
-  state.outliers = std::abs(error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
+  state.outliers = std::abs(prediction_error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
   const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.outliers > kStraysMax ||
                     jitter_ns > kNoPeriod * state.period_ns;
   if (lost) {
@@ -162,35 +165,39 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
     state.samples = 1;
     return;
   }
-  const double limited_ns = std::clamp(error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
+  const double limited_ns = std::clamp(prediction_error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
   const double fading = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
   state.mean_square_error_ns2 += fading * (limited_ns * limited_ns - state.mean_square_error_ns2);
-  state.mean_error_product_ns2 += fading * (limited_ns * state.error_ns - state.mean_error_product_ns2);
-  state.error_ns = limited_ns;
+  state.lag_one_error_product_ns2 +=
+      fading * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
+  state.prediction_error_ns = limited_ns;
 
   // Sample numbers count from the current sample. Only the residual of the current sample about the line is not zero.
   const double keep = 1.0 - fading;
-  state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.weighted_sum_number + number * number * state.sum);
-  state.weighted_sum_number = keep * (state.weighted_sum_number - number * state.sum);
+  state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
+                                              2.0 * number * state.weighted_number_sum + number * number * state.sum);
+  state.weighted_number_sum = keep * (state.weighted_number_sum - number * state.sum);
   state.sum = keep * state.sum + 1.0;
-  const double determinant = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
-  state.fit_residual_ns = state.sum_nn / determinant * limited_ns - error_ns;
-  state.period_ns -= state.weighted_sum_number / determinant * limited_ns;
+  const double determinant =
+      state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
+  state.fit_residual_ns = state.weighted_number_squared_sum / determinant * limited_ns - prediction_error_ns;
+  state.period_ns -= state.weighted_number_sum / determinant * limited_ns;
 }
 
 Status SampleClock::check_state(const State& state) {
   if (!state.stamp_ns) return {};
   const auto [early_ns, late_ns] = std::minmax(state.time_ns, *state.stamp_ns);
   if (!(after_ns(late_ns, early_ns) <= state.period_ns + 1.0))
-    return {Trouble::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
+    return {ErrorCode::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
   if (!state.line_fitted) return {};
-  if (!(state.period_ns > 0.0)) return {Trouble::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
-  const double determinant = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
-  if (!(determinant > 0.0)) return {Trouble::out_of_range, "stamps.sum_nn", determinant, 0.0};
+  if (!(state.period_ns > 0.0)) return {ErrorCode::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
+  const double determinant =
+      state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
+  if (!(determinant > 0.0)) return {ErrorCode::out_of_range, "stamps.sum_nn", determinant, 0.0};
   return {};
 }
 
-Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s) {
+Status correct_stamps(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s) {
   corrected_jitter_s = 0.0;
   SampleClock::State state;
   std::vector<TimeNs> times_ns(stamps_ns.size());

@@ -34,7 +34,7 @@ void detail::copy_little_endian(const std::byte* from, std::byte* to, std::size_
 bool StateReader::take(const char* name, std::byte* to, std::size_t count, std::size_t width, bool are_bools) {
   if (!going()) return false;
   if (left_.size() / width < count) {
-    status_ = {Trouble::too_few, name, double(left_.size()), double(count * width)};
+    status_ = {ErrorCode::too_few, name, double(left_.size()), double(count * width)};
     return false;
   }
   const std::span<const std::byte> bytes = left_.first(count * width);

@@ -77,7 +77,7 @@ class StateReader : public StateVisitor<StateReader> {
   std::size_t length(const char* name, std::size_t /*of what is replaced*/);
   void bounded(const char* name, double value, double low, double high) {
     if (going() && !(value >= low && value <= high))
-      status_ = {Trouble::out_of_range, name, value, value > high ? high : low};
+      status_ = {ErrorCode::out_of_range, name, value, value > high ? high : low};
   }
   bool going() const { return status_.ok(); }
   template <class T>
@@ -86,7 +86,7 @@ class StateReader : public StateVisitor<StateReader> {
 
   /// Requires a relation between members that every saved state fulfils.
   void require(const char* name, bool holds, double value = 0.0, double bound = 1.0) {
-    if (going() && !holds) status_ = {Trouble::out_of_range, name, value, bound};
+    if (going() && !holds) status_ = {ErrorCode::out_of_range, name, value, bound};
   }
   void refuse(const Status& status) {
     if (going()) status_ = status;
@@ -102,7 +102,7 @@ class StateReader : public StateVisitor<StateReader> {
   void check(const char* name, N value) {
     if constexpr (std::is_floating_point_v<N>) {
       if (!nan_allowed() && !std::isfinite(value))
-        status_ = {Trouble::non_finite, name, static_cast<double>(value), std::numeric_limits<double>::max()};
+        status_ = {ErrorCode::non_finite, name, static_cast<double>(value), std::numeric_limits<double>::max()};
     } else if constexpr (std::is_same_v<N, int>) {
       bounded(name, value, -kCountMax, kCountMax);
     } else if constexpr (std::is_same_v<N, std::int64_t>) {

@@ -44,13 +44,13 @@ class StateMatcher : public StateVisitor<StateMatcher> {
     using Saved = std::conditional_t<std::is_same_v<N, bool>, std::uint8_t, N>;
     Saved saved{};
     if (left_.size() < sizeof(N)) {
-      status_ = {Trouble::too_few, name, static_cast<double>(left_.size()), static_cast<double>(sizeof(N))};
+      status_ = {ErrorCode::too_few, name, static_cast<double>(left_.size()), static_cast<double>(sizeof(N))};
       return;
     }
     detail::copy_little_endian(left_.data(), reinterpret_cast<std::byte*>(&saved), 1, sizeof(N));
     left_ = left_.subspan(sizeof(N));
     if (std::memcmp(&saved, &own, sizeof(N)) != 0)
-      status_ = {Trouble::out_of_range, name, static_cast<double>(saved), static_cast<double>(own)};
+      status_ = {ErrorCode::out_of_range, name, static_cast<double>(saved), static_cast<double>(own)};
   }
 
   std::span<const std::byte> left_;

@@ -18,25 +18,25 @@ std::string number(double value) {
 
 }  // namespace
 
-const char* to_string(Trouble trouble) {
-  switch (trouble) {
-    case Trouble::none:
+const char* to_string(ErrorCode error_code) {
+  switch (error_code) {
+    case ErrorCode::none:
       return "ok";
-    case Trouble::empty:
+    case ErrorCode::empty:
       return "empty";
-    case Trouble::non_finite:
+    case ErrorCode::non_finite:
       return "non_finite";
-    case Trouble::time_order:
+    case ErrorCode::time_order:
       return "time_order";
-    case Trouble::gap:
+    case ErrorCode::gap:
       return "gap";
-    case Trouble::out_of_range:
+    case ErrorCode::out_of_range:
       return "out_of_range";
-    case Trouble::too_few:
+    case ErrorCode::too_few:
       return "too_few";
-    case Trouble::degenerate:
+    case ErrorCode::degenerate:
       return "degenerate";
-    case Trouble::diverged:
+    case ErrorCode::diverged:
       return "diverged";
   }
   return "unknown";
@@ -44,7 +44,7 @@ const char* to_string(Trouble trouble) {
 
 std::string Status::message() const {
   if (ok()) return "ok";
-  return std::string(to_string(trouble)) + ": " + field + " is " + number(value) + ", bound " + number(bound);
+  return std::string(to_string(error_code)) + ": " + field + " is " + number(value) + ", bound " + number(bound);
 }
 
 InvalidParams::InvalidParams(const std::string& field, double value, const std::string& bound)

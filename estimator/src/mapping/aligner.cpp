@@ -24,7 +24,7 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   Registration::Params out = registration_params(params);
   out.match_distance_m = std::min(kCoarseReach * matching.distance_m, Registration::Params::kMatchDistanceMax_m);
   out.iterations_max = std::min(matching.iterations_max, stages.coarse_iterations);
-  out.matches_min = std::min(matching.least, stages.coarse_matches_min);
+  out.matches_min = std::min(matching.matches_min, stages.coarse_matches_min);
   out.expert.kernel_min_m = stages.coarse_kernel_min_m;
   out.expert.rematch_m = stages.coarse_rematch_m;
   out.expert.step_m = stages.coarse_step_m;
@@ -101,8 +101,8 @@ Registration::Params registration_params(const LidarInertialOdometry::Params& pa
   out.skew_sigma_m_s = params.expert.matching.skew_sigma_m_s;
   out.correction_max_m = params.expert.matching.correction_max_m;
   out.correction_max_rad = params.expert.matching.correction_max_rad;
-  out.matches_min = params.expert.matching.least;
-  out.expert.agreeing_min = params.expert.matching.agreeing_least;
+  out.matches_min = params.expert.matching.matches_min;
+  out.expert.agreeing_min = params.expert.matching.agreeing_matches_min;
   out.parallel_for = params.parallel_for;
   return out;
 }

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-void SweepCalibration::add(const Eigen::Matrix<double, kErrors, 1>& error) {
+void SweepCalibration::add(const Eigen::Matrix<double, kErrorCount, 1>& error) {
   const Eigen::Quaterniond turned = (so3::exp(error.segment<3>(0)) * Eigen::Quaterniond(T_IL.linear())).normalized();
   T_IL.linear() = turned.toRotationMatrix();
   T_IL.translation() += error.segment<3>(3);
@@ -16,8 +16,8 @@ void SweepCalibration::add(const Eigen::Matrix<double, kErrors, 1>& error) {
   gravity_W_m_s2 += error.segment<3>(7);
 }
 
-Eigen::Matrix<double, SweepCalibration::kErrors, 1> SweepCalibration::minus(const SweepCalibration& other) const {
-  Eigen::Matrix<double, kErrors, 1> error;
+Eigen::Matrix<double, SweepCalibration::kErrorCount, 1> SweepCalibration::minus(const SweepCalibration& other) const {
+  Eigen::Matrix<double, kErrorCount, 1> error;
   error << so3::log(Eigen::Quaterniond(T_IL.linear() * other.T_IL.linear().transpose()).normalized()),
       T_IL.translation() - other.T_IL.translation(), time_offset_s - other.time_offset_s,
       gravity_W_m_s2 - other.gravity_W_m_s2;
@@ -33,9 +33,10 @@ double StatedCalibration::deviations(const SweepCalibration& estimated) const {
 
 Status StatedCalibration::verdict(const SweepCalibration& estimated) const {
   const double by = deviations(estimated);
-  if (by <= kMaxDeviations) return {};
-  return {Trouble::out_of_range, "change of the lidar-IMU calibration in standard deviations of the stated calibration",
-          by, kMaxDeviations};
+  if (by <= kDistanceMax_sigmas) return {};
+  return {ErrorCode::out_of_range,
+          "change of the lidar-IMU calibration in standard deviations of the stated calibration", by,
+          kDistanceMax_sigmas};
 }
 
 }  // namespace tumble

@@ -26,7 +26,7 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
     const double offset_s = seconds(point.offset_ns);
     selected.push_back({R * point.position_L_m + p, point.position_L_m, static_cast<float>(sweep_start_s + offset_s),
                         static_cast<float>(offset_s), std::sqrt(range2), point.ring});
-    counts.rings_differ |= point.ring != selected.front().ring;
+    counts.has_ring_numbers |= point.ring != selected.front().ring;
   }
   counts.used = selected.size();
   return counts;
@@ -42,7 +42,7 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   const Eigen::Matrix3f R = calibration.T_IL.linear().cast<float>();
   const Eigen::Vector3f p = calibration.T_IL.translation().cast<float>();
   for (SweepPoint& point : points) {
-    point.x_I_m = R * point.x_L_m + p;
+    point.x_I_m = R * point.point_L_m + p;
     point.t_s += static_cast<float>(later_s);
   }
 }
@@ -51,7 +51,7 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());
-  trajectory.levers(points, levers_W_m);
+  trajectory.lever_arm_vectors(points, levers_W_m);
 }
 
 /// Transforms each point to the IMU frame at the target time: mapping.md (R12).
@@ -59,7 +59,7 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
             std::vector<Eigen::Vector3f>& positions_I_m) {
   compute_lever_arm_vectors(trajectory, points, positions_I_m);
   std::size_t hint = trajectory.intervals();
-  const SweepTrajectory::Instant target = trajectory.at(target_s, hint);
+  const SweepTrajectory::PreintegratedMotion target = trajectory.at(target_s, hint);
   const Eigen::Vector3d origin = trajectory.common_position_m(target_s) + target.preintegrated_position_m;
   const Eigen::Quaterniond q_IW = target.q_WI.conjugate();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -70,13 +70,13 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
 
 void SweepSampler::choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m,
                           std::vector<std::uint32_t>& chosen) {
-  seen_.clear();
+  occupied_voxels_.clear();
   chosen.clear();
   const float cubes_per_m = static_cast<float>(1.0 / voxel_m);
   for (std::uint32_t i = 0; i < positions_W_m.size(); ++i) {
     const Eigen::Vector3f scaled = positions_W_m[i] * cubes_per_m;
     if (!(scaled.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
-    if (seen_.add(SpatialHash::key(scaled.array().floor().cast<int>()))) chosen.push_back(i);
+    if (occupied_voxels_.add(SpatialHash::key(scaled.array().floor().cast<int>()))) chosen.push_back(i);
   }
 }
 

@@ -37,13 +37,13 @@ Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w, c
 
 Status flight_arc(const FlyingBody& body, const Eigen::Vector3d& start_rad_s, TimeNs from_ns, TimeNs to_ns,
                   TimeNs step_ns, std::vector<MotionSample>& samples) {
-  if (to_ns <= from_ns) return {Trouble::time_order, "to_ns", double(to_ns), double(from_ns)};
-  if (step_ns <= 0) return {Trouble::time_order, "step_ns", double(step_ns), 1.0};
+  if (to_ns <= from_ns) return {ErrorCode::time_order, "to_ns", double(to_ns), double(from_ns)};
+  if (step_ns <= 0) return {ErrorCode::time_order, "step_ns", double(step_ns), 1.0};
   if (!start_rad_s.allFinite() || !body.p_IB_I_m.allFinite() || !body.inertia_I_kg_m2.allFinite()) {
-    return {Trouble::non_finite, "flying body", std::numeric_limits<double>::quiet_NaN(), 0.0};
+    return {ErrorCode::non_finite, "flying body", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
   if (Eigen::LLT<Eigen::Matrix3d>(body.inertia_I_kg_m2).info() != Eigen::Success) {
-    return {Trouble::degenerate, "inertia_I_kg_m2", body.inertia_I_kg_m2.determinant(), 0.0};
+    return {ErrorCode::degenerate, "inertia_I_kg_m2", body.inertia_I_kg_m2.determinant(), 0.0};
   }
   Eigen::Vector3d w = start_rad_s;
   for (TimeNs from = from_ns; from < to_ns;) {

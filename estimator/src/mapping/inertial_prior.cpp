@@ -76,11 +76,11 @@ Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& pa
 
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state) {
-  if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const MotionSample& sample : samples) {
-    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.rest.levels_s && count > 0.0) break;
+    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.rest.levelling_max_s && count > 0.0) break;
     force += sample.f_I_m_s2;
     count += 1.0;
   }
@@ -92,7 +92,7 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
 Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
                      MotionState& state) {
   const double force_m_s2 = force_I_m_s2.norm();
-  if (!(force_m_s2 >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force_m_s2, 1.0};
+  if (!(force_m_s2 >= 1.0)) return {ErrorCode::degenerate, "specific_force_m_s2", force_m_s2, 1.0};
   state = MotionState{};
   if (Status status = level(force_I_m_s2, state.q_WI); !status.ok()) return status;
   u::variances(state.covariance, u::tilt)

@@ -45,7 +45,7 @@ RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
           .rest_s = 0.0};
 }
 
-InertialTrack::InertialTrack(const Params& params) : rests_(mapper_rest(params)) {}
+InertialTrack::InertialTrack(const Params& params) : rest_detector_(mapper_rest(params)) {}
 
 std::optional<TimeNs> InertialTrack::last_ns() const {
   return samples_.empty() ? boundary_ns_ : samples_.back().time_ns;
@@ -54,7 +54,7 @@ std::optional<TimeNs> InertialTrack::last_ns() const {
 Status InertialTrack::check(const ImuSample& sample) const {
   const std::optional<TimeNs> last = last_ns();
   if (last && sample.time_ns <= *last) {
-    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(*last)};
+    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(*last)};
   }
   return {};
 }
@@ -144,7 +144,7 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   // during the initial rest, the mean rate is the gyro's bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
-  if (!clipped && rests_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
+  if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
     // The mean of a new run is as noisy as single readings. Noise may therefore restart the run.

@@ -69,7 +69,7 @@ class InertialTrack {
 
   std::vector<MotionSample> samples_;
   std::optional<TimeNs> boundary_ns_;  // end of the last sweep
-  RestDetector rests_;
+  RestDetector rest_detector_;
   RestDetector::State rest_;
   InitialRest initial_;
   std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the last averaged reading of the rest detector

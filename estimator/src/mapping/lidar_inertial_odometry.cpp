@@ -19,10 +19,10 @@ Status check(const ImuSample& sample, const RateState& rate) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (const Status status = check_stamp(sample.time_ns, "time_ns"); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
-    return {Trouble::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
+    return {ErrorCode::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
   if (rate.time_ns == sample.time_ns) return {};
-  return {Trouble::out_of_range, "rate.time_ns", double(rate.time_ns), double(sample.time_ns)};
+  return {ErrorCode::out_of_range, "rate.time_ns", double(rate.time_ns), double(sample.time_ns)};
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ LidarInertialOdometry& LidarInertialOdometry::operator=(const LidarInertialOdome
   return *this;
 }
 
-void LidarInertialOdometry::start_at(const Eigen::Isometry3d& T_WI) {
+void LidarInertialOdometry::set_start_pose(const Eigen::Isometry3d& T_WI) {
   impl_->start_pose = T_WI;
 }
 
@@ -64,9 +64,9 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& 
 
 Status LidarInertialOdometry::add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s) {
   if (!v_WI_I_m_s.allFinite() || !std::isfinite(sigma_m_s)) {
-    return {Trouble::non_finite, "velocity", std::numeric_limits<double>::quiet_NaN(), 0.0};
+    return {ErrorCode::non_finite, "velocity", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
-  if (!(sigma_m_s > 0.0)) return {Trouble::out_of_range, "sigma_m_s", sigma_m_s, 0.0};
+  if (!(sigma_m_s > 0.0)) return {ErrorCode::out_of_range, "sigma_m_s", sigma_m_s, 0.0};
   impl_->known = mapping::KnownVelocity{v_WI_I_m_s, sigma_m_s};
   return {};
 }
@@ -93,8 +93,9 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
 Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::span<const RateState> rates,
                                       PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
   const Impl& my = *impl_;
-  if (!mapping::has_started(my.tracking)) return {Trouble::empty, "sweeps", 0.0, 1.0};
-  if (samples.size() != rates.size()) return {Trouble::too_few, "rates", double(rates.size()), double(samples.size())};
+  if (!mapping::has_started(my.tracking)) return {ErrorCode::empty, "sweeps", 0.0, 1.0};
+  if (samples.size() != rates.size())
+    return {ErrorCode::too_few, "rates", double(rates.size()), double(samples.size())};
   mapping::InertialTrack track = my.track;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (Status status = check(samples[k], rates[k]); !status.ok()) return status;
@@ -146,24 +147,24 @@ SweepCalibration::Covariance LidarInertialOdometry::calibration_weighting_covari
   return mapping::unknowns::block(impl_->boundary.state_estimate.weight, mapping::unknowns::calibration);
 }
 
-Status LidarInertialOdometry::vertical() const {
+Status LidarInertialOdometry::check_vertical() const {
   constexpr double kMost_rad = 0.02;
   namespace u = mapping::unknowns;
   const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
   const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
   if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
-  return {Trouble::out_of_range, "standard deviation in rad of the map's vertical after a start in motion", sigma_rad,
+  return {ErrorCode::out_of_range, "standard deviation in rad of the map's vertical after a start in motion", sigma_rad,
           kMost_rad};
 }
 
 Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
   const auto& window = impl_->window.sweeps();
-  if (window.empty()) return {Trouble::empty, "sweeps", 0.0, 1.0};
+  if (window.empty()) return {ErrorCode::empty, "sweeps", 0.0, 1.0};
   const TimeNs first_ns = window.front().filtered.mean.state.time_ns;
-  if (time_ns < first_ns) return {Trouble::out_of_range, "time_ns", double(time_ns), double(first_ns)};
+  if (time_ns < first_ns) return {ErrorCode::out_of_range, "time_ns", double(time_ns), double(first_ns)};
   const auto holds = [&](const mapping::WindowSweep& sweep) { return time_ns <= sweep.end_ns; };
   const auto sweep = std::find_if(window.begin(), window.end(), holds);
-  if (sweep == window.end()) return {Trouble::out_of_range, "time_ns", double(time_ns), double(window.back().end_ns)};
+  if (sweep == window.end()) return {ErrorCode::out_of_range, "time_ns", double(time_ns), double(window.back().end_ns)};
   SweepTrajectory motion;
   if (Status status = sweep->motion(motion); !status.ok()) return status;
   pose = impl_->pose_along(motion, seconds(time_ns - motion.start_ns()), sweep->smoothed.errors);
@@ -185,7 +186,7 @@ std::size_t LidarInertialOdometry::map_bytes() const {
 
 std::vector<MapPoint> LidarInertialOdometry::map() const {
   if (!impl_->extends_map()) return impl_->localiser.map().points;
-  return impl_->map.with_normals(impl_->params);
+  return impl_->map.to_map_points(impl_->params);
 }
 
 }  // namespace tumble

@@ -20,7 +20,7 @@ class PoseVariance {
       : duration_s_(std::max(trajectory.duration_s(), 1e-9)) {
     namespace u = unknowns;
     const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
-    Eigen::Matrix<double, 9, Registration::kCalibration> F;
+    Eigen::Matrix<double, 9, Registration::kCalibrationStart> F;
     F << step.jacobian_start, step.jacobian_deficit_s;
     const Eigen::Matrix<double, 9, 9> end = F * u::block(covariance, u::moving) * F.transpose();
     start_m2_ = u::variances(covariance, u::position).mean();
@@ -49,7 +49,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   const PoseVariance of_pose(sweep.covariance, trajectory);
   const std::uint32_t number = sweeps();
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
-  const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.rings_differ);
+  const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.has_ring_numbers);
   const double moved_m =
       (trajectory.common_position_m(trajectory.duration_s()) - trajectory.common_position_m(0.0)).norm();
   sight_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
@@ -91,9 +91,9 @@ void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& 
   std::size_t hint = 0;
   for (const InsertedPoint& inserted_point : inserted) {
     const double t_s = inserted_point.point.t_s + later_s;
-    const SweepTrajectory::Instant at = trajectory.at(t_s, hint);
+    const SweepTrajectory::PreintegratedMotion at = trajectory.at(t_s, hint);
     const Eigen::Vector3d position = trajectory.common_position_m(t_s) + at.preintegrated_position_m +
-                                     at.q_WI * (T_IL * inserted_point.point.x_L_m.cast<double>());
+                                     at.q_WI * (T_IL * inserted_point.point.point_L_m.cast<double>());
     map_.move(inserted_point.index, position.cast<float>());
   }
 }
@@ -122,7 +122,7 @@ void LocalMap::start_from(const Params& params, std::span<const MapPoint> points
 bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   const Eigen::Vector3f here = p_WI_m.cast<float>();
   const float moved = (here - pruned_at_W_m_).norm();
-  if (moved < static_cast<float>(LocalMapParams::kPruneShare * params.expert.map.radius_m)) return false;
+  if (moved < static_cast<float>(LocalMapParams::kPruneRatio * params.expert.map.radius_m)) return false;
   pruned_at_W_m_ = here;
   const std::vector<std::uint32_t> kept = map_.remove_beyond(here, static_cast<float>(params.expert.map.radius_m));
   std::vector<Eigen::Vector3f> from(kept.size());
@@ -144,9 +144,9 @@ bool LocalMap::has_sweep_origins() const {
   return true;
 }
 
-std::vector<MapPoint> LocalMap::with_normals(const Params& params) const {
-  return mapping::with_normals(map_, seen_from_W_m_, params.expert.matching.neighbours,
-                               params.expert.matching.distance_m);
+std::vector<MapPoint> LocalMap::to_map_points(const Params& params) const {
+  return mapping::to_map_points(map_, seen_from_W_m_, params.expert.matching.neighbours,
+                                params.expert.matching.distance_m);
 }
 
 }  // namespace tumble::mapping

@@ -24,7 +24,7 @@ struct SweepToInsert {
   const SweepTrajectory& trajectory;
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
-  bool rings_differ;
+  bool has_ring_numbers;
   bool pose_certain;  ///< the sweep's free space may remove points of the map
 };
 
@@ -62,7 +62,7 @@ class LocalMap {
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
-  std::vector<MapPoint> with_normals(const Params& params) const;
+  std::vector<MapPoint> to_map_points(const Params& params) const;
 
   /// Returns whether each point of a loaded map has a valid sweep number.
   bool has_sweep_origins() const;

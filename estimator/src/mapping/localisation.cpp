@@ -12,42 +12,44 @@ namespace tumble {
 namespace {
 
 double innovation_max() {
-  return std::sqrt(mapping::unknowns::kAgrees / SweepUnknowns::kMotion);
+  return std::sqrt(mapping::unknowns::kAgrees / SweepUnknowns::kMotionSize);
 }
 
 }  // namespace
 
 void Localisation::add(const SweepReport& sweep) {
-  mapped_ = mapped_ || sweep.verdict != SweepVerdict::rejected;
-  if (!mapped_) return;
+  map_started_ = map_started_ || sweep.verdict != SweepVerdict::rejected;
+  if (!map_started_) return;
   const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
   largest_sigma_m_ = std::max(largest_sigma_m_, std::sqrt(variance_m2));
-  second_innovation_ = std::max(second_innovation_, std::min(largest_innovation_, sweep.innovation));
+  second_largest_innovation_ = std::max(second_largest_innovation_, std::min(largest_innovation_, sweep.innovation));
   largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
   sigma_m_ = sweep.map_sigma_m;
   newest_ns_ = sweep.pose.time_ns;
   if (!(sweep.innovation > innovation_max())) return;
-  before_ns_ = contradicted_ns_;
-  contradicted_ns_ = newest_ns_;
+  previous_contradicted_ns_ = last_contradicted_ns_;
+  last_contradicted_ns_ = newest_ns_;
 }
 
-Status Localisation::present() const {
+Status Localisation::current_verdict() const {
   if (sigma_m_ > matched_m_)
-    return {Trouble::out_of_range, "standard deviation in m of the position in the map", sigma_m_, matched_m_};
-  if (!before_ns_ || check_follows(newest_ns_, *before_ns_, kMemory_s).trouble == Trouble::gap) return {};
-  return {Trouble::out_of_range,
+    return {ErrorCode::out_of_range, "standard deviation in m of the position in the map", sigma_m_, matched_m_};
+  if (!previous_contradicted_ns_ ||
+      check_stamp_order(newest_ns_, *previous_contradicted_ns_, kMemory_s).error_code == ErrorCode::gap)
+    return {};
+  return {ErrorCode::out_of_range,
           "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",
-          second_innovation_, innovation_max()};
+          second_largest_innovation_, innovation_max()};
 }
 
 /// Returns an error if tracking failed (R70), or if sweeps contradict their predicted poses (R71): mapping.md.
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
-    return {Trouble::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, matched_m_};
-  if (second_innovation_ > innovation_max())
-    return {Trouble::out_of_range,
+    return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, matched_m_};
+  if (second_largest_innovation_ > innovation_max())
+    return {ErrorCode::out_of_range,
             "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",
-            second_innovation_, innovation_max()};
+            second_largest_innovation_, innovation_max()};
   return {};
 }
 

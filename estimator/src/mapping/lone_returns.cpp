@@ -33,8 +33,8 @@ float square(float x) {
 
 /// Returns the squared sine of the angle between two beams. For an angle of 90 deg or more, returns 1.
 float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
-  if (a.x_L_m.dot(b.x_L_m) <= 0.0f) return 1.0f;
-  return a.x_L_m.cross(b.x_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
+  if (a.point_L_m.dot(b.point_L_m) <= 0.0f) return 1.0f;
+  return a.point_L_m.cross(b.point_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
 }
 
 float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
@@ -49,7 +49,8 @@ bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam&
 /// Returns whether the line between two returns forms an angle with the beam of at least `sine`: mapping.md (R14).
 bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
-  return a.x_L_m.cross(b.x_L_m).squaredNorm() >= square(sine * farther) * (a.x_L_m - b.x_L_m).squaredNorm();
+  return a.point_L_m.cross(b.point_L_m).squaredNorm() >=
+         square(sine * farther) * (a.point_L_m - b.point_L_m).squaredNorm();
 }
 
 /// Returns whether a return is on the line between the previous and the next return: mapping.md (R15).
@@ -121,7 +122,7 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::uint32_t at = ring_next_[points[i].ring]++;
     order_[at] = i;
-    beams_[at] = {points[i].x_L_m, points[i].range_m, points[i].ring};
+    beams_[at] = {points[i].point_L_m, points[i].range_m, points[i].ring};
   }
 }
 

@@ -33,7 +33,7 @@ class LoneReturns {
  private:
   /// Beam contains the data of a return for the comparison of neighbours; beams are contiguous per ring.
   struct Beam {
-    Eigen::Vector3f x_L_m;
+    Eigen::Vector3f point_L_m;
     float range_m;
     std::uint16_t ring;
   };

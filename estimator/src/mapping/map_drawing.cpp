@@ -14,8 +14,8 @@ constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace
 
-std::uint32_t ScanLines::base(const Eigen::Vector3d& spin_axis_W, bool rings_differ) {
-  if (!rings_differ) return VoxelMap::kNoLine;
+std::uint32_t ScanLines::base(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers) {
+  if (!has_ring_numbers) return VoxelMap::kUnknownScanLine;
   if (spin_axis_W.dot(axis_W_) < kSameLineCosine) {
     axis_W_ = spin_axis_W;
     ++attitude_;
@@ -23,8 +23,8 @@ std::uint32_t ScanLines::base(const Eigen::Vector3d& spin_axis_W, bool rings_dif
   return attitude_ << kRingBits;
 }
 
-std::vector<MapPoint> with_normals(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
-                                   double match_distance_m) {
+std::vector<MapPoint> to_map_points(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
+                                    double match_distance_m) {
   std::vector<MapPoint> out;
   out.reserve(map.size());
   Neighbours found;

@@ -97,8 +97,8 @@ bool MapLocaliser::passes(const FramePose& pose) const {
 
 Status MapLocaliser::status() const {
   if (!has_map() || localised_) return {};
-  return {Trouble::degenerate, "sweeps that agree with the prior map: not localised in the prior map", double(passed_),
-          double(kPasses)};
+  return {ErrorCode::degenerate, "sweeps that agree with the prior map: not localised in the prior map",
+          double(passed_), double(kPasses)};
 }
 
 }  // namespace tumble::mapping

@@ -17,7 +17,7 @@ template <class Self, class Visitor>
 void InertialTrack::members(Self& s, Visitor& visit) {
   visit("track.samples", s.samples_);
   visit("track.boundary_ns", s.boundary_ns_);
-  visit.scratch(s.rests_);
+  visit.scratch(s.rest_detector_);
   visit("track.rest", s.rest_);
   visit("track.initial", s.initial_);
   visit("track.undecided_rad_s", s.undecided_rad_s_);

@@ -13,13 +13,13 @@ namespace {
 constexpr double kRotation = 1e-5;  // tolerance of a rotation matrix that was converted to text or floats
 
 constexpr Status not_finite(const char* field) {
-  return {Trouble::non_finite, field, std::numeric_limits<double>::quiet_NaN(), 0.0};
+  return {ErrorCode::non_finite, field, std::numeric_limits<double>::quiet_NaN(), 0.0};
 }
 
 Status check(const VelocityReading& reading) {
   if (!reading.v_WI_I_m_s.allFinite()) return not_finite("v_WI_I_m_s");
   if (!std::isfinite(reading.sigma_m_s)) return not_finite("sigma_m_s");
-  if (!(reading.sigma_m_s > 0.0)) return {Trouble::out_of_range, "sigma_m_s", reading.sigma_m_s, 0.0};
+  if (!(reading.sigma_m_s > 0.0)) return {ErrorCode::out_of_range, "sigma_m_s", reading.sigma_m_s, 0.0};
   return {};
 }
 
@@ -27,13 +27,13 @@ Status check(const MotionReading& reading) {
   if (!reading.T_from_to.matrix().allFinite()) return not_finite("T_from_to");
   if (!reading.covariance.allFinite()) return not_finite("covariance");
   if (reading.to_ns <= reading.from_ns)
-    return {Trouble::time_order, "to_ns", double(reading.to_ns), double(reading.from_ns)};
+    return {ErrorCode::time_order, "to_ns", double(reading.to_ns), double(reading.from_ns)};
   const Eigen::Matrix3d R = reading.T_from_to.linear();
   const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= kRotation) || !(R.determinant() > 0.0)) return {Trouble::out_of_range, "T_from_to", off, kRotation};
+  if (!(off <= kRotation) || !(R.determinant() > 0.0)) return {ErrorCode::out_of_range, "T_from_to", off, kRotation};
   const double least = reading.covariance.diagonal().minCoeff();
   if (!(least > 0.0) || !dense::Cholesky(reading.covariance).ok())
-    return {Trouble::out_of_range, "covariance", least, 0.0};
+    return {ErrorCode::out_of_range, "covariance", least, 0.0};
   return {};
 }
 
@@ -43,12 +43,12 @@ Status check_reading(const OdometerReading& reading) {
   return std::visit([](const auto& kind) { return check(kind); }, reading);
 }
 
-TimeNs begins_ns(const OdometerReading& reading) {
+TimeNs reading_start_ns(const OdometerReading& reading) {
   const auto* const motion = std::get_if<MotionReading>(&reading);
   return motion != nullptr ? motion->from_ns : std::get_if<VelocityReading>(&reading)->time_ns;
 }
 
-TimeNs ends_ns(const OdometerReading& reading) {
+TimeNs reading_end_ns(const OdometerReading& reading) {
   const auto* const motion = std::get_if<MotionReading>(&reading);
   return motion != nullptr ? motion->to_ns : std::get_if<VelocityReading>(&reading)->time_ns;
 }

@@ -66,7 +66,7 @@ struct LidarInertialOdometry::Impl {
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
-                                             bool rings_differ, const mapping::Placed& placed, SweepReport& report);
+                                             bool has_ring_numbers, const mapping::Placed& placed, SweepReport& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
   /// Adds a sweep to the window that continues from the start of the updated sweep.

@@ -57,17 +57,17 @@ void members(Self& s, Visitor& visit) {
   visit("report.velocity_covariance_I_m2_s2", s.velocity_covariance_I_m2_s2);
   visit("report.trajectory", s.trajectory);
   visit("report.smoothed", s.smoothed);
-  visit("report.inlier_share", s.inlier_share);
-  visit("report.conditioning", s.conditioning);
-  visit.with_nan("report.weakest_sigma_m", s.weakest_sigma_m);  // infinite without constraints
+  visit("report.inlier_share", s.inlier_ratio);
+  visit("report.conditioning", s.eigenvalue_ratio);
+  visit.with_nan("report.weakest_sigma_m", s.least_constrained_sigma_m);  // infinite without constraints
   visit("report.innovation", s.innovation);
   visit("report.map_sigma_m", s.map_sigma_m);
   visit("report.iterations", s.iterations);
-  visit("report.lost_sweeps", s.lost_sweeps);
-  visit("report.weakest_direction", s.weakest_direction);
+  visit("report.lost_sweeps", s.consecutive_rejected_sweeps);
+  visit("report.weakest_direction", s.least_constrained_direction);
   visit("report.saturation_deficit_rad_s", s.saturation_deficit_rad_s);
   visit("report.points_used", s.points_used);
-  visit("report.lone_points", s.lone_points);
+  visit("report.lone_points", s.isolated_points);
   visit("report.points_registered", s.points_registered);
   visit("report.map_points_added", s.map_points_added);
   visit("report.in_prior_map", s.in_prior_map);
@@ -80,15 +80,15 @@ void members(Self& s, Visitor& visit) {
   visit("scale.changes", s.changes);
 }
 
-template <StateOf<SweepScaleWatch::Change> Self, class Visitor>
+template <StateOf<SweepScaleEstimator::Change> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("change.time_ns", s.time_ns);
-  visit("change.by_imu_m_s", s.by_imu_m_s);
-  visit("change.by_sweeps_m_s", s.by_sweeps_m_s);
+  visit("change.by_imu_m_s", s.imu_change_m_s);
+  visit("change.by_sweeps_m_s", s.sweeps_change_m_s);
 }
 
 template <class Self, class Visitor>
-void SweepScaleWatch::members(Self& s, Visitor& visit) {
+void SweepScaleEstimator::members(Self& s, Visitor& visit) {
   visit.scratch(s.gravity_m_s2_);
   visit.scratch(s.samples_max_);
   visit("scale.samples", s.samples_);
@@ -100,14 +100,14 @@ void SweepScaleWatch::members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void Localisation::members(Self& s, Visitor& visit) {
   visit.scratch(s.matched_m_);
-  visit("localisation.mapped", s.mapped_);
+  visit("localisation.mapped", s.map_started_);
   visit("localisation.largest_sigma_m", s.largest_sigma_m_);
   visit("localisation.largest_innovation", s.largest_innovation_);
-  visit("localisation.second_innovation", s.second_innovation_);
+  visit("localisation.second_innovation", s.second_largest_innovation_);
   visit("localisation.sigma_m", s.sigma_m_);
   visit("localisation.newest_ns", s.newest_ns_);
-  visit("localisation.contradicted_ns", s.contradicted_ns_);
-  visit("localisation.before_ns", s.before_ns_);
+  visit("localisation.contradicted_ns", s.last_contradicted_ns_);
+  visit("localisation.before_ns", s.previous_contradicted_ns_);
 }
 
 template <StateOf<FlyingBody> Self, class Visitor>

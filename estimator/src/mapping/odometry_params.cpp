@@ -21,7 +21,7 @@ void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
 /// Checks the fields, the relations between fields, and the members that are not fields.
 detail::OutOfBounds out_of_bounds(const OdometryParams& params) {
   detail::OutOfBounds found;
-  detail::FindOutOfBounds visit(found);
+  detail::BoundsChecker visit(found);
   OdometryParams::fields(params, visit);
   visit(params.range_max_m, {"range_max_m", "m", params.range_min_m, 1e4, ""});
   visit(params.expert.map.spacing_m, {"map_spacing_m", "m", 0.0, params.expert.map.voxel_m, ""});
@@ -44,7 +44,7 @@ Status check_odometry_params(const OdometryParams& params) {
 }
 
 void mapping::require_params(const OdometryParams& params) {
-  detail::throw_if(out_of_bounds(params));
+  detail::throw_if_out_of_bounds(out_of_bounds(params));
 }
 
 }  // namespace tumble

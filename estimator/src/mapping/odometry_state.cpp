@@ -23,9 +23,9 @@ void visit_estimated(Self& p, Visitor& visit) {
 
 Status check_window(const mapping::LagWindow& window, std::size_t length) {
   if (window.length() != length)
-    return {Trouble::out_of_range, "window.length", double(window.length()), double(length)};
+    return {ErrorCode::out_of_range, "window.length", double(window.length()), double(length)};
   if (window.sweeps().size() > length)
-    return {Trouble::out_of_range, "window.sweeps", double(window.sweeps().size()), double(length)};
+    return {ErrorCode::out_of_range, "window.sweeps", double(window.sweeps().size()), double(length)};
   return {};
 }
 
@@ -34,11 +34,11 @@ Status check_window(const mapping::LagWindow& window, std::size_t length) {
 Status LidarInertialOdometry::Impl::check_other() const {
   if (!other) return {};
   if (!mapping::is_unconfirmed(tracking) && !mapping::is_lost(tracking))
-    return {Trouble::out_of_range, "other", 1.0, 0.0};
+    return {ErrorCode::out_of_range, "other", 1.0, 0.0};
   if (other->inserted_from > map.sweeps())
-    return {Trouble::out_of_range, "other.inserted_from", double(other->inserted_from), double(map.sweeps())};
+    return {ErrorCode::out_of_range, "other.inserted_from", double(other->inserted_from), double(map.sweeps())};
   for (const mapping::WindowSweep& sweep : other->window.sweeps()) {
-    if (!sweep.inserted.empty()) return {Trouble::out_of_range, "other.inserted", double(sweep.inserted.size()), 0.0};
+    if (!sweep.inserted.empty()) return {ErrorCode::out_of_range, "other.inserted", double(sweep.inserted.size()), 0.0};
   }
   return check_window(other->window, window.length());
 }
@@ -50,14 +50,14 @@ Status LidarInertialOdometry::Impl::check_state() const {
   for (const mapping::WindowSweep& sweep : window.sweeps()) {
     for (const mapping::InsertedPoint& inserted : sweep.inserted) {
       if (inserted.index >= map.voxels().index_end() || !map.voxels().exists(inserted.index))
-        return {Trouble::out_of_range, "inserted.index", double(inserted.index), double(map.voxels().index_end())};
+        return {ErrorCode::out_of_range, "inserted.index", double(inserted.index), double(map.voxels().index_end())};
     }
   }
-  if (!map.has_sweep_origins()) return {Trouble::out_of_range, "map.sweep", 1.0, 0.0};
+  if (!map.has_sweep_origins()) return {ErrorCode::out_of_range, "map.sweep", 1.0, 0.0};
   const std::span<const MotionSample> samples = track.samples();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (samples[k].from_ns > samples[k].time_ns || (k > 0 && samples[k].time_ns <= samples[k - 1].time_ns))
-      return {Trouble::time_order, "motion.time_ns", double(samples[k].time_ns), double(samples[k].from_ns)};
+      return {ErrorCode::time_order, "motion.time_ns", double(samples[k].time_ns), double(samples[k].from_ns)};
     if (const Status status = check_stamp(samples[k].from_ns, "motion.from_ns"); !status.ok()) return status;
     if (const Status status = check_stamp(samples[k].time_ns, "motion.time_ns"); !status.ok()) return status;
   }

@@ -49,7 +49,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const Status points_status = points.select(params, returns, end_ns - start_ns, before.calibration,
                                              seconds(start_ns - boundary.time_ns()), counts);
   report.points_used = counts.used;
-  report.lone_points = counts.lone;
+  report.isolated_points = counts.isolated;
   const auto placed = std::make_unique<Placed>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
   if (other && mapping::contradicts(tracking, placed->placement)) {  // restart from tracking failure
@@ -74,7 +74,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   // uncertain.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
-    inserted = insert(sweep, points, counts.rings_differ, *placed, report);
+    inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
   propagate(sweep, *placed, motion, std::move(inserted), report);
   localise(report);
   return points_status;
@@ -84,19 +84,19 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
                                                 std::span<const LidarPoint> returns) const {
   const bool started = mapping::has_started(tracking) || track.border_ns();
   const std::span<const MotionSample> samples = track.samples();
-  if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
+  if (end_ns < start_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (started && start_ns < boundary.time_ns())
-    return {Trouble::time_order, "start_ns", double(start_ns), double(boundary.time_ns())};
-  if (samples.empty() && returns.empty()) return {Trouble::empty, "points", 0.0, 1.0};
-  if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+    return {ErrorCode::time_order, "start_ns", double(start_ns), double(boundary.time_ns())};
+  if (samples.empty() && returns.empty()) return {ErrorCode::empty, "points", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
   if (samples.back().time_ns < end_ns) {
-    return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
+    return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
   // With a wrong clock, the first sweep may start before the first sample. With a wrong clock, the initial rest extends
   // backwards to the start of the sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
-    return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
+    return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
   }
   return mapping::check_offsets(end_ns - start_ns, returns);
 }
@@ -132,9 +132,9 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   mapping::SweepPoints::Counts counts;
   const Status selected = scratch.points.select(params, returns, end_ns - start_ns, calibration, 0.0, counts);
   report.points_used = counts.used;
-  report.lone_points = counts.lone;
+  report.isolated_points = counts.isolated;
   const std::size_t points = selected.ok() ? scratch.points.all().size() : 0;
-  const bool usable = points >= params.expert.matching.least;
+  const bool usable = points >= params.expert.matching.matches_min;
   if (usable && !track.border_ns() && seconds(start_ns - boundary.time_ns()) <= kTogether_s) return {};
   if (usable) {
     const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
@@ -148,7 +148,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
   known = mapping::InertialPrior{};
   if (!selected.ok()) return selected;
-  return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
+  return {ErrorCode::too_few, "points", double(points), double(params.expert.matching.matches_min)};
 }
 
 /// Propagates the state to `end_ns` by inertial integration, without a map. If the IMU is at rest, the measured gravity
@@ -159,7 +159,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
     if (Status status = level_start(levelled); !status.ok()) return status;
     boundary.state_estimate = mapping::belief_before_map(params, levelled);
   }
-  if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
+  if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levelling_max_s)) {
     if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
     levelled.time_ns = end_ns;
     if (!track.has_not_moved()) {
@@ -192,7 +192,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
                                                   mapping::SweepPoints& points, SweepTrajectory& trajectory,
                                                   SweepReport& report, Placed& placed) {
   if (map.empty()) {
-    if (points.all().size() >= params.expert.matching.least) placed.verdict = SweepVerdict::first;
+    if (points.all().size() >= params.expert.matching.matches_min) placed.verdict = SweepVerdict::first;
     return;
   }
   const bool prior_certain = mapping::prior_is_certain(params, boundary, motion, trajectory);
@@ -202,14 +202,14 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
                                                     scene, scratch.aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
-  report.inlier_share = attempt.inlier_share;
+  report.inlier_ratio = attempt.inlier_ratio;
   if (placed.alignment) {
     const Registration::Result& aligned = *placed.alignment;
     report.innovation = mapping::innovation(prediction, aligned.mean);
     placed.expected = mapping::is_expected(params, prediction, aligned.mean, report.innovation);
-    report.conditioning = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
-    report.weakest_direction = aligned.directions.col(0);
-    report.weakest_sigma_m = aligned.weakest_sigma_m;
+    report.eigenvalue_ratio = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
+    report.least_constrained_direction = aligned.directions.col(0);
+    report.least_constrained_sigma_m = aligned.least_constrained_sigma_m;
     report.saturation_deficit_rad_s = aligned.mean.deficit_rad_s.rowwise().mean();
   }
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
@@ -233,7 +233,7 @@ void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const
 }
 
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
-                                                               bool rings_differ, const Placed& placed,
+                                                               bool has_ring_numbers, const Placed& placed,
                                                                SweepReport& report) {
   const StateEstimate& before = boundary.state_estimate;
   if (mapping::unknowns::variances(before.weight, mapping::unknowns::calibration).maxCoeff() > 0.0) {
@@ -243,8 +243,9 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   std::vector<InsertedPoint> inserted;
   const bool sure =
       placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) && !mapping::is_unconfirmed(tracking);
-  report.map_points_added = map.insert(params, {sweep.trajectory, sweep.start.weight, points.all(), rings_differ, sure},
-                                       scratch.aligner.registration(), inserted);
+  report.map_points_added =
+      map.insert(params, {sweep.trajectory, sweep.start.weight, points.all(), has_ring_numbers, sure},
+                 scratch.aligner.registration(), inserted);
   return inserted;
 }
 
@@ -255,11 +256,11 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   const bool unconfirmed_before = mapping::is_unconfirmed(tracking);
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
-  report.unconfirmed = mapping::is_unconfirmed(tracking);
+  report.relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   propagate_alternative(motion, unconfirmed_before);
-  report.lost_sweeps = mapping::lost_sweeps(tracking);
+  report.consecutive_rejected_sweeps = mapping::consecutive_rejected_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
-    world.add_drift(report.weakest_sigma_m, report.weakest_direction);
+    world.add_drift(report.least_constrained_sigma_m, report.least_constrained_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
   const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
   report.map_sigma_m =
@@ -303,8 +304,8 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
 /// Propagates the alternative pose by inertial prediction. The alternative pose is the pose without an unconfirmed
 /// relocalisation. After a second tracking failure, the alternative is the contradicted pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
-  const bool unconfirmed = mapping::is_unconfirmed(tracking);
-  if (unconfirmed && !unconfirmed_before) {
+  const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
+  if (relocalisation_unconfirmed && !unconfirmed_before) {
     mapping::DeadReckoning& from_here = other.emplace();  // constructed in place, because it is too large for the stack
     from_here.boundary = boundary;
     from_here.window = window;
@@ -312,7 +313,7 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
     from_here.world = world;
     from_here.inserted_from = map.sweeps() - 1;
   }
-  if (!unconfirmed && !mapping::is_lost(tracking)) other.reset();
+  if (!relocalisation_unconfirmed && !mapping::is_lost(tracking)) other.reset();
   if (!other) return;
   const bool rests = std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns);
   if (!go_on_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();

@@ -14,7 +14,7 @@ int most_on_one_line(const VoxelMap& map, const Neighbours& neighbours) {
   for (int i = 0; i < neighbours.count; ++i) line[i] = map.line(neighbours.index[i]);
   int most = 1;
   for (int i = 0; i < neighbours.count; ++i) {
-    if (line[i] == VoxelMap::kNoLine) continue;
+    if (line[i] == VoxelMap::kUnknownScanLine) continue;
     int same = 0;
     for (int j = i; j < neighbours.count; ++j) same += line[j] == line[i];
     most = std::max(most, same);
@@ -30,7 +30,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
   if (n < bounds.neighbours_min || n < 3) return fit;
 
   if (n - most_on_one_line(map, neighbours) < bounds.off_line_min) {
-    fit.verdict = PlaneVerdict::one_line;
+    fit.verdict = PlaneVerdict::one_scan_line;
     return fit;
   }
 
@@ -58,7 +58,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
   const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0.0);
 
   fit.centre_W_m = origin + mean.cast<float>();
-  fit.thickness2_m2 = static_cast<float>(l[0]);
+  fit.thickness_variance_m2 = static_cast<float>(l[0]);
   if (!(l[1] >= bounds.collinear_share * l[2]) || !(l[2] > 0.0)) {
     fit.verdict = PlaneVerdict::collinear;
     return fit;
@@ -66,10 +66,11 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
   // the plane fit uses three of the n degrees of freedom: mapping.md (R27)
   const double noise2 = l[0] / std::max(n - 3, 1);
   for (int axis = 0; axis < 2; ++axis) {
-    fit.tilt_W.col(axis) = (std::sqrt(noise2 / l[axis + 1]) * solver.eigenvectors().col(axis + 1)).cast<float>();
+    fit.normal_sigma_W.col(axis) =
+        (std::sqrt(noise2 / l[axis + 1]) * solver.eigenvectors().col(axis + 1)).cast<float>();
   }
   fit.normal_W = solver.eigenvectors().col(0).cast<float>().normalized();
-  fit.verdict = l[0] > bounds.rough_share * l[1] ? PlaneVerdict::rough : PlaneVerdict::plane;
+  fit.verdict = l[0] > bounds.rough_share * l[1] ? PlaneVerdict::too_thick : PlaneVerdict::plane;
   return fit;
 }
 

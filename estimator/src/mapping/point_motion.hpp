@@ -27,7 +27,7 @@ class PointMotion {
  private:
   double t_s_;
   bool clipped_;
-  SweepTrajectory::Instant now_;
+  SweepTrajectory::PreintegratedMotion now_;
   Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
   SweepTrajectory::DeficitDerivative by_deficit_;  // used if an axis of the gyro is clipped
 };

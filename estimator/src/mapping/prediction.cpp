@@ -29,9 +29,9 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   const Eigen::Vector3d share_at_start = trajectory.deficit_factor_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(share_at_start[axis] > 0.0 && boundary.deficit_share[axis] > 0.0)) continue;
+    if (!(share_at_start[axis] > 0.0 && boundary.deficit_factor[axis] > 0.0)) continue;
     double remains =
-        std::clamp(boundary.deficit_share[axis] / share_at_start[axis], 0.0, params.expert.rails.deficit_carry_max);
+        std::clamp(boundary.deficit_factor[axis] / share_at_start[axis], 0.0, params.expert.rails.deficit_carry_max);
     for (int knot = 0; knot <= kLast; ++knot) {
       next.prior.mean.deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.deficit_rad_s(axis, kLast);
       next.by_last(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
@@ -183,18 +183,18 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 }
 
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned) {
-  constexpr int kMotion = Registration::kMotion;
+  constexpr int kMotionSize = Registration::kMotionSize;
   const Registration::Vector away = aligned.minus(prediction.prior.mean);
-  const Eigen::Matrix<double, kMotion, 1> moved = u::segment(away, u::motion);
-  Eigen::Matrix<double, kMotion, kMotion> P = u::block(prediction.errors, u::motion);
+  const Eigen::Matrix<double, kMotionSize, 1> moved = u::segment(away, u::motion);
+  Eigen::Matrix<double, kMotionSize, kMotionSize> P = u::block(prediction.errors, u::motion);
   P.diagonal().array() += unknowns::kLeastVariance;
-  return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
+  return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotionSize);
 }
 
 bool is_expected(const Params& params, const Prediction& prediction, const Registration::Estimate& aligned,
                  double innovation) {
   const Eigen::Vector3d away_m = aligned.state.p_WI_m - prediction.prior.mean.state.p_WI_m;
-  return innovation * innovation * Registration::kMotion <= unknowns::kAgrees &&
+  return innovation * innovation * Registration::kMotionSize <= unknowns::kAgrees &&
          away_m.norm() <= params.expert.matching.distance_m;
 }
 
@@ -204,9 +204,9 @@ void boundary_after(const Params& params, const StateEstimate& start, const Moti
   at_end(start, trajectory, boundary.end_by_start, window.end_ns, boundary.state_estimate);
   boundary.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   const bool aligned = alignment != nullptr;
-  boundary.deficit_share = Eigen::Vector3d::Zero();
-  if (aligned) boundary.deficit_share = trajectory.deficit_factor_at_end();
-  boundary.constrained = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
+  boundary.deficit_factor = Eigen::Vector3d::Zero();
+  if (aligned) boundary.deficit_factor = trajectory.deficit_factor_at_end();
+  boundary.constrained = aligned && alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 
 }  // namespace tumble::mapping

@@ -14,7 +14,7 @@ struct SweepBoundary {
   Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< derivative by the last sweep's start
   /// Magnitude |s_j| of the saturation deficit's factor at the boundary, on saturated axes. The magnitude is 0 if the
   /// last sweep was not aligned.
-  Eigen::Vector3d deficit_share = Eigen::Vector3d::Zero();
+  Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the accelerometer's saturation, W
   bool constrained = false;  ///< the last sweep was constrained in all directions
 

@@ -10,8 +10,8 @@ namespace tumble {
 
 Status LidarInertialOdometry::use_map(PriorMap map) {
   if (const Status status = check_prior_map(map); !status.ok()) return status;
-  if (mapping::has_started(impl_->tracking)) return {Trouble::time_order, "sweeps before the prior map", 1.0, 0.0};
-  if (map.T_MI) start_at(*map.T_MI);
+  if (mapping::has_started(impl_->tracking)) return {ErrorCode::time_order, "sweeps before the prior map", 1.0, 0.0};
+  if (map.T_MI) set_start_pose(*map.T_MI);
   impl_->localiser = mapping::MapLocaliser(std::move(map));
   return {};
 }
@@ -19,7 +19,8 @@ Status LidarInertialOdometry::use_map(PriorMap map) {
 void LidarInertialOdometry::use_map_of(const LidarInertialOdometry& other) {
   impl_->localiser = other.impl_->localiser;
   impl_->localiser.restart(impl_->start_pose);
-  if (!impl_->start_pose && has_prior_map() && impl_->localiser.map().T_MI) start_at(*impl_->localiser.map().T_MI);
+  if (!impl_->start_pose && has_prior_map() && impl_->localiser.map().T_MI)
+    set_start_pose(*impl_->localiser.map().T_MI);
 }
 
 Status LidarInertialOdometry::localised() const {

@@ -101,7 +101,7 @@ std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vecto
 
 PriorScene::PriorScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxels) {
   for (const MapPoint& point : map_.points) {
-    const std::uint32_t index = voxels_.add(point.position_W_m, point.sigma_m, 0, VoxelMap::kNoLine);
+    const std::uint32_t index = voxels_.add(point.position_W_m, point.sigma_m, 0, VoxelMap::kUnknownScanLine);
     if (index == VoxelMap::kNoPoint) continue;
     if (normals_.size() <= index) normals_.resize(voxels_.index_end(), Eigen::Vector3f::Zero());
     normals_[index] = point.normal_W;
@@ -328,13 +328,13 @@ Status check_map_points(std::span<const MapPoint> points) {
   constexpr double kFarthest_m = 5e4;
   for (const MapPoint& point : points) {
     if (!point.position_W_m.allFinite() || !point.normal_W.allFinite() || !std::isfinite(point.sigma_m))
-      return {Trouble::non_finite, "prior map's points", std::nan(""), kFarthest_m};
+      return {ErrorCode::non_finite, "prior map's points", std::nan(""), kFarthest_m};
     const double farthest = point.position_W_m.cwiseAbs().maxCoeff();
-    if (farthest > kFarthest_m) return {Trouble::out_of_range, "prior map's position_m", farthest, kFarthest_m};
-    if (point.sigma_m < 0.0f) return {Trouble::out_of_range, "prior map's sigma_m", point.sigma_m, 0.0};
+    if (farthest > kFarthest_m) return {ErrorCode::out_of_range, "prior map's position_m", farthest, kFarthest_m};
+    if (point.sigma_m < 0.0f) return {ErrorCode::out_of_range, "prior map's sigma_m", point.sigma_m, 0.0};
     const double length = point.normal_W.norm();
     if (length > 0.0 && std::abs(length - 1.0) > 1e-3)
-      return {Trouble::out_of_range, "length of a prior map's normal", length, 1.0};
+      return {ErrorCode::out_of_range, "length of a prior map's normal", length, 1.0};
   }
   return {};
 }
@@ -345,15 +345,15 @@ Status check_prior_map(const PriorMap& map) {
   const auto has_normal = [](const MapPoint& point) { return !point.normal_W.isZero(0.0f); };
   const auto with_normal = static_cast<std::size_t>(std::count_if(map.points.begin(), map.points.end(), has_normal));
   if (with_normal < kLeast)
-    return {Trouble::too_few, "prior map's points with normals", double(with_normal), double(kLeast)};
+    return {ErrorCode::too_few, "prior map's points with normals", double(with_normal), double(kLeast)};
   if (!std::isfinite(map.sigma_m) || !std::isfinite(map.sigma_rad) || (map.T_MI && !map.T_MI->matrix().allFinite()))
-    return {Trouble::non_finite, "pose in the prior map", std::nan(""), 0.0};
-  if (map.sigma_m < 0.0) return {Trouble::out_of_range, "sigma_m", map.sigma_m, 0.0};
-  if (map.sigma_rad < 0.0) return {Trouble::out_of_range, "sigma_rad", map.sigma_rad, 0.0};
+    return {ErrorCode::non_finite, "pose in the prior map", std::nan(""), 0.0};
+  if (map.sigma_m < 0.0) return {ErrorCode::out_of_range, "sigma_m", map.sigma_m, 0.0};
+  if (map.sigma_rad < 0.0) return {ErrorCode::out_of_range, "sigma_rad", map.sigma_rad, 0.0};
   return {};
 }
 
-std::vector<MapPoint> with_normals(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m) {
+std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m) {
   VoxelMap voxels(mapping::kVoxels);
   for (const Eigen::Vector3f& position : positions_M_m)
     if (position.allFinite()) voxels.insert(position, sigma_m, 0);

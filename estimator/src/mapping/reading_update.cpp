@@ -15,14 +15,14 @@ namespace {
 
 namespace u = unknowns;
 using Matrix = Registration::Matrix;
-constexpr int kUnknowns = Registration::kUnknowns, kMotion = Registration::kMotion, kMost = 6;
+constexpr int kUnknowns = Registration::kUnknowns, kMotionSize = Registration::kMotionSize, kMost = 6;
 
 template <int Columns>
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Columns, 0, kMost, Columns>;
 using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
 using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 template <int Values>
-using OfMotion = Eigen::Matrix<double, Values, kMotion>;
+using OfMotion = Eigen::Matrix<double, Values, kMotionSize>;
 
 constexpr int kIterations = 6;     // two or three iterations are usually enough
 constexpr double kSettled = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
@@ -30,12 +30,12 @@ constexpr double kSettled = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 /// Current change of the unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
-  Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
+  Eigen::Matrix<double, kMotionSize, 1> noise = Eigen::Matrix<double, kMotionSize, 1>::Zero();
 };
 
 struct Expected {
   Rows<kUnknowns> jacobian_start;
-  Rows<kMotion> by_noise;
+  Rows<kMotionSize> by_noise;
   Values residual;  ///< innovation: the reading minus its prediction
   Covariance variance;
 };
@@ -45,7 +45,7 @@ struct Moment {
   double noise_share = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d p_WI_m, v_WI_m_s;
-  Eigen::Matrix<double, kMotion, kUnknowns> jacobian_start;
+  Eigen::Matrix<double, kMotionSize, kUnknowns> jacobian_start;
 };
 
 class Sweep {
@@ -74,7 +74,8 @@ class Sweep {
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
-    const SweepTrajectory::Instant instant = trajectory.at(t_s, Eigen::Vector3d::Zero(), hint, out.v_WI_m_s);
+    const SweepTrajectory::PreintegratedMotion instant =
+        trajectory.at(t_s, Eigen::Vector3d::Zero(), hint, out.v_WI_m_s);
     out.q_WI = instant.q_WI;
     out.p_WI_m = trajectory.common_position_m(t_s) + instant.preintegrated_position_m;
     const SweepTrajectory::Transition step = trajectory.transition(inside_s);
@@ -96,12 +97,12 @@ template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
   out.jacobian_start += jacobian_start;
-  out.by_noise += moment.noise_share * jacobian_start.template leftCols<kMotion>();
+  out.by_noise += moment.noise_share * jacobian_start.template leftCols<kMotionSize>();
 }
 
 template <int Size>
 Expected nothing() {
-  return {Rows<kUnknowns>::Zero(Size, kUnknowns), Rows<kMotion>::Zero(Size, kMotion), Values::Zero(Size),
+  return {Rows<kUnknowns>::Zero(Size, kUnknowns), Rows<kMotionSize>::Zero(Size, kMotionSize), Values::Zero(Size),
           Covariance::Zero(Size, Size)};
 }
 
@@ -127,10 +128,10 @@ Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets&
   const Eigen::Vector3d moved_W_m = to.p_WI_m - from.p_WI_m;
   const Eigen::Quaterniond turned = from.q_WI.conjugate() * to.q_WI;
   const Eigen::Quaterniond read(Eigen::Matrix3d(reading.T_from_to.linear()));
-  const Eigen::Vector3d off_rad = so3::log((read * turned.conjugate()).normalized());
-  const Eigen::Matrix3d by_turn = so3::left_jacobian_inverse(off_rad).transpose() * to_I;
+  const Eigen::Vector3d mean_force_tilt_rad = so3::log((read * turned.conjugate()).normalized());
+  const Eigen::Matrix3d by_turn = so3::left_jacobian_inverse(mean_force_tilt_rad).transpose() * to_I;
   out.residual.head<3>() = reading.T_from_to.translation() - to_I * moved_W_m;
-  out.residual.tail<3>() = off_rad;
+  out.residual.tail<3>() = mean_force_tilt_rad;
   OfMotion<kMost> by_from = OfMotion<kMost>::Zero(), by_to = by_from;
   by_to.topLeftCorner<3, 3>() = to_I;
   by_to.block<3, 3>(3, 3) = by_turn;
@@ -144,7 +145,7 @@ Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets&
 }
 
 bool holds(const Sweep& sweep, const OdometerReading& reading) {
-  return sweep.holds(begins_ns(reading)) && sweep.holds(ends_ns(reading));
+  return sweep.holds(reading_start_ns(reading)) && sweep.holds(reading_end_ns(reading));
 }
 
 template <int Size>
@@ -156,7 +157,7 @@ struct Work {
   Offsets offsets;
   Expected expected;
   Gain<kUnknowns> jacobian_start;  ///< gain of the unknowns at the boundary
-  Gain<kMotion> by_noise;          ///< gain of the noise since the boundary
+  Gain<kMotionSize> by_noise;      ///< gain of the noise since the boundary
 };
 
 /// Computes the gains at the current linearisation point: mapping.md (R37).
@@ -197,7 +198,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
-  work.jacobian_start.topRows<kMotion>() += work.by_noise;  // from here on, the gain of the sum
+  work.jacobian_start.topRows<kMotionSize>() += work.by_noise;  // from here on, the gain of the sum
   const Rows<kUnknowns> by_last = work.expected.jacobian_start * prediction.by_last;
   prediction.by_last.noalias() -= work.jacobian_start * by_last;
   work.left.setIdentity();
@@ -207,9 +208,9 @@ bool find_gains(const MotionNoise& within, Work& work) {
 /// Adds the noise within the sweep, which the gains reduce, and the noise of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.jacobian_start;
-  Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
-  left.topRows<kMotion>().diagonal().array() += 1.0;
-  const Eigen::Matrix<double, kUnknowns, kMotion> spread = left * within;
+  Eigen::Matrix<double, kUnknowns, kMotionSize> left = -K * work.expected.by_noise;
+  left.topRows<kMotionSize>().diagonal().array() += 1.0;
+  const Eigen::Matrix<double, kUnknowns, kMotionSize> spread = left * within;
   prediction.noise.noalias() += spread * left.transpose();
   const Gain<kUnknowns> read = K * work.expected.variance;
   prediction.noise.noalias() += read * K.transpose();

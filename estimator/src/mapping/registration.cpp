@@ -44,10 +44,10 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
 
 /// Returns whether the registered motion is within the prior's uncertainty: mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
-  constexpr int kMotion = Registration::kMotion;
+  constexpr int kMotionSize = Registration::kMotionSize;
   const Vector moved = now.minus(prior.mean);
-  const Eigen::Matrix<double, kMotion, 1> away = u::segment(moved, u::motion);
-  Eigen::Matrix<double, kMotion, kMotion> P = u::block(prior.covariance, u::motion);
+  const Eigen::Matrix<double, kMotionSize, 1> away = u::segment(moved, u::motion);
+  Eigen::Matrix<double, kMotionSize, kMotionSize> P = u::block(prior.covariance, u::motion);
   P.diagonal().array() += u::kLeastVariance;
   return away.dot(P.ldlt().solve(away)) <= u::kAgrees;
 }
@@ -83,7 +83,7 @@ Vector SweepUnknowns::Estimate::minus(const Estimate& other) const {
 }
 
 Registration::Registration(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
   require_within("plane_neighbours_min", params.expert.plane.neighbours_min, 3, params.neighbours);
 }
 
@@ -102,7 +102,7 @@ struct Registration::Problem {
   }
 };
 
-struct Registration::Descent {
+struct Registration::IterationState {
   Estimate now;
   std::span<const SweepPoint> points;  ///< positions computed with the current calibration
   Sums sum;
@@ -124,9 +124,9 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean = prior.mean;
   result.covariance = prior.covariance;
   result.points = points.size();
-  const std::unique_ptr<Descent> descent(
-      new Descent{.now = prior.mean, .points = points, .sum = {}, .kernel_m = params_.expert.kernel_min_m});
-  Descent& at = *descent;
+  const std::unique_ptr<IterationState> descent(
+      new IterationState{.now = prior.mean, .points = points, .sum = {}, .kernel_m = params_.expert.kernel_min_m});
+  IterationState& at = *descent;
   at.now.deficit_rad_s = prior.deficit_start_rad_s;
   if (prior.start) at.now.state = *prior.start;
   if (Status status = problem.build(at.now, trajectory); !status.ok()) return status;
@@ -136,13 +136,13 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     ++result.iterations;
     if (Status status = iterate(problem, at, trajectory, result); !status.ok()) return status;
   }
-  if (at.verdict == RegistrationVerdict::converged) at.verdict = judge(problem, at);
-  if (at.verdict == RegistrationVerdict::converged) return conclude(problem, at, trajectory, result);
+  if (at.verdict == RegistrationVerdict::converged) at.verdict = classify_result(problem, at);
+  if (at.verdict == RegistrationVerdict::converged) return finalise(problem, at, trajectory, result);
   result.verdict = result.matches < problem.matches_needed ? RegistrationVerdict::too_few : at.verdict;
   return problem.build(prior.mean, trajectory);
 }
 
-Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajectory& trajectory, Result& result) {
+Status Registration::iterate(const Problem& problem, IterationState& at, SweepTrajectory& trajectory, Result& result) {
   const Estimate& mean = problem.prior.mean;
   if (problem.unknowns.calibration && result.iterations > 1) {
     apply_calibration(at.now.calibration, at.now.calibration.time_offset_s - mean.calibration.time_offset_s,
@@ -179,7 +179,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
   return {};
 }
 
-RegistrationVerdict Registration::judge(const Problem& problem, const Descent& at) const {
+RegistrationVerdict Registration::classify_result(const Problem& problem, const IterationState& at) const {
   // at a false minimum of the cost, most matches are far from their planes
   const bool fits =
       static_cast<double>(at.sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(at.sum.matches);
@@ -189,7 +189,8 @@ RegistrationVerdict Registration::judge(const Problem& problem, const Descent& a
 }
 
 /// Computes mean, covariance and diagnostics of an accepted optimisation.
-Status Registration::conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result) {
+Status Registration::finalise(const Problem& problem, const IterationState& at, SweepTrajectory& trajectory,
+                              Result& result) {
   Matrix posterior = Matrix::Identity();  // posterior covariance: mapping.md (R24)
   dense::solve_semidefinite(at.H, posterior);
   result.covariance = 0.5 * (posterior + posterior.transpose());
@@ -198,20 +199,20 @@ Status Registration::conclude(const Problem& problem, const Descent& at, SweepTr
   result.mean.state.covariance = u::block(result.covariance, u::motion);
   result.verdict = at.verdict;
   if (Status status = problem.build(result.mean, trajectory); !status.ok()) return status;
-  describe_errors(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, result);
-  describe_shape(at.points, at.kernel_m, at.sum, result);
+  compute_error_statistics(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, result);
+  compute_eigenvalues(at.points, at.kernel_m, at.sum, result);
   return {};
 }
 
 /// Computes how well the surfaces constrain each direction: mapping.md (R30), (R31).
-void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
-                                  Result& result) const {
+void Registration::compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
+                                       Result& result) const {
   Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // with robust weights, without variances
   double weight = 0.0, lever2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;
-    const double robust = weigh(points[i], matches_[i], distances_[i], kernel_m).robust;
-    const Eigen::Vector3d n = matches_[i].plane.normal_W.cast<double>(), lever = levers_[i].cast<double>();
+    const double robust = compute_weight(points[i], matches_[i], distances_[i], kernel_m).robust;
+    const Eigen::Vector3d n = matches_[i].plane.normal_W.cast<double>(), lever = lever_arm_vectors_[i].cast<double>();
     Eigen::Matrix<double, 6, 1> j;
     j << n, lever.cross(n);
     shape += robust * j * j.transpose();
@@ -228,7 +229,7 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
                          (u::block(sum.H, u::pose) - u::block(result.normal_noise_information, u::pose)) *
                          scale.asDiagonal(),
                      information);
-  result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));
+  result.least_constrained_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));
 }
 
 }  // namespace tumble

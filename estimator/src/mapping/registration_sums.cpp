@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kRigid = Registration::kMotion;
+constexpr int kRigid = Registration::kMotionSize;
 constexpr float kRounding = 1.0001f;
 
 constexpr std::size_t block_count(std::size_t points, std::size_t block) {
@@ -27,8 +27,8 @@ Registration::Unknowns::Unknowns(const Matrix& covariance) {
   for (int i = 0; i < kUnknowns; ++i) {
     if (i >= kRigid && covariance(i, i) <= 0.0) continue;
     free[static_cast<std::size_t>(count++)] = i;
-    deficit = deficit || (i >= kDeficit && i < kCalibration);
-    calibration = calibration || i >= kCalibration;
+    deficit = deficit || (i >= kDeficitStart && i < kCalibrationStart);
+    calibration = calibration || i >= kCalibrationStart;
   }
 }
 
@@ -76,7 +76,7 @@ void Registration::Sums::add(const Sums& other) {
 /// Computes the variance of a point due to range and skew errors: first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
-  const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
+  const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
   return range * range + skew * skew;
 }
 
@@ -98,13 +98,13 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     if (moved2 <= rematch2) return;
     // The radius contains the neighbours that the previous search found. The nearest neighbours are therefore within
     // the radius. A small margin covers rounding.
-    radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
+    radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.searched = true;
   match.search_position_W_m = positions_[point];
   map.nearest(positions_[point], params_.neighbours, radius_m, found);
-  match.reach_m = found.count == params_.neighbours ? std::sqrt(found.distance2_m2[found.count - 1])
-                                                    : std::numeric_limits<float>::infinity();
+  match.farthest_neighbour_m = found.count == params_.neighbours ? std::sqrt(found.distance2_m2[found.count - 1])
+                                                                 : std::numeric_limits<float>::infinity();
   match.plane = fit_plane(map, found, params_.expert.plane);
   if (match.plane.verdict != PlaneVerdict::plane) return;
   float variance = 0.0f;
@@ -113,12 +113,12 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     variance += sigma * sigma;
   }
   // variance of a match due to the map: last part of mapping.md (R18)
-  match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
+  match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
 /// Computes the information of a match with its robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
-Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
-                                         double kernel_m) const {
+Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
+                                                  double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
   const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
   const double robust = 1.0 / (soft * soft);
@@ -129,15 +129,17 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
 /// (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
-  levers_.resize(points.size());
+  lever_arm_vectors_.resize(points.size());
   positions_.resize(points.size());
   distances_.resize(points.size());
   run_parallel(params_.parallel_for, block_count(points.size(), kBlock), [&](std::size_t block) {
     Neighbours found;
     const std::size_t begin = block * kBlock, end = std::min(points.size(), (block + 1) * kBlock);
-    trajectory.levers(points.subspan(begin, end - begin), std::span(levers_).subspan(begin, end - begin));
+    trajectory.lever_arm_vectors(points.subspan(begin, end - begin),
+                                 std::span(lever_arm_vectors_).subspan(begin, end - begin));
     for (std::size_t i = begin; i < end; ++i) {
-      positions_[i] = (trajectory.common_position_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
+      positions_[i] =
+          (trajectory.common_position_m(points[i].t_s) + lever_arm_vectors_[i].cast<double>()).cast<float>();
       find_match(map, i, found);
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
     }
@@ -146,13 +148,13 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
 
 /// Computes the width of the robust kernel from the median distance: mapping.md (R20).
 double Registration::kernel_width_m() {
-  sorted_.clear();
+  sorted_distances_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
-    if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_.push_back(std::abs(distances_[i]));
+    if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_distances_.push_back(std::abs(distances_[i]));
   }
-  if (sorted_.empty()) return params_.expert.kernel_min_m;
-  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
-  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  if (sorted_distances_.empty()) return params_.expert.kernel_min_m;
+  const auto middle = sorted_distances_.begin() + static_cast<std::ptrdiff_t>(sorted_distances_.size() / 2);
+  std::nth_element(sorted_distances_.begin(), middle, sorted_distances_.end());
   // for a normal distribution, three standard deviations are 3 * 1.4826 times the median absolute value
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
@@ -173,10 +175,10 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
     const Match& match = matches_[i];
     if (match.plane.verdict != PlaneVerdict::plane) continue;
     const double r = distances_[i];
-    const Weight weight = weigh(points[i], match, r, kernel_m);
+    const Weight weight = compute_weight(points[i], match, r, kernel_m);
     const double root = std::sqrt(weight.information);
     const Eigen::Vector3d n = match.plane.normal_W.cast<double>();
-    const Eigen::Vector3d lever = levers_[i].cast<double>();
+    const Eigen::Vector3d lever = lever_arm_vectors_[i].cast<double>();
     Eigen::Matrix<double, kRigid, 1> j;
     j << n, lever.cross(n), static_cast<double>(points[i].t_s) * n;
     if (rigid) {
@@ -200,15 +202,15 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
 void Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                               const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                               Sums& sum) {
-  parts_.assign(block_count(points.size(), kBlock), Sums{});
+  block_sums_.assign(block_count(points.size(), kBlock), Sums{});
   mapping::Spare<Products> spare;
-  run_parallel(params_.parallel_for, parts_.size(), [&](std::size_t block) {
+  run_parallel(params_.parallel_for, block_sums_.size(), [&](std::size_t block) {
     std::unique_ptr<Products> products = spare.take();
-    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, *products, parts_[block]);
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, *products, block_sums_[block]);
     spare.give(std::move(products));
   });
   sum = Sums{};
-  for (const Sums& part : parts_) sum.add(part);
+  for (const Sums& part : block_sums_) sum.add(part);
   const Matrix lower = sum.H;
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
@@ -217,19 +219,19 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 /// the part covered only the motion, it would constrain unobservable combinations of motion and calibration. An example
 /// is the combination of attitude and mounting rotation. The covariance (R52) of unobservable combinations would then
 /// grow without bound.
-struct Registration::NoiseOfNormals {
+struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
   std::unique_ptr<Products> products = Products::make();
   int count = 0;
   Matrix lower = Matrix::Zero();
 
-  explicit NoiseOfNormals(const Unknowns& of) : unknowns(of) {}
+  explicit NormalNoise(const Unknowns& of) : unknowns(of) {}
 
   void add(const mapping::PointMotion& motion, const PlaneFit& plane, double root) {
     for (int axis = 0; axis < 2; ++axis) {
       Vector derivative;
-      motion.along(plane.tilt_W.col(axis).cast<double>(), derivative);
+      motion.along(plane.normal_sigma_W.col(axis).cast<double>(), derivative);
       for (int k = 0; k < unknowns.count; ++k)
         products->columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
       ++count;
@@ -282,19 +284,19 @@ struct Registration::Pulls {
 };
 
 /// Evaluates the errors of each match at the registered pose.
-void Registration::describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                                   const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
-                                   Result& result) {
-  cluster_of_.clear();
+void Registration::compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                            const SweepCalibration& calibration, const Unknowns& unknowns,
+                                            double kernel_m, Result& result) {
+  cluster_index_.clear();
   cluster_gradients_.clear();
-  NoiseOfNormals noise(unknowns);
-  Pulls pulls{cluster_of_, cluster_gradients_, static_cast<float>(1.0 / params_.expert.cluster_m)};
+  NormalNoise noise(unknowns);
+  Pulls pulls{cluster_index_, cluster_gradients_, static_cast<float>(1.0 / params_.expert.cluster_m)};
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];
     if (match.plane.verdict != PlaneVerdict::plane) continue;
     const double r = distances_[i];
-    const double information = weigh(points[i], match, r, kernel_m).information;
+    const double information = compute_weight(points[i], match, r, kernel_m).information;
     const mapping::PointMotion motion(trajectory, calibration, points[i], hint);
     noise.add(motion, match.plane, std::sqrt(information));
     pulls.add(motion, match.plane, positions_[i], information * r);

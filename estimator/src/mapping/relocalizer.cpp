@@ -65,7 +65,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 /// next sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
-  const RelocalizationParams& starts = params.expert.search;
+  const RelocalisationParams& starts = params.expert.search;
   const Registration::Prior& prior = from.prior;
   if (from.contradicted != nullptr) {
     const auto start = std::make_unique<Registration::Prior>(prior);
@@ -98,7 +98,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
 
 }  // namespace
 
-void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior) {
+void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior) {
   if (index == 0) return;
   const int round = 1 + (index - 1) / kStartsPerRound;
   const int axis = (index - 1) / 2 % 6;
@@ -107,10 +107,10 @@ void move_start(const RelocalizationParams& params, int index, Registration::Pri
   MotionState& state = prior.mean.state;
   if (axis < 3) {
     state.p_WI_m[axis] +=
-        sign * std::clamp(kStartSigmas * sigma, RelocalizationParams::kLeastShift_m, round * params.shift_m);
+        sign * std::clamp(kStartSigmas * sigma, RelocalisationParams::kShiftMin_m, round * params.shift_m);
   } else {
     const double angle =
-        sign * std::clamp(kStartSigmas * sigma, RelocalizationParams::kLeastRotation_rad, round * params.rotation_rad);
+        sign * std::clamp(kStartSigmas * sigma, RelocalisationParams::kRotationMin_rad, round * params.rotation_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
 }
@@ -126,7 +126,7 @@ Attempt attempt(const Params& params, const SearchContext& from, const Scene& sc
   }
   Attempt out;
   out.iterations = found.iterations;
-  out.inlier_share = found.points == 0 ? 0.0 : double(found.inliers) / double(found.points);
+  out.inlier_ratio = found.points == 0 ? 0.0 : double(found.inliers) / double(found.points);
   out.too_few_matches = found.verdict == RegistrationVerdict::too_few;
   if (!converged(found)) alignment.reset();
   return out;
@@ -135,15 +135,16 @@ Attempt attempt(const Params& params, const SearchContext& from, const Scene& sc
 void judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
            const Attempt& attempt, Placed& out) {
   if (out.alignment) {
-    const bool holds = out.alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
+    const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     const bool fits =
         double(out.alignment->inliers) >= params.expert.tracking.confirm_inlier_ratio * double(out.alignment->matches);
-    const bool unconfirmed = (is_lost(before) && !(out.expected && fits)) || (is_unconfirmed(before) && !fits);
-    out.placement = unconfirmed ? Placement::unconfirmed : Placement::found;
+    const bool relocalisation_unconfirmed =
+        (is_lost(before) && !(out.expected && fits)) || (is_unconfirmed(before) && !fits);
+    out.placement = relocalisation_unconfirmed ? Placement::relocalisation_unconfirmed : Placement::found;
     return;
   }
-  const bool enough = points >= params.expert.matching.least;
+  const bool enough = points >= params.expert.matching.matches_min;
   const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
   out.placement = Placement::failed;
   out.map_too_sparse = enough && attempt.too_few_matches;

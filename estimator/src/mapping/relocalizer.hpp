@@ -12,7 +12,7 @@ namespace tumble::mapping {
 struct Attempt {
   bool too_few_matches = false;  ///< whether an alignment failed because of too few map points
   int iterations = 0;
-  double inlier_share = 0.0;  ///< inlier fraction of the last registration
+  double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
 /// SearchContext contains the candidates for the start of a sweep.
@@ -46,6 +46,6 @@ void judge(const LidarInertialOdometry::Params& params, const TrackingState& bef
 
 /// Computes start number `index` of a search. Start 0 is the prior. The further starts are shifts along each axis by
 /// its uncertainty, closest first, mapping.md (R66).
-void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);
+void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -58,8 +58,8 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
 }
 
 MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
-  const auto rows = F.topRows<Registration::kMotion>();
-  const Eigen::Matrix<double, Registration::kMotion, Registration::kUnknowns> moved = rows * errors;
+  const auto rows = F.topRows<Registration::kMotionSize>();
+  const Eigen::Matrix<double, Registration::kMotionSize, Registration::kUnknowns> moved = rows * errors;
   return moved * rows.transpose();
 }
 
@@ -67,7 +67,7 @@ MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
-  Eigen::Matrix<double, 3, Registration::kMotion> J = Eigen::Matrix<double, 3, Registration::kMotion>::Zero();
+  Eigen::Matrix<double, 3, Registration::kMotionSize> J = Eigen::Matrix<double, 3, Registration::kMotionSize>::Zero();
   u::columns(J, u::attitude) = R_IW * so3::hat(state.v_WI_m_s);
   u::columns(J, u::velocity) = R_IW;
   return J * errors * J.transpose();
@@ -78,8 +78,8 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
 /// constants are rows of the identity: mapping.md (R11).
 Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
-  static_assert(kMounting >= Registration::kMotion && kMounting <= Registration::kCalibration &&
-                Registration::kCalibration + 6 <= kMounting + kSize);
+  static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&
+                Registration::kCalibrationStart + 6 <= kMounting + kSize);
   Matrix out = Matrix::Zero();
   const Eigen::Matrix<double, kSize, Registration::kUnknowns> moved = F.topRows<kSize>() * errors;
   out.topRows<kSize>() = moved * F.transpose();

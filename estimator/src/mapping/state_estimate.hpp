@@ -36,7 +36,7 @@ void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Regi
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// MotionErrors is the covariance of the errors of position, attitude and velocity in W.
-using MotionErrors = Eigen::Matrix<double, Registration::kMotion, Registration::kMotion>;
+using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
 /// Returns the block of the product F errors F^T that contains the motion. F is the result of unknowns_at().
 MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);

@@ -40,14 +40,15 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 }  // namespace
 
 /// Evaluates the trajectory at the time of each point: mapping.md (R2), (R4), (R6).
-void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const {
+void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
+                                        std::span<Eigen::Vector3f> levers_W_m) const {
   const double from_s = -kExtrapolation_s, to_s = duration_s_ + kExtrapolation_s;
   std::size_t hint = 0;
   for (std::size_t first = 0; first < points.size();) {
     const Interval& now = interval_at(std::clamp<double>(points[first].t_s, from_s, to_s), hint);
     const double begin_s = hint == 0 ? from_s : now.start_s;
     const double end_s = hint + 1 < intervals_.size() ? intervals_[hint + 1].start_s : kForever_s;
-    const double rate2 = now.w_I.squaredNorm();
+    const double rate2 = now.rate_I_rad_s.squaredNorm();
     Lanes p;
     bool small = true;
     for (; p.count < kLanes && first + p.count < points.size(); ++p.count) {
@@ -64,7 +65,7 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
     if (!small) {
       for (int l = 0; l < p.count; ++l) {
         const SweepPoint& point = points[first + l];
-        const Instant at = this->at(point.t_s, hint);
+        const PreintegratedMotion at = this->at(point.t_s, hint);
         levers_W_m[first + l] = (at.preintegrated_position_m + at.q_WI * point.x_I_m.cast<double>()).cast<float>();
       }
       first += p.count;
@@ -73,7 +74,8 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
     turn(rate2, p);
     const Eigen::Quaterniond& q = now.q_WI;
     const double ax = q.x(), ay = q.y(), az = q.z(), aw = q.w();
-    const Eigen::Vector3d &w = now.w_I, &S = now.preintegrated_p, &V = now.preintegrated_velocity_m_s, &A = now.a_W;
+    const Eigen::Vector3d &w = now.rate_I_rad_s, &S = now.preintegrated_position_m, &V = now.preintegrated_velocity_m_s,
+                          &A = now.specific_force_W_m_s2;
     alignas(16) float ux[kLanes], uy[kLanes], uz[kLanes];
     for (int l = 0; l < kLanes; ++l) {
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];

@@ -50,9 +50,9 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<SweepPoint> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("point.x_I_m", s.x_I_m);
-  visit("point.x_L_m", s.x_L_m);
+  visit("point.x_L_m", s.point_L_m);
   visit("point.t_s", s.t_s);
-  visit("point.sweep_t_s", s.sweep_t_s);
+  visit("point.sweep_t_s", s.sweep_time_s);
   visit("point.range_m", s.range_m);
   visit("point.ring", s.ring);
 }
@@ -70,7 +70,7 @@ template <StateOf<SweepBoundary> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("boundary.state_estimate", s.state_estimate);
   visit("boundary.end_by_start", s.end_by_start);
-  visit("boundary.deficit_share", s.deficit_share);
+  visit("boundary.deficit_share", s.deficit_factor);
   visit("boundary.railed_velocity_m2_s2", s.railed_velocity_m2_s2);
   visit("boundary.constrained", s.constrained);
 }

@@ -16,11 +16,11 @@ Status SweepPoints::select(const Params& params, std::span<const LidarPoint> ret
   const PointBounds bounds{params.range_min_m, params.range_max_m, params.own_body_L};
   const PointCounts found = select_points(returns, bounds, calibration.T_IL, start_s + calibration.time_offset_s, all_);
   chosen_.clear();
-  counts = {found.used, 0, found.rings_differ};
+  counts = {found.used, 0, found.has_ring_numbers};
   if (Status status = check_selection(span_ns, returns, found); !status.ok()) return status;
   // Neighbours are on one ring. Without ring numbers, a point has no neighbours.
-  if (found.rings_differ) counts.lone = lone_returns_.drop(noise_, all_);
-  if (all_.empty()) return {Trouble::too_few, "points", 0.0, 1.0};
+  if (found.has_ring_numbers) counts.isolated = lone_returns_.drop(noise_, all_);
+  if (all_.empty()) return {ErrorCode::too_few, "points", 0.0, 1.0};
   return {};
 }
 

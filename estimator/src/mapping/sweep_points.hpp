@@ -20,9 +20,9 @@ class SweepPoints {
   explicit SweepPoints(const Params& params);
 
   struct Counts {
-    std::size_t used = 0;  ///< finite returns in range that do not hit the robot itself
-    std::size_t lone = 0;  ///< number of dropped lone returns
-    bool rings_differ = false;
+    std::size_t used = 0;      ///< finite returns in range that do not hit the robot itself
+    std::size_t isolated = 0;  ///< number of dropped lone returns
+    bool has_ring_numbers = false;
   };
   /// Selects the usable returns of a sweep that starts `start_s` after the start of its trajectory. Returns the errors
   /// of check_selection().

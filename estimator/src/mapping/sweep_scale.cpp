@@ -27,7 +27,7 @@ constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration: bias
 constexpr double kMemory_s = 60.0;   // age of a change that is still compared: a finding ends
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per median absolute deviation
 
-using Change = SweepScaleWatch::Change;
+using Change = SweepScaleEstimator::Change;
 
 /// Integrals of the specific force along the attitudes of the run.
 class ImuMotion {
@@ -115,7 +115,7 @@ SweepScale fit(const Changes& changes) {
   std::vector<double> off(changes.size());
   for (int i = 0; i < kIterations; ++i) {
     std::transform(changes.begin(), changes.end(), off.begin(),
-                   [&](const Change& c) { return (c.by_sweeps_m_s - out.scale * c.by_imu_m_s).norm(); });
+                   [&](const Change& c) { return (c.sweeps_change_m_s - out.scale * c.imu_change_m_s).norm(); });
     std::vector<double> sorted = off;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     const double deviation = std::max(1e-6, kPerMedian * sorted[sorted.size() / 2]);
@@ -123,10 +123,10 @@ SweepScale fit(const Changes& changes) {
     Eigen::Vector3d by_bias = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < changes.size(); ++k) {
       const double weight = std::min(1.0, kHuber * deviation / std::max(off[k], 1e-12));
-      together += weight * changes[k].by_imu_m_s.dot(changes[k].by_sweeps_m_s);
-      squared += weight * changes[k].by_imu_m_s.squaredNorm();
-      by_bias += weight * kSpan_s * changes[k].by_imu_m_s;
-      residual += weight * weight * off[k] * off[k] * changes[k].by_imu_m_s.squaredNorm() / 3.0;
+      together += weight * changes[k].imu_change_m_s.dot(changes[k].sweeps_change_m_s);
+      squared += weight * changes[k].imu_change_m_s.squaredNorm();
+      by_bias += weight * kSpan_s * changes[k].imu_change_m_s;
+      residual += weight * weight * off[k] * off[k] * changes[k].imu_change_m_s.squaredNorm() / 3.0;
     }
     out.scale = together / squared;
     // heteroscedasticity-consistent: White, 1980
@@ -137,14 +137,14 @@ SweepScale fit(const Changes& changes) {
 
 }  // namespace
 
-bool SweepScale::is_off() const {
+bool SweepScale::is_inconsistent() const {
   return std::abs(scale - 1.0) > std::max(kLeast, kScaleDeviations * sigma);
 }
 
 Status SweepScale::verdict() const {
-  if (!is_off()) return {};
+  if (!is_inconsistent()) return {};
   const double bound = std::max(kLeast, kScaleDeviations * sigma);
-  return {Trouble::out_of_range, "scale of the lidar's ranges relative to the motion measured by the IMU", scale,
+  return {ErrorCode::out_of_range, "scale of the lidar's ranges relative to the motion measured by the IMU", scale,
           scale > 1.0 ? 1.0 + bound : 1.0 - bound};
 }
 
@@ -159,12 +159,12 @@ SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const 
   return fit(changes);
 }
 
-SweepScaleWatch::SweepScaleWatch(double gravity_m_s2, std::size_t samples_max)
+SweepScaleEstimator::SweepScaleEstimator(double gravity_m_s2, std::size_t samples_max)
     : gravity_m_s2_(gravity_m_s2), samples_max_(samples_max) {
   samples_.reserve(samples_max_);
 }
 
-void SweepScaleWatch::add(const ImuSample& sample) {
+void SweepScaleEstimator::add(const ImuSample& sample) {
   if (samples_.size() >= samples_max_) {  // the lidar provides no sweeps
     samples_.clear();
     sweeps_.clear();
@@ -172,7 +172,7 @@ void SweepScaleWatch::add(const ImuSample& sample) {
   samples_.push_back(sample);
 }
 
-void SweepScaleWatch::add(const SweepReport& sweep) {
+void SweepScaleEstimator::add(const SweepReport& sweep) {
   SweepReport& kept = sweeps_.emplace_back();
   kept.pose = sweep.pose;
   kept.verdict = sweep.verdict;

@@ -81,20 +81,20 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   duration_s_ = seconds(end_ns - start.time_ns);
   clipped_axes_ = 0;
   intervals_.clear();
-  if (end_ns < start.time_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start.time_ns)};
+  if (end_ns < start.time_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start.time_ns)};
   if (samples.empty() || samples.back().time_ns < end_ns) {
-    return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
+    return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
     // all errors of kind gap report seconds
-    return {Trouble::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
+    return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
   const Eigen::Vector3d sigma = least_known(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
-  next.preintegrated_velocity_m_s = next.preintegrated_p = next.w_I = next.a_W = next.deficit_share =
-      Eigen::Vector3d::Zero();
+  next.preintegrated_velocity_m_s = next.preintegrated_position_m = next.rate_I_rad_s = next.specific_force_W_m_s2 =
+      next.deficit_factor = Eigen::Vector3d::Zero();
   next.attitude_jacobian = next.velocity_jacobian = next.position_jacobian = next.acceleration_jacobian =
       DeficitJacobian::Zero();
   for (const MotionSample& sample : samples) {
@@ -108,26 +108,29 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     Interval& now = intervals_.emplace_back(next);
     now.start_s = seconds(from - start.time_ns);
     now.length_s = dt;
-    now.deficit_share = share;
+    now.deficit_factor = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
     // rate with saturation deficit, and integration over the interval: mapping.md (R7), (R5), (R4), (R6)
-    now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
+    now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
-    const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
-    now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
+    const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.rate_I_rad_s * dt);
+    now.specific_force_W_m_s2 =
+        sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
 
-    next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
-    next.preintegrated_velocity_m_s = now.preintegrated_velocity_m_s + now.a_W * dt;
-    next.preintegrated_p = now.preintegrated_p + now.preintegrated_velocity_m_s * dt + now.a_W * (0.5 * dt * dt);
+    next.q_WI = (now.q_WI * so3::exp(now.rate_I_rad_s * dt)).normalized();
+    next.preintegrated_velocity_m_s = now.preintegrated_velocity_m_s + now.specific_force_W_m_s2 * dt;
+    next.preintegrated_position_m = now.preintegrated_position_m + now.preintegrated_velocity_m_s * dt +
+                                    now.specific_force_W_m_s2 * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
-    now.acceleration_jacobian = -so3::hat(now.a_W) * now.attitude_jacobian;
+    now.acceleration_jacobian = -so3::hat(now.specific_force_W_m_s2) * now.attitude_jacobian;
     next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
     // the mean attitude error of the interval rotates the force: mapping.md (R10)
-    const DeficitJacobian turn = -so3::hat(now.a_W) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
+    const DeficitJacobian turn =
+        -so3::hat(now.specific_force_W_m_s2) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
     next.velocity_jacobian = now.velocity_jacobian + turn * dt;
     next.position_jacobian = now.position_jacobian + now.velocity_jacobian * dt + turn * (0.5 * dt * dt);
   }
-  if (intervals_.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  if (intervals_.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
   return {};
 }
 
@@ -140,31 +143,33 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
 }
 
 /// Evaluates attitude, velocity and position within an interval: mapping.md (R2), (R4), (R6).
-SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
+SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return {now.q_WI * rotated_by(now.w_I, s),
-          now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W};
+  return {
+      now.q_WI * rotated_by(now.rate_I_rad_s, s),
+      now.preintegrated_position_m + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.specific_force_W_m_s2};
 }
 
-SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
-                                             Eigen::Vector3d& velocity_m_s) const {
+SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
+                                                         Eigen::Vector3d& velocity_m_s) const {
   const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  const Eigen::Quaterniond turned = rotated_by(now.w_I, s);
-  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_velocity_m_s + s * now.a_W +
-                 now.q_WI * (turned * now.w_I.cross(x_I_m));
-  return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W};
+  const Eigen::Quaterniond turned = rotated_by(now.rate_I_rad_s, s);
+  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_velocity_m_s +
+                 s * now.specific_force_W_m_s2 + now.q_WI * (turned * now.rate_I_rad_s.cross(x_I_m));
+  return {now.q_WI * turned, now.preintegrated_position_m + s * now.preintegrated_velocity_m_s +
+                                 (0.5 * s * s) * now.specific_force_W_m_s2};
 }
 
 /// Returns the derivative of the attitude by the knots of the saturation deficit, `s` seconds into an interval:
 /// mapping.md (R9).
 SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
-  if (now.deficit_share.isZero(0.0)) return DeficitJacobian::Zero();
+  if (now.deficit_factor.isZero(0.0)) return DeficitJacobian::Zero();
   const Eigen::Matrix3d gained =
-      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.deficit_share.asDiagonal() * s;
+      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.rate_I_rad_s * s) * now.deficit_factor.asDiagonal() * s;
   DeficitJacobian out;
   for (int k = 0; k < kKnots; ++k) out.middleCols<3>(3 * k) = now.knot_weight[k] * gained;
   return out;
@@ -175,11 +180,11 @@ SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  if (now.deficit_share.isZero(0.0))
+  if (now.deficit_factor.isZero(0.0))
     return {now.attitude_jacobian,
             now.position_jacobian + s * now.velocity_jacobian + now.acceleration_jacobian * (0.5 * s * s)};
   const DeficitJacobian gained = deficit_jacobian_within(now, s);
-  const DeficitJacobian turn = -so3::hat(now.a_W) * (now.attitude_jacobian + 0.5 * gained);
+  const DeficitJacobian turn = -so3::hat(now.specific_force_W_m_s2) * (now.attitude_jacobian + 0.5 * gained);
   return {now.attitude_jacobian + gained, now.position_jacobian + s * now.velocity_jacobian + turn * (0.5 * s * s)};
 }
 
@@ -190,10 +195,11 @@ MotionState SweepTrajectory::state(double t_s) const {
   const double s = t - now.start_s;
   MotionState state;
   state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
-  state.q_WI = (now.q_WI * so3::exp(now.w_I * s)).normalized();
-  state.p_WI_m =
-      common_position_m(t) + now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W;
-  state.v_WI_m_s = start_.v_WI_m_s + now.preintegrated_velocity_m_s + s * now.a_W + t * gravity_W_m_s2_;
+  state.q_WI = (now.q_WI * so3::exp(now.rate_I_rad_s * s)).normalized();
+  state.p_WI_m = common_position_m(t) + now.preintegrated_position_m + s * now.preintegrated_velocity_m_s +
+                 (0.5 * s * s) * now.specific_force_W_m_s2;
+  state.v_WI_m_s =
+      start_.v_WI_m_s + now.preintegrated_velocity_m_s + s * now.specific_force_W_m_s2 + t * gravity_W_m_s2_;
   const Eigen::Matrix<double, 9, 9> F = transition(t).jacobian_start;
   const Eigen::Matrix<double, 9, 9> P = F * start_.covariance * F.transpose();
   state.covariance = 0.5 * (P + P.transpose());
@@ -209,15 +215,16 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   namespace u = mapping::unknowns;
   Transition out;
   out.jacobian_start.setIdentity();
-  u::block(out.jacobian_start, u::position, u::attitude) =
-      -so3::hat(now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W);
+  u::block(out.jacobian_start, u::position, u::attitude) = -so3::hat(
+      now.preintegrated_position_m + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.specific_force_W_m_s2);
   u::block(out.jacobian_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
-  u::block(out.jacobian_start, u::velocity, u::attitude) = -so3::hat(now.preintegrated_velocity_m_s + s * now.a_W);
+  u::block(out.jacobian_start, u::velocity, u::attitude) =
+      -so3::hat(now.preintegrated_velocity_m_s + s * now.specific_force_W_m_s2);
 
   const DeficitDerivative deficit = deficit_derivative(t, hint);
   const DeficitJacobian mean_attitude = 0.5 * (now.attitude_jacobian + deficit.attitude_jacobian_s);
   out.jacobian_deficit_s << deficit.position_jacobian_m_s, deficit.attitude_jacobian_s,
-      now.velocity_jacobian - so3::hat(now.a_W) * mean_attitude * s;
+      now.velocity_jacobian - so3::hat(now.specific_force_W_m_s2) * mean_attitude * s;
   out.jacobian_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(),
       t * Eigen::Matrix3d::Identity();
   return out;

@@ -8,16 +8,16 @@ namespace {
 constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation: a single sweep may fit by chance
 
 bool is_found(Placement placement) {
-  return placement == Placement::found || placement == Placement::unconfirmed;
+  return placement == Placement::found || placement == Placement::relocalisation_unconfirmed;
 }
 
 }  // namespace
 
 TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict) {
   const int failed = is_found(placement) ? 0 : failed_searches(before) + (placement == Placement::failed);
-  if (verdict == SweepVerdict::rejected) return Lost{lost_sweeps(before) + 1, failed};
-  if (is_lost(before) && placement == Placement::unconfirmed)
-    return Relocalised{lost_sweeps(before), failed_searches(before), 0};
+  if (verdict == SweepVerdict::rejected) return Lost{consecutive_rejected_sweeps(before) + 1, failed};
+  if (is_lost(before) && placement == Placement::relocalisation_unconfirmed)
+    return Relocalised{consecutive_rejected_sweeps(before), failed_searches(before), 0};
   if (const Relocalised* found = std::get_if<Relocalised>(&before); found != nullptr && found->agreeing + 1 < kAgreeing)
     return Relocalised{found->after_sweeps, found->failed_searches, found->agreeing + 1};
   return Tracking{failed};
@@ -45,7 +45,7 @@ bool is_unconfirmed(const TrackingState& state) {
   return std::holds_alternative<Relocalised>(state);
 }
 
-int lost_sweeps(const TrackingState& state) {
+int consecutive_rejected_sweeps(const TrackingState& state) {
   const Lost* lost = std::get_if<Lost>(&state);
   return lost != nullptr ? lost->sweeps : 0;
 }

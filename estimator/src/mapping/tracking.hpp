@@ -36,7 +36,7 @@ using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>
 enum class Placement : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
-  unconfirmed,  ///< found by a search, but not yet confirmed
+  relocalisation_unconfirmed,  ///< found by a search, but not yet confirmed
   found,
 };
 
@@ -50,7 +50,7 @@ Lost given_up(const TrackingState& relocalised);
 bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);
 bool is_unconfirmed(const TrackingState& state);
-int lost_sweeps(const TrackingState& state);      ///< 0 unless tracking failed
-int failed_searches(const TrackingState& state);  ///< number of consecutive failed searches
+int consecutive_rejected_sweeps(const TrackingState& state);  ///< 0 unless tracking failed
+int failed_searches(const TrackingState& state);              ///< number of consecutive failed searches
 
 }  // namespace tumble::mapping

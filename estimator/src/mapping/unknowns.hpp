@@ -16,26 +16,26 @@ inline constexpr Block<3, 3> attitude;  ///< left perturbation in W
 inline constexpr Block<3, 2> tilt;      ///< attitude about W's horizontal axes
 inline constexpr Block<6, 3> velocity;  ///< W
 inline constexpr Block<0, 6> pose;      ///< position, attitude
-inline constexpr Block<0, Registration::kMotion> motion;
-inline constexpr Block<Registration::kDeficit, SweepTrajectory::kDeficit> deficit;
-inline constexpr Block<0, Registration::kCalibration> moving;  ///< motion and deficit
-inline constexpr Block<Registration::kCalibration, SweepCalibration::kErrors> calibration;
-inline constexpr Block<Registration::kCalibration, 6> mounting;  ///< rotation and translation of T_IL
-inline constexpr Block<Registration::kCalibration, 3> mounting_rotation;
-inline constexpr Block<Registration::kCalibration + 3, 3> mounting_translation;
-inline constexpr Block<Registration::kCalibration + 6, 1> clock;
-inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
+inline constexpr Block<0, Registration::kMotionSize> motion;
+inline constexpr Block<Registration::kDeficitStart, SweepTrajectory::kDeficitSize> deficit;
+inline constexpr Block<0, Registration::kCalibrationStart> moving;  ///< motion and deficit
+inline constexpr Block<Registration::kCalibrationStart, SweepCalibration::kErrorCount> calibration;
+inline constexpr Block<Registration::kCalibrationStart, 6> mounting;  ///< rotation and translation of T_IL
+inline constexpr Block<Registration::kCalibrationStart, 3> mounting_rotation;
+inline constexpr Block<Registration::kCalibrationStart + 3, 3> mounting_translation;
+inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
+inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
 /// Variance of an unknown whose prior is exact; the variance is above 0 so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
 /// Largest squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
 /// chi-square with nine degrees of freedom. See mapping.md (R25), (R71).
 inline constexpr double kAgrees = 16.9;
-static_assert(SweepUnknowns::kMotion == 9);
+static_assert(SweepUnknowns::kMotionSize == 9);
 
 /// Returns the index of an axis of the saturation deficit at a knot.
 constexpr int deficit_at(int axis, int knot) {
-  return Registration::kDeficit + 3 * knot + axis;
+  return Registration::kDeficitStart + 3 * knot + axis;
 }
 
 template <class Vector, int First, int Size>

@@ -62,18 +62,18 @@ inline int alternating(int i) {
 }  // namespace
 
 VoxelMap::VoxelMap(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
   require_within("spacing_m", params.spacing_m, 0.0, params.voxel_m);
   cells_per_m_ = static_cast<float>(1.0 / params.voxel_m);
   cubes_per_m_ = params.spacing_m > 0.0 ? static_cast<float>(1.0 / params.spacing_m) : cells_per_m_;
 }
 
-inline std::size_t VoxelMap::Group::row_of(int y, int z) {
+inline std::size_t VoxelMap::Group::row_index_of(int y, int z) {
   return static_cast<std::size_t>((y & kMask) | ((z & kMask) << kBits));
 }
 
-inline std::size_t VoxelMap::Group::place_of(const Eigen::Vector3i& cell) {
-  return static_cast<std::size_t>(cell.x() & kMask) | (row_of(cell.y(), cell.z()) << kBits);
+inline std::size_t VoxelMap::Group::cell_index_of(const Eigen::Vector3i& cell) {
+  return static_cast<std::size_t>(cell.x() & kMask) | (row_index_of(cell.y(), cell.z()) << kBits);
 }
 
 inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
@@ -96,13 +96,13 @@ class VoxelMap::Rows {
     for (int x = 0; x < across_; ++x) {
       const std::uint32_t group = group_of({x, away.y(), away.z()});
       if (group == SpatialHash::kAbsent) continue;
-      bits |= std::uint32_t{map_.groups_[group].rows[Group::row_of(y, z)]} << (x << Group::kBits);
+      bits |= std::uint32_t{map_.groups_[group].rows[Group::row_index_of(y, z)]} << (x << Group::kBits);
     }
     return bits >> (first_x_ & Group::kMask);
   }
 
   std::uint32_t first_chunk(const Eigen::Vector3i& cell) {
-    return map_.groups_[group_of(Group::of(cell) - low_)].first[Group::place_of(cell)];
+    return map_.groups_[group_of(Group::of(cell) - low_)].first[Group::cell_index_of(cell)];
   }
 
  private:
@@ -112,7 +112,7 @@ class VoxelMap::Rows {
 
   std::uint32_t group_of(const Eigen::Vector3i& away) {
     std::uint32_t& group = groups_[static_cast<std::size_t>((away.z() * kAcross + away.y()) * kAcross + away.x())];
-    if (group == kUnasked) group = map_.groups_of_.find(SpatialHash::key(low_ + away));
+    if (group == kUnasked) group = map_.group_index_.find(SpatialHash::key(low_ + away));
     return group;
   }
 
@@ -123,12 +123,13 @@ class VoxelMap::Rows {
 };
 
 /// Returns the first chunk of a cell for writing, and marks the cell as occupied.
-std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
+std::uint32_t& VoxelMap::first_chunk_of(const Eigen::Vector3i& cell) {
   const std::uint32_t group =
-      groups_of_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
+      group_index_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
   if (group == groups_.size()) groups_.emplace_back().first.fill(kNone);
-  groups_[group].rows[Group::row_of(cell.y(), cell.z())] |= static_cast<std::uint8_t>(1 << (cell.x() & Group::kMask));
-  return groups_[group].first[Group::place_of(cell)];
+  groups_[group].rows[Group::row_index_of(cell.y(), cell.z())] |=
+      static_cast<std::uint8_t>(1 << (cell.x() & Group::kMask));
+  return groups_[group].first[Group::cell_index_of(cell)];
 }
 
 /// Inserts an empty chunk before the first chunk of a cell.
@@ -140,11 +141,11 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   chunk.next = first;
   first = static_cast<std::uint32_t>(chunks_.size());
   chunks_.push_back(chunk);
-  sigma_m_.resize(sigma_m_.size() + kChunk, -1.0f);
-  sweep_.resize(sweep_.size() + kChunk, 0);
-  line_.resize(line_.size() + kChunk, kNoLine);
-  seen_through_.resize(seen_through_.size() + kChunk, 0);
-  free_slots_ += kChunk;
+  sigma_m_.resize(sigma_m_.size() + kPointsPerChunk, -1.0f);
+  sweep_.resize(sweep_.size() + kPointsPerChunk, 0);
+  line_.resize(line_.size() + kPointsPerChunk, kUnknownScanLine);
+  seen_through_.resize(seen_through_.size() + kPointsPerChunk, 0);
+  free_slots_ += kPointsPerChunk;
   return first;
 }
 
@@ -157,37 +158,39 @@ bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
 bool VoxelMap::is_occupied(const Eigen::Vector3f& position) const {
   if (!has_room_for(position)) return true;
   return params_.spacing_m > 0.0 &&
-         taken_.find(SpatialHash::key(cube_of(position, cubes_per_m_))) != SpatialHash::kAbsent;
+         occupied_cubes_.find(SpatialHash::key(cube_of(position, cubes_per_m_))) != SpatialHash::kAbsent;
 }
 
 std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
   if (!has_room_for(position)) return kNoPoint;
-  if (params_.spacing_m > 0.0 && !taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)))) return kNoPoint;
-  return put(position, sigma_m, sweep, line);
+  if (params_.spacing_m > 0.0 && !occupied_cubes_.add(SpatialHash::key(cube_of(position, cubes_per_m_))))
+    return kNoPoint;
+  return store_point(position, sigma_m, sweep, line);
 }
 
-std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
+std::uint32_t VoxelMap::store_point(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep,
+                                    std::uint32_t line) {
   // The newest chunk of a cell is its first chunk. No other chunk of the cell has free slots.
-  std::uint32_t& first = first_of(cube_of(position, cells_per_m_));
-  if (first == kNone || chunks_[first].count == kChunk) new_chunk(first);
+  std::uint32_t& first = first_chunk_of(cube_of(position, cells_per_m_));
+  if (first == kNone || chunks_[first].count == kPointsPerChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];
   const std::uint32_t place = chunk.count++;
   chunk.x[place] = position.x();
   chunk.y[place] = position.y();
   chunk.z[place] = position.z();
-  sigma_m_[first * kChunk + place] = std::max(sigma_m, 0.0f);
-  sweep_[first * kChunk + place] = sweep;
-  line_[first * kChunk + place] = line;
+  sigma_m_[first * kPointsPerChunk + place] = std::max(sigma_m, 0.0f);
+  sweep_[first * kPointsPerChunk + place] = sweep;
+  line_[first * kPointsPerChunk + place] = line;
   --free_slots_;
-  return first * kChunk + place;
+  return first * kPointsPerChunk + place;
 }
 
 bool VoxelMap::move(std::uint32_t index, const Eigen::Vector3f& position) {
   if (!position.allFinite() || cube_of(position, cells_per_m_) != cube_of(position_W_m(index), cells_per_m_)) {
     return false;
   }
-  Chunk& chunk = chunks_[index / kChunk];
-  const std::uint32_t place = index % kChunk;
+  Chunk& chunk = chunks_[index / kPointsPerChunk];
+  const std::uint32_t place = index % kPointsPerChunk;
   chunk.x[place] = position.x();
   chunk.y[place] = position.y();
   chunk.z[place] = position.z();
@@ -200,8 +203,8 @@ void VoxelMap::count_observation(std::uint32_t index, bool through) {
 }
 
 Eigen::Vector3f VoxelMap::position_W_m(std::uint32_t index) const {
-  const Chunk& chunk = chunks_[index / kChunk];
-  const std::uint32_t place = index % kChunk;
+  const Chunk& chunk = chunks_[index / kPointsPerChunk];
+  const std::uint32_t place = index % kPointsPerChunk;
   return {chunk.x[place], chunk.y[place], chunk.z[place]};
 }
 
@@ -234,37 +237,37 @@ void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
     // if two points move into one cube of the point spacing, the map keeps both points
-    if (params_.spacing_m > 0.0) kept.taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
-    const std::uint32_t now = kept.put(position, sigma_m_[index], sweep_[index], line_[index]);
+    if (params_.spacing_m > 0.0) kept.occupied_cubes_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
+    const std::uint32_t now = kept.store_point(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_[now] = seen_through_[index];
   }
   *this = std::move(kept);
 }
 
 std::size_t VoxelMap::bytes() const {
-  return groups_of_.bytes() + taken_.bytes() + groups_.capacity() * sizeof(Group) + chunks_.capacity() * sizeof(Chunk) +
-         sigma_m_.capacity() * sizeof(float) + (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t) +
-         seen_through_.capacity();
+  return group_index_.bytes() + occupied_cubes_.bytes() + groups_.capacity() * sizeof(Group) +
+         chunks_.capacity() * sizeof(Chunk) + sigma_m_.capacity() * sizeof(float) +
+         (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t) + seen_through_.capacity();
 }
 
-/// Adds the points of a cell to the k nearest points. `worst2` is the squared current search radius.
-void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst2,
+/// Adds the points of a cell to the k nearest points. `worst_distance2_m2` is the squared current search radius.
+void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst_distance2_m2,
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {
     const Chunk& chunk = chunks_[c];
-    alignas(16) float distance2[kChunk];
-    for (int i = 0; i < kChunk; ++i) {
+    alignas(16) float distance2[kPointsPerChunk];
+    for (int i = 0; i < kPointsPerChunk; ++i) {
       const float ex = chunk.x[i] - query.x(), ey = chunk.y[i] - query.y(), ez = chunk.z[i] - query.z();
       distance2[i] = ex * ex + ey * ey + ez * ez;
     }
-    Floats four[kChunk / 4];
+    Floats four[kPointsPerChunk / 4];
     std::memcpy(four, distance2, sizeof(four));
     // free slots of a chunk have coordinates beyond any search radius
-    for (std::uint32_t near = within(worst2, four); near != 0; near &= near - 1) {
+    for (std::uint32_t near = within(worst_distance2_m2, four); near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (distance2[i] > worst2 || (found.count == k && distance2[i] == worst2)) continue;
-      keep(distance2[i], c * kChunk + i, k, found);
-      if (found.count == k) worst2 = found.distance2_m2[k - 1];
+      if (distance2[i] > worst_distance2_m2 || (found.count == k && distance2[i] == worst_distance2_m2)) continue;
+      keep(distance2[i], c * kPointsPerChunk + i, k, found);
+      if (found.count == k) worst_distance2_m2 = found.distance2_m2[k - 1];
     }
   }
 }
@@ -282,24 +285,24 @@ void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neig
   float slab[3][2 * kReachMax + 1];
   for (int axis = 0; axis < 3; ++axis) slab_distances(fraction[axis], voxel_m, reach, slab[axis]);
 
-  float worst2 = std::min(radius_m, static_cast<float>(reach) * voxel_m);
-  worst2 *= worst2;
+  float worst_distance2_m2 = std::min(radius_m, static_cast<float>(reach) * voxel_m);
+  worst_distance2_m2 *= worst_distance2_m2;
   Rows rows(*this, cell, reach);
   const int steps = 2 * reach + 1;
   for (int iz = 0; iz < steps; ++iz) {
     const int dz = alternating(iz);
     const float to_z = slab[2][dz + reach];
-    if (to_z > worst2) continue;
+    if (to_z > worst_distance2_m2) continue;
     for (int iy = 0; iy < steps; ++iy) {
       const int dy = alternating(iy);
       const float to_yz = to_z + slab[1][dy + reach];
-      if (to_yz > worst2) continue;
+      if (to_yz > worst_distance2_m2) continue;
       const std::uint32_t occupied = rows.occupied(cell.y() + dy, cell.z() + dz);
       if (occupied == 0) continue;
       for (int ix = 0; ix < steps; ++ix) {
         const int dx = alternating(ix);
-        if (!(occupied >> (dx + reach) & 1) || to_yz + slab[0][dx + reach] > worst2) continue;
-        search(rows.first_chunk(cell + Eigen::Vector3i(dx, dy, dz)), query, k, worst2, found);
+        if (!(occupied >> (dx + reach) & 1) || to_yz + slab[0][dx + reach] > worst_distance2_m2) continue;
+        search(rows.first_chunk(cell + Eigen::Vector3i(dx, dy, dz)), query, k, worst_distance2_m2, found);
       }
     }
   }

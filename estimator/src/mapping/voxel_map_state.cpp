@@ -15,7 +15,7 @@ void VoxelMap::save(StateWriter& out) const {
     const Chunk& chunk = chunks_[c];
     const auto count = static_cast<std::uint8_t>(chunk.count);
     out("map.chunk.count", count);
-    for (std::uint32_t index = c * kChunk; index < c * kChunk + count; ++index) {
+    for (std::uint32_t index = c * kPointsPerChunk; index < c * kPointsPerChunk + count; ++index) {
       const Eigen::Vector3f position_W_m = this->position_W_m(index);
       out("map.position_W_m", position_W_m);
       out("map.sigma_m", sigma_m_[index]);
@@ -24,7 +24,7 @@ void VoxelMap::save(StateWriter& out) const {
       out("map.seen_through", seen_through_[index]);
     }
   }
-  const std::vector<std::uint64_t> taken = taken_.keys();
+  const std::vector<std::uint64_t> taken = occupied_cubes_.keys();
   out("map.taken", taken);
 }
 
@@ -36,7 +36,7 @@ void VoxelMap::load(StateReader& in) {
   in("map.taken", taken);
   for (std::size_t k = 0; k < taken.size() && in.going(); ++k) {
     in.require("map.taken", taken[k] >> 63 == 0 && (k == 0 || taken[k - 1] < taken[k]), double(taken[k]));
-    map.taken_.add(taken[k]);
+    map.occupied_cubes_.add(taken[k]);
   }
   if (in.going()) *this = std::move(map);
 }
@@ -45,7 +45,7 @@ void VoxelMap::load(StateReader& in) {
 /// a cell has free slots. The number of slots in use is therefore sufficient information.
 void VoxelMap::load_chunk(StateReader& in) {
   std::uint8_t count = 0;
-  in("map.chunk.count", count, 1.0, kChunk);
+  in("map.chunk.count", count, 1.0, kPointsPerChunk);
   Eigen::Vector3i cell = Eigen::Vector3i::Zero();
   std::uint32_t index = 0;
   for (int k = 0; k < count && in.going(); ++k, ++index) {
@@ -65,13 +65,13 @@ void VoxelMap::load_chunk(StateReader& in) {
     const Eigen::Vector3i its_cell = cube_of(position_W_m, cells_per_m_);
     if (k == 0) {
       cell = its_cell;
-      std::uint32_t& first = first_of(cell);
-      in.require("map.chunk before", first == kNone || chunks_[first].count == kChunk, 0.0, kChunk);
+      std::uint32_t& first = first_chunk_of(cell);
+      in.require("map.chunk before", first == kNone || chunks_[first].count == kPointsPerChunk, 0.0, kPointsPerChunk);
       if (!in.going()) return;
-      index = new_chunk(first) * kChunk;
+      index = new_chunk(first) * kPointsPerChunk;
     }
     in.require("map.position_W_m", its_cell == cell, position_W_m.x());
-    Chunk& chunk = chunks_[index / kChunk];
+    Chunk& chunk = chunks_[index / kPointsPerChunk];
     const std::uint32_t place = chunk.count++;
     chunk.x[place] = position_W_m.x();
     chunk.y[place] = position_W_m.y();

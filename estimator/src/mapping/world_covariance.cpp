@@ -61,9 +61,10 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
 }
 
 /// Adds the drift of a sweep in the direction that the surfaces constrain least: mapping.md (R61).
-void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
-  const double sigma_m = params_.drift_share * std::min(weakest_sigma_m, params_.drift_sigma_max_m);
-  const Eigen::Vector3d direction = weakest_direction.head<3>();
+void WorldCovariance::add_drift(double least_constrained_sigma_m,
+                                const Eigen::Matrix<double, 6, 1>& least_constrained_direction) {
+  const double sigma_m = params_.drift_share * std::min(least_constrained_sigma_m, params_.drift_sigma_max_m);
+  const Eigen::Vector3d direction = least_constrained_direction.head<3>();
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 

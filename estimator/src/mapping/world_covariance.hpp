@@ -28,7 +28,7 @@ class WorldCovariance {
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
   /// Adds the drift of a moving sweep, with its weakest standard deviation and direction (position, scaled attitude).
-  void add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction);
+  void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
   /// Adds the error of a sweep that inserted a fraction of the visible map, evaluated at the middle of the sweep's
   /// motion. `errors` is the covariance at the start of the sweep.
   void add_insertion(double inserted_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,

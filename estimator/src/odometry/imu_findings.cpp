@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/detail/flight_sign_check.hpp"
 #include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
@@ -32,7 +32,7 @@ double largest_rate_rad_s(std::span<const ImuSample> samples) {
   return largest;
 }
 
-double fastest_rad_s(std::span<const ImuSample> samples) {
+double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
   double fastest = 0.0;
   for (const ImuSample& sample : samples) fastest = std::max(fastest, sample.angular_velocity_rad_s.norm());
   return fastest;
@@ -48,7 +48,7 @@ RestGravity rest_gravity(const CheckedImu& imu) {
 /// Returns the error of a rate in degrees per second, by the criterion of RateReport::rate_unit_suspect.
 Status rate_unit(std::span<const ImuSample> samples) {
   const double largest = largest_rate_rad_s(samples), most = RateModelParams{}.rate_max_rad_s;
-  return largest > most ? Status{Trouble::out_of_range, "angular_velocity_rad_s", largest, most} : Status{};
+  return largest > most ? Status{ErrorCode::out_of_range, "angular_velocity_rad_s", largest, most} : Status{};
 }
 
 }  // namespace
@@ -83,28 +83,25 @@ ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> sam
     plausibility.step(sample, state);
   }
   ImuFindings out;
-  out.readings = {gravity.size_share(at_rest),
-                  plausibility.force_share(state),
-                  plausibility.unexplained_share(state),
-                  plausibility.rotation_slope(state),
-                  plausibility.rotation_agreement(state),
-                  plausibility.frozen_s(state),
+  out.readings = {gravity.magnitude_error_ratio(at_rest),         plausibility.force_share(state),
+                  plausibility.unexplained_rotation_ratio(state), plausibility.rotation_slope(state),
+                  plausibility.rotation_agreement(state),         plausibility.frozen_s(state),
                   plausibility.better_axis_labels(state)};
   add_finding(Kind::rate_unit, rate_unit(samples), samples, out);
   add_finding(Kind::gravity_turn, plausibility.verdict(state), samples, out);
-  add_finding(Kind::rest_force, gravity.size_verdict(at_rest), samples, out);
+  add_finding(Kind::rest_force, gravity.magnitude_verdict(at_rest), samples, out);
   return out;
 }
 
 ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samples,
                           std::optional<double> carried_share) {
-  FlightSense::Params params;
+  FlightSignCheck::Params params;
   params.lever_arm_m = imu.lever_arm_I_m;
   params.gyro_range_rad_s = imu.gyro_range_rad_s;
   const bool thrown = carried_share && *carried_share < kHeldShare;
-  params.body = thrown ? FlightSense::Body::thrown : FlightSense::Body::may_be_hand_held;
-  const FlightSense sense(params);
-  FlightSense::State state;
+  params.body = thrown ? FlightSignCheck::Body::thrown : FlightSignCheck::Body::may_be_hand_held;
+  const FlightSignCheck sense(params);
+  FlightSignCheck::State state;
   for (const ImuSample& sample : samples) sense.step(sample, state);
   ImuFindings out;
   add_finding(Kind::flight, sense.verdict(state), samples, out);
@@ -137,7 +134,7 @@ ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> sampl
   params.accel_range_m_s2 = imu.accel_range_m_s2;
   ImuFindings out;
   for (const FrozenAxis& axis : find_frozen_axes(FrozenAxes(params), samples)) {
-    const Status status{Trouble::out_of_range, "seconds for which an axis repeats one reading",
+    const Status status{ErrorCode::out_of_range, "seconds for which an axis repeats one reading",
                         seconds(axis.to_ns - axis.from_ns), params.frozen_s};
     out.all.push_back({Kind::frozen_axis, status, axis.from_ns, axis});
   }
@@ -160,7 +157,7 @@ std::vector<Eigen::Matrix3d> suspect_covariance(const ImuFindings& findings, std
   if (findings.contradict()) {
     for (const RateState& rate : rates) out.emplace_back(rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity());
   }
-  const double sigma_rad_s = fastest_rad_s(samples);
+  const double sigma_rad_s = rate_max_so_far_rad_s(samples);
   for (const ImuFinding& finding : findings.all) {
     const FrozenAxis& axis = finding.axis;
     if (finding.kind != Kind::frozen_axis || axis.triad != Triad::gyro) continue;

@@ -3,12 +3,12 @@
 
 #include <limits>
 
-#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 
 namespace tumble {
 
 double unsaturated_range(double stated_range) {
-  return stated_range > 0.0 ? (1.0 - kBesideRail) * stated_range : std::numeric_limits<double>::infinity();
+  return stated_range > 0.0 ? (1.0 - kNearRailRatio) * stated_range : std::numeric_limits<double>::infinity();
 }
 
 namespace sheets {

@@ -18,10 +18,11 @@ constexpr std::size_t kSweepsPerRejection = 5;  // more rejections: the pass doe
 /// last sweep.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
-  const TimeNs left_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
-  if (2 * left_ns < length_ns) return false;
+  const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
+  if (2 * last_marginalised_ns < length_ns) return false;
   // Points beyond the sweep's end are kept, because they are a fault of the recording that the mapper reports.
-  std::erase_if(sweep.points, [&](const LidarPoint& p) { return p.offset_ns > left_ns && p.offset_ns <= length_ns; });
+  std::erase_if(sweep.points,
+                [&](const LidarPoint& p) { return p.offset_ns > last_marginalised_ns && p.offset_ns <= length_ns; });
   sweep.end_ns = end_ns;
   return true;
 }
@@ -31,7 +32,7 @@ class Pass {
  public:
   Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)
       : input_(input), offset_ns_(static_cast<TimeNs>(std::llround(params.time_offset_s * 1e9))), out_(params) {
-    if (input.start) out_.mapper.start_at(*input.start);
+    if (input.start) out_.mapper.set_start_pose(*input.start);
   }
 
   MappedRecording run() {
@@ -129,7 +130,7 @@ void start_from(const SweepCalibration& learnt, LidarInertialOdometry::Params& p
 
 SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::span<ImuSample> samples) {
   ClippingFinder::Params params;
-  params.upright_rails = stated;
+  params.axis_aligned_rails = stated;
   ClippingFinder::Found found = ClippingFinder(params).find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const unsigned forces = clip_flags({.accel = found.clippings[k].accel});
@@ -142,7 +143,7 @@ MappedRecording::MappedRecording(const LidarInertialOdometry::Params& params)
     : mapper(params), localisation(params.expert.matching.distance_m) {}
 
 bool MappedRecording::calibration_is_off() const {
-  return !calibration_converged && calibration_deviations > StatedCalibration::kMaxDeviations;
+  return !calibration_converged && calibration_deviations > StatedCalibration::kDistanceMax_sigmas;
 }
 
 MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params) {
@@ -160,11 +161,11 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   double moved = 0.0;
   while (determines_calibration(out)) {
     moved = stated_calibration(started, params).deviations(out.mapper.calibration());
-    if (moved <= StatedCalibration::kMaxDeviations || passes > kSearches) break;
+    if (moved <= StatedCalibration::kDistanceMax_sigmas || passes > kSearches) break;
     start_from(out.mapper.calibration(), started);
     again();
   }
-  const bool converged = determines_calibration(out) && moved <= StatedCalibration::kMaxDeviations;
+  const bool converged = determines_calibration(out) && moved <= StatedCalibration::kDistanceMax_sigmas;
   if (converged) {
     const auto sigma = out.mapper.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
     start_from(out.mapper.calibration(), started);

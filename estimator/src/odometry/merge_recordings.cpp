@@ -33,8 +33,8 @@ struct Units {
 void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
   ClippingFinder::Params params;
-  if (sheet.gyro_range_rad_s > 0.0) params.upright_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
-  if (sheet.accel_range_m_s2 > 0.0) params.upright_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
+  if (sheet.gyro_range_rad_s > 0.0) params.axis_aligned_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
+  if (sheet.accel_range_m_s2 > 0.0) params.axis_aligned_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
   const ConfirmedSaturation certain{.gyro = found.rails.planes_in_use(),
                                     .accel = found.rails.planes_in_use(Triad::accelerometer),
@@ -86,7 +86,7 @@ Status prepare(std::span<const UnitRecording> recordings, Units& units) {
                                             samples));
     units.samples.push_back(std::move(samples));
   }
-  if (units.index.empty()) return {Trouble::empty, "number of IMUs with samples", 0.0, 1.0};
+  if (units.index.empty()) return {ErrorCode::empty, "number of IMUs with samples", 0.0, 1.0};
   return align(units.samples);
 }
 
@@ -123,9 +123,9 @@ void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::n
 std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
-    const bool absent = k < unit.size() && !is_finite(unit[k]);
-    if (absent && from == unit.size()) from = k;
-    if (absent || from == unit.size()) continue;
+    const bool missing_samples = k < unit.size() && !is_finite(unit[k]);
+    if (missing_samples && from == unit.size()) from = k;
+    if (missing_samples || from == unit.size()) continue;
     if (seconds(unit[k - 1].time_ns - unit[from].time_ns) >= kSilentReported_s) return unit[from].time_ns;
     from = unit.size();
   }
@@ -147,7 +147,7 @@ Status frozen_in_all(const FrozenAxis& axis) {
                                           "time in s for which accel y repeats one reading (no other healthy IMU)",
                                           "time in s for which accel z repeats one reading (no other healthy IMU)"}};
   const char* field = kFields[axis.triad == Triad::gyro ? 0 : 1][axis.axis];
-  return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
+  return {ErrorCode::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
 /// Excludes the readings of an IMU while one of its axes is frozen. If no IMU remains, returns an error.
@@ -199,12 +199,12 @@ bool exclude_found(const ImuMerge::State& state, Units& units, std::vector<UnitF
 void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, const Units& units,
                         MergedRecordings& out) {
   out.lever_arm_m = merge.p_C_m();
-  out.arm_share = ImuMerge::arm_share(state);
-  out.other_sense = state.senses.detected();
+  out.lever_arm_agreement = ImuMerge::lever_arm_agreement(state);
+  out.mislabelled_axes = state.senses.detected();
   for (std::size_t k = 0; k < units.index.size(); ++k) {
     const ImuMerge::Unit& unit = state.units[k];
-    constexpr int kOffset = ImuMerge::kErrors - 1;
-    out.readings_excluded += static_cast<std::size_t>(unit.left_out);
+    constexpr int kOffset = ImuMerge::kErrorCount - 1;
+    out.excluded_readings += static_cast<std::size_t>(unit.excluded_windows);
     out.units.push_back(
         {units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.P(kOffset, kOffset))), unit.x.head<3>().norm()});
   }

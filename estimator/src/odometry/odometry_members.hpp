@@ -40,7 +40,7 @@ inline std::size_t number_of(std::string_view field) {
 
 template <StateOf<Status> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("status.trouble", s.trouble, Trouble::diverged);
+  visit("status.trouble", s.error_code, ErrorCode::diverged);
   std::size_t field = odometry::number_of(s.field);
   visit("status.field", field, 0.0, odometry::kSweepFields.size() - 1.0);
   if constexpr (!std::is_const_v<Self>)
@@ -80,25 +80,25 @@ void members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // must equal the saved ones
-  visit.scratch(s.order_);   // derived from the parameters
-  visit("order", s.order_state_);
+  visit.scratch(s.params_);       // must equal the saved ones
+  visit.scratch(s.stamp_order_);  // derived from the parameters
+  visit("order", s.stamp_order_state_);
   visit.scratch(s.gyro_offset_);
   visit("gyro_offset", s.gyro_offset_state_);
-  visit.scratch(s.filter_);  // derived from the parameters
-  visit("outliers", s.outliers_);
-  visit.scratch(s.clock_);
-  visit("stamps", s.stamps_);
+  visit.scratch(s.outlier_filter_);  // derived from the parameters
+  visit("outliers", s.outlier_filter_state_);
+  visit.scratch(s.sample_clock_);
+  visit("stamps", s.sample_clock_state_);
   visit("pass", s.pass_);
   visit("second_pass", s.second_pass_);
   visit("newest_ns", s.newest_ns_);
-  visit("registered_ns", s.registered_ns_);
-  visit("gaps", s.gaps_);
+  visit("registered_ns", s.last_registered_ns_);
+  visit("gaps", s.restart_count_);
   visit("dropped_sweeps", s.dropped_sweeps_);
   visit("early_sweeps", s.early_sweeps_);
   visit("waiting", s.waiting_);
   visit("readings", s.readings_);
-  visit("done", s.done_);
+  visit("done", s.results_);
   visit("sweep_end_ns", s.sweep_end_ns_);
   visit("recorded", s.recorded_);
   visit.scratch(s.whole_);  // finish() computes the results again

@@ -79,7 +79,7 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
       localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s),
-      gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kLeastGravity_m_s2)}) {
+      rest_gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kLeastGravity_m_s2)}) {
   pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
 }
 
@@ -87,28 +87,28 @@ Status OdometryPass::add_imu(const ImuSample& sample) {
   std::optional<RateState> rate;
   if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
   pending_.push(sample);
-  gravity_.step(sample, gravity_state_);
-  RestGravity::limit_memory(gravity_state_);
-  if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) take_rate(*rate);
+  rest_gravity_.step(sample, rest_gravity_state_);
+  RestGravity::limit_memory(rest_gravity_state_);
+  if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) process_rate(*rate);
   return {};
 }
 
-TimeNs OdometryPass::needed_ns(TimeNs lidar_ns) const {
+TimeNs OdometryPass::oldest_needed_ns(TimeNs lidar_ns) const {
   return lidar_ns + static_cast<TimeNs>(std::llround(1e9 * time_offset_s_));
 }
 
 std::optional<TimeNs> OdometryPass::covered_ns() const {
   if (!smoothed_) return std::nullopt;
-  return smoothed_->time_ns - needed_ns(0);
+  return smoothed_->time_ns - oldest_needed_ns(0);
 }
 
 bool OdometryPass::covers(TimeNs end_ns) const {
-  return smoothed_ && smoothed_->time_ns >= needed_ns(end_ns);
+  return smoothed_ && smoothed_->time_ns >= oldest_needed_ns(end_ns);
 }
 
 std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
   const std::span<const ImuSample> open = pending_.all();
-  const TimeNs needed = needed_ns(end_ns);
+  const TimeNs needed = oldest_needed_ns(end_ns);
   const auto covers = [&](const ImuSample& sample) { return sample.time_ns >= needed; };
   const auto first = std::find_if(open.begin(), open.end(), covers);
   if (first == open.end()) return std::nullopt;
@@ -139,7 +139,7 @@ Status OdometryPass::newest(PoseState& pose, Eigen::Matrix3d* velocity_covarianc
   return mapper_.predict(samples, rates, pose, velocity_covariance_I_m2_s2);
 }
 
-void OdometryPass::take_rate(const RateState& rate) {
+void OdometryPass::process_rate(const RateState& rate) {
   const ImuSample sample = ClassifiedSamples(pending_.all(), rate_state_.rate).at(rate.time_ns);
   pending_.drop_until(rate.time_ns);
   smoothed_ = rate;
@@ -154,20 +154,20 @@ void OdometryPass::flush_until(TimeNs time_ns) {
   rates_.flush(rate_state_, rates);
   for (const RateState& rate : rates) {
     if (smoothed_ && smoothed_->time_ns >= time_ns) return;
-    if (!smoothed_ || rate.time_ns > smoothed_->time_ns) take_rate(rate);
+    if (!smoothed_ || rate.time_ns > smoothed_->time_ns) process_rate(rate);
   }
 }
 
-void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
+void OdometryPass::start_rate_estimation(const RegimeStream::Params& rate) {
   rates_ = RegimeStream(rate);
   const FrozenAxes::State frozen = rate_state_.rate.frozen;  // a frozen axis may remain frozen
-  const FlightSense::State sense = rate_state_.rate.sense;
+  const FlightSignCheck::State sense = rate_state_.rate.sense;
   rate_state_ = rates_.start();
   rate_state_.rate.frozen = frozen;
   rate_state_.rate.sense = sense;
 }
 
-void OdometryPass::take_map(OdometryPass&& other) {
+void OdometryPass::adopt_map(OdometryPass&& other) {
   if (mapper_.has_prior_map()) other.mapper_.use_map_of(mapper_);
   mapper_ = std::move(other.mapper_);
   scale_ = std::move(other.scale_);

@@ -20,7 +20,7 @@ namespace odometry {
 template <class Visitor>
 void check_offset(const RegimeStream::Params& rate, Visitor& visit) {
   visit.bounded("gyro offset", rate.rate.model.nominal.gyro_bias_rad_s.cwiseAbs().maxCoeff(), 0.0,
-                GyroOffset::kMost_rad_s);
+                GyroOffset::kOffsetMax_rad_s);
 }
 
 /// Visits the parameters of the rates that may come from an earlier run.
@@ -57,7 +57,7 @@ void OdometryPass::members(Self& s, Visitor& visit) {
     odometry::check_offset(rate, visit);
     if (visit.going() && rate.rate.model.calibration) visit.refuse(check_calibration(*rate.rate.model.calibration));
     if (!visit.going()) return;
-    s.begin_rates(rate);
+    s.start_rate_estimation(rate);
   }
   visit("pass.rates", s.rate_state_);
   visit("pass.mapper", s.mapper_);
@@ -69,15 +69,16 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.smoothed", s.smoothed_);
   visit("pass.last_mapped_ns", s.last_mapped_ns_);
   visit("pass.rejected_samples", s.rejected_samples_);
-  visit.scratch(s.gravity_);  // of the parameters
-  visit("pass.gravity", s.gravity_state_);
+  visit.scratch(s.rest_gravity_);  // of the parameters
+  visit("pass.gravity", s.rest_gravity_state_);
 }
 
 template <class Self, class Visitor>
 void WaitingReadings::members(Self& s, Visitor& visit) {
   visit("readings.waiting", s.waiting_);
-  if constexpr (Visitor::kReads) visit.bounded("readings.waiting", double(s.waiting_.size()), 0.0, double(kMost));
-  visit("readings.straddling", s.straddling_);
+  if constexpr (Visitor::kReads)
+    visit.bounded("readings.waiting", double(s.waiting_.size()), 0.0, double(kReadingsMax));
+  visit("readings.straddling", s.spanning_two_sweeps_);
 }
 
 template <class Self, class Visitor>
@@ -96,18 +97,18 @@ void SecondPass::members(Self& s, Visitor& visit) {
   if constexpr (Visitor::kReads) odometry::check_offset(s.rate_, visit);
   visit.scratch(s.rate_);
   visit.scratch(s.mapping_);
-  visit("second_pass.wanted", s.wanted_);
-  visit("second_pass.taken", s.taken_);
-  visit.scratch(s.rests_);
+  visit("second_pass.wanted", s.enabled_);
+  visit("second_pass.taken", s.applied_);
+  visit.scratch(s.rest_detector_);
   visit("second_pass.rest", s.rest_);
-  visit("second_pass.moves_ns", s.moves_ns_);
+  visit("second_pass.moves_ns", s.motion_start_ns_);
   visit("second_pass.samples", s.samples_);
   visit("second_pass.sweeps", s.sweeps_);
-  bool under_way = s.pass_.has_value();
-  visit("second_pass.under_way", under_way);
+  bool is_running = s.pass_.has_value();
+  visit("second_pass.under_way", is_running);
   if constexpr (!std::is_const_v<Self>) {
     s.pass_.reset();
-    if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
+    if (is_running && visit.going()) s.pass_.emplace(s.delayed_rate_params(), s.mapping_);
   }
   // the layout already contains the members of a pass, so that the second pass is not described
   if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
@@ -116,9 +117,9 @@ void SecondPass::members(Self& s, Visitor& visit) {
   visit("second_pass.next_sweep", s.next_sweep_, 0.0, double(s.sweeps_.size()));
   visit("second_pass.rejected_by_first", s.rejected_by_first_);
   visit("second_pass.rejected", s.rejected_);
-  visit("second_pass.lost", s.lost_);
-  visit("second_pass.early", s.early_);
-  visit("second_pass.tried", s.tried_);
+  visit("second_pass.lost", s.last_sweep_rejected_);
+  visit("second_pass.early", s.started_by_tracking_failure_);
+  visit("second_pass.tried", s.early_pass_tried_);
 }
 
 }  // namespace tumble

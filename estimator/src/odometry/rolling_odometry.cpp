@@ -71,49 +71,49 @@ RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params,
 
 RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
     : params_(params),
-      order_(params.expert.rolling.filter.expert.gap.gap_max_s),
-      clock_(params.expert.stamps),
-      merge_(merged),
-      smoother_(rolling_params(params, merged, params.units.size(), merge_.p_C_m())),
+      stamp_order_(params.expert.rolling.filter.expert.gap.gap_max_s),
+      sample_clock_(params.expert.stamps),
+      imu_merge_(merged),
+      smoother_(rolling_params(params, merged, params.units.size(), imu_merge_.p_C_m())),
       rails_(sheets_of(params)),
-      alignment_(params.units.size()),
-      merge_state_(std::make_unique<ImuMerge::State>()),
-      merged_state_(std::make_unique<ImuMerge::State>()),
+      unit_alignment_(params.units.size()),
+      imu_merge_state_(std::make_unique<ImuMerge::State>()),
+      merge_state_buffer_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
-      filters_(filters_of(params)),
-      watches_(watches_of(params)),
-      gravity_({.gravity_m_s2 = params.gravity_m_s2}),
+      outlier_filters_(filters_of(params)),
+      frozen_axis_detectors_(watches_of(params)),
+      rest_gravity_({.gravity_m_s2 = params.gravity_m_s2}),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
     : params_(other.params_),
-      order_(other.order_),
-      order_state_(other.order_state_),
-      clock_(other.clock_),
-      stamps_(other.stamps_),
-      merge_(other.merge_),
+      stamp_order_(other.stamp_order_),
+      stamp_order_state_(other.stamp_order_state_),
+      sample_clock_(other.sample_clock_),
+      sample_clock_state_(other.sample_clock_state_),
+      imu_merge_(other.imu_merge_),
       smoother_(other.smoother_),
       rails_(other.rails_),
-      alignment_(other.alignment_),
-      alignment_state_(other.alignment_state_),
+      unit_alignment_(other.unit_alignment_),
+      unit_alignment_state_(other.unit_alignment_state_),
       recorded_(other.recorded_),
-      merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
-      merged_state_(std::make_unique<ImuMerge::State>()),
+      imu_merge_state_(std::make_unique<ImuMerge::State>(*other.imu_merge_state_)),
+      merge_state_buffer_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
       rails_state_(other.rails_state_),
-      filters_(other.filters_),
-      outliers_(other.outliers_),
-      held_(other.held_),
-      watches_(other.watches_),
+      outlier_filters_(other.outlier_filters_),
+      outlier_filter_state_(other.outlier_filter_state_),
+      delayed_samples_(other.delayed_samples_),
+      frozen_axis_detectors_(other.frozen_axis_detectors_),
       frozen_(other.frozen_),
-      gravity_(other.gravity_),
-      gravity_state_(other.gravity_state_),
-      done_(other.done_),
-      taken_(other.taken_),
+      rest_gravity_(other.rest_gravity_),
+      rest_gravity_state_(other.rest_gravity_state_),
+      results_(other.results_),
+      returned_count_(other.returned_count_),
       start_(other.start_),
-      T_WR_(other.T_WR_),
-      gaps_(other.gaps_),
+      T_W_run_(other.T_W_run_),
+      restart_count_(other.restart_count_),
       restarted_(other.restarted_),
       live_(other.live_),
       finished_(other.finished_) {}
@@ -123,9 +123,9 @@ RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
 }
 
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
-  if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
+  if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   if (samples.size() != params_.units.size())
-    return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+    return {ErrorCode::too_few, "samples", double(samples.size()), double(params_.units.size())};
   if (is_whole()) {
     if (!any_reading(samples)) return check_sample(samples.front());
     Status status;
@@ -135,32 +135,35 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   }
   if (!any_reading(samples)) return add_inliers(samples);  // returns the error
   StampOrder::Verdict verdict{};
-  if (const Status status = order_.judge(samples.front().time_ns, order_state_, verdict); !status.ok()) return status;
+  if (const Status status = stamp_order_.classify_stamp(samples.front().time_ns, stamp_order_state_, verdict);
+      !status.ok())
+    return status;
   if (verdict != StampOrder::Verdict::continues) restart_at_newest();
-  if (const Status status = add_held(samples); !status.ok()) return status;
+  if (const Status status = add_delayed_samples(samples); !status.ok()) return status;
   UnitRails::Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
   bool holds = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!check_sample(samples[k]).ok()) continue;
-    if (!filters_[k].keeps_back(at_time(samples.front().time_ns, samples[k]), outliers_[k])) continue;
-    if (outliers_[k].held) {
+    if (!outlier_filters_[k].must_delay(at_time(samples.front().time_ns, samples[k]), outlier_filter_state_[k]))
+      continue;
+    if (outlier_filter_state_[k].delayed) {
       holds = true;
     } else {
       leave_out(judged[k]);
     }
   }
-  if (holds) held_ = judged;
+  if (holds) delayed_samples_ = judged;
   const std::span<const ImuSample> inliers = std::span(judged).first(samples.size());
   return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
 }
 
 Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
-  if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
+  if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   const std::size_t units = params_.units.size();
-  if (unit >= units) return {Trouble::out_of_range, "unit", double(unit), double(units - 1)};
+  if (unit >= units) return {ErrorCode::out_of_range, "unit", double(unit), double(units - 1)};
   if (is_whole()) return record(unit, sample);
-  if (Status status = alignment_.push(unit, sample, alignment_state_); !status.ok()) return status;
+  if (Status status = unit_alignment_.push(unit, sample, unit_alignment_state_); !status.ok()) return status;
   return add_aligned(false);
 }
 
@@ -168,7 +171,7 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
   UnitAlignment::Readings readings;
-  while (alignment_.next(alignment_state_, readings, ended)) {
+  while (unit_alignment_.next(unit_alignment_state_, readings, ended)) {
     const Status status = add_imus(std::span(readings).first(params_.units.size()));
     if (first.ok()) first = status;
   }
@@ -177,59 +180,61 @@ Status RollingOdometry::add_aligned(bool ended) {
 
 /// Adds the delayed samples, except for readings that the outlier filter rejects after comparison with the next
 /// samples.
-Status RollingOdometry::add_held(std::span<const ImuSample> next) {
-  if (!held_) return {};
+Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
+  if (!delayed_samples_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
-    if (!outliers_[k].held) continue;
+    if (!outlier_filter_state_[k].delayed) continue;
     const bool follows = check_sample(next[k]).ok();
-    const bool confirmed = follows && filters_[k].settle(at_time(next.front().time_ns, next[k]), outliers_[k]);
-    if (!follows) OutlierFilter::finish(outliers_[k]);
-    if (!confirmed) leave_out((*held_)[k]);
+    const bool confirmed =
+        follows && outlier_filters_[k].filter_sample(at_time(next.front().time_ns, next[k]), outlier_filter_state_[k]);
+    if (!follows) OutlierFilter::finish(outlier_filter_state_[k]);
+    if (!confirmed) leave_out((*delayed_samples_)[k]);
   }
-  const UnitRails::Samples held = *std::exchange(held_, std::nullopt);
+  const UnitRails::Samples held = *std::exchange(delayed_samples_, std::nullopt);
   const std::span<const ImuSample> inliers = std::span(held).first(next.size());
   return any_reading(inliers) ? add_inliers(inliers) : Status{};
 }
 
 Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   std::optional<ImuSample> merged;
-  SampleClock::State stamps = stamps_;
+  SampleClock::State stamps = sample_clock_state_;
   TimeNs time_ns = 0;
-  if (Status status = clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
+  if (Status status = sample_clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
   UnitRails::Samples flagged;
-  rails_.flag(samples, rails_state_, flagged);
+  rails_.flag_clipped(samples, rails_state_, flagged);
   flagged.front().time_ns = time_ns;
-  *merged_state_ = *merge_state_;  // either all parts accept the sample or none
+  *merge_state_buffer_ = *imu_merge_state_;  // either all parts accept the sample or none
   Frozen frozen = frozen_;
-  for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
+  for (std::size_t k = 0; k < samples.size(); ++k) frozen_axis_detectors_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
     frozen_ = frozen;  // health() reports the frozen axes
     return status;
   }
-  if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
-  if (Status status = merge_.verdict(*merged_state_); !status.ok()) return status;
+  if (Status status = imu_merge_.step(judged, *merge_state_buffer_, merged); !status.ok()) return status;
+  if (Status status = imu_merge_.verdict(*merge_state_buffer_); !status.ok()) return status;
   if (merged) {
-    if (Status status = take_in(*merged); !status.ok()) return status;
+    if (Status status = process_accepted_sample(*merged); !status.ok()) return status;
   }
-  merge_state_.swap(merged_state_);
-  stamps_ = stamps;
+  imu_merge_state_.swap(merge_state_buffer_);
+  sample_clock_state_ = stamps;
   frozen_ = frozen;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    gravity_.step(samples[k], gravity_state_[k]);
-    RestGravity::limit_memory(gravity_state_[k]);
+    rest_gravity_.step(samples[k], rest_gravity_state_[k]);
+    RestGravity::limit_memory(rest_gravity_state_[k]);
   }
   rails_.observe(samples, rails_state_);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (check_sample(samples[k]).ok()) OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outliers_[k]);
+    if (check_sample(samples[k]).ok())
+      OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outlier_filter_state_[k]);
   }
-  StampOrder::accept(samples.front().time_ns, order_state_);
+  StampOrder::accept(samples.front().time_ns, stamp_order_state_);
   return {};
 }
 
 std::size_t RollingOdometry::rejected_readings() const {
   std::size_t out = 0;
-  for (const OutlierFilter::State& unit : outliers_) out += unit.rejected;
+  for (const OutlierFilter::State& unit : outlier_filter_state_) out += unit.rejected;
   return out;
 }
 
@@ -238,7 +243,7 @@ Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
-    const bool frozen = finite && !watches_[k].verdict(states[k]).ok();
+    const bool frozen = finite && !frozen_axis_detectors_[k].verdict(states[k]).ok();
     if (frozen) leave_out(samples[k]);
     any = any || frozen;
     received = received || (finite && !frozen);
@@ -247,19 +252,19 @@ Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample
 }
 
 std::optional<double> RollingOdometry::estimated_jitter_s() const {
-  return clock_.corrects_stamps(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
+  return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
 }
 
 Status RollingOdometry::health() const {
   Status status = frozen_axis(frozen_);
-  for (std::size_t unit = 0; unit < watches_.size() && status.ok(); ++unit)
-    status = gravity_.size_verdict(gravity_state_[unit]);
+  for (std::size_t unit = 0; unit < frozen_axis_detectors_.size() && status.ok(); ++unit)
+    status = rest_gravity_.magnitude_verdict(rest_gravity_state_[unit]);
   return status;
 }
 
 Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
-  for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
-    Status status = watches_[unit].verdict(frozen[unit]);
+  for (std::size_t unit = 0; unit < frozen_axis_detectors_.size(); ++unit) {
+    Status status = frozen_axis_detectors_[unit].verdict(frozen[unit]);
     if (status.ok()) continue;
     const auto axes = frozen[unit].axes;
     const auto first = std::find_if(axes.begin(), axes.end(), [](const FrozenAxes::Axis& axis) { return axis.frozen; });
@@ -271,15 +276,15 @@ Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
 
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
   if (!state_->live.started) return std::nullopt;
-  return as_pose(in_world(RollingFilter::estimate(state_->live)));
+  return as_pose(transform_to_world(RollingFilter::estimate(state_->live)));
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
-  if (taken_ == done_.size()) return std::nullopt;
-  const Pose out = as_pose(done_[taken_++]);
-  if (taken_ == done_.size()) {
-    done_.clear();
-    taken_ = 0;
+  if (returned_count_ == results_.size()) return std::nullopt;
+  const Pose out = as_pose(results_[returned_count_++]);
+  if (returned_count_ == results_.size()) {
+    results_.clear();
+    returned_count_ = 0;
   }
   return out;
 }
@@ -291,7 +296,7 @@ RollingOdometry::Calibration RollingOdometry::calibration() const {
 
 Status RollingOdometry::finish() {
   if (finished_) return {};
-  const Status status = is_whole() ? finish_whole() : add_aligned(true);
+  const Status status = is_whole() ? finish_whole_recording() : add_aligned(true);
   end_run();
   finished_ = true;
   return status;
@@ -299,11 +304,11 @@ Status RollingOdometry::finish() {
 
 /// Smooths the poses that are still within the lag.
 void RollingOdometry::end_run() {
-  for (OutlierFilter::State& unit : outliers_) OutlierFilter::finish(unit);
-  held_.reset();
-  const std::size_t before = done_.size();
-  if (!live_ && !is_whole()) smoother_.finish(*state_, done_);
-  for (std::size_t k = before; k < done_.size(); ++k) done_[k] = in_world(done_[k]);
+  for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
+  delayed_samples_.reset();
+  const std::size_t before = results_.size();
+  if (!live_ && !is_whole()) smoother_.finish(*state_, results_);
+  for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
 }
 
 /// Restarts the run at the newest pose.
@@ -317,31 +322,31 @@ void RollingOdometry::restart_at_newest() {
   }
   start_run();
   start_ = T_WG;
-  ++gaps_;
+  ++restart_count_;
   restarted_ = true;
 }
 
 void RollingOdometry::reset() {
   start_run();
-  alignment_state_ = {};
+  unit_alignment_state_ = {};
   recorded_ = {};
 }
 
 /// Resets all states of a run, except the readings that UnitAlignment has not yet passed on.
 void RollingOdometry::start_run() {
-  stamps_ = {};
-  merge_state_ = std::make_unique<ImuMerge::State>();
+  sample_clock_state_ = {};
+  imu_merge_state_ = std::make_unique<ImuMerge::State>();
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();
   frozen_ = {};
-  for (OutlierFilter::State& unit : outliers_) {
-    unit.held.reset();
+  for (OutlierFilter::State& unit : outlier_filter_state_) {
+    unit.delayed.reset();
     unit.count = 0;
   }
-  held_.reset();
-  gravity_state_ = {};
-  order_state_ = {};
-  start_ = T_WR_ = std::nullopt;
+  delayed_samples_.reset();
+  rest_gravity_state_ = {};
+  stamp_order_state_ = {};
+  start_ = T_W_run_ = std::nullopt;
   restarted_ = false;
   finished_ = false;
 }
@@ -352,42 +357,42 @@ void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
 }
 
 /// Computes the pose of the run's origin, from the run's first pose.
-void RollingOdometry::place_start() {
+void RollingOdometry::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);
   const Eigen::Quaterniond turn = Eigen::Quaterniond(start_->linear()) * first.q_WI.conjugate();
   Eigen::Isometry3d T_WR = Eigen::Isometry3d::Identity();
   T_WR.linear() = so3::exp({0.0, 0.0, 2.0 * std::atan2(turn.z(), turn.w())}).toRotationMatrix();
   T_WR.translation() = start_->translation() - T_WR.linear() * first.p_WG_m;
-  T_WR_ = T_WR;
+  T_W_run_ = T_WR;
   start_.reset();
 }
 
 /// Converts an estimate of the filter or the smoother to the world.
-RollingEstimate RollingOdometry::in_world(RollingEstimate estimate) const {
+RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restarted_;
-  if (!T_WR_) return estimate;
-  const Eigen::Matrix3d R = T_WR_->linear();
+  if (!T_W_run_) return estimate;
+  const Eigen::Matrix3d R = T_W_run_->linear();
   Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();
   both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
-  estimate.p_WG_m = *T_WR_ * estimate.p_WG_m;
+  estimate.p_WG_m = *T_W_run_ * estimate.p_WG_m;
   estimate.q_WI = (Eigen::Quaterniond(R) * estimate.q_WI).normalized();
   estimate.v_WG_m_s = R * estimate.v_WG_m_s;
   estimate.covariance = both * estimate.covariance * both.transpose();
   return estimate;
 }
 
-Status RollingOdometry::take_in(const ImuSample& merged) {
-  const std::size_t before = done_.size();
+Status RollingOdometry::process_accepted_sample(const ImuSample& merged) {
+  const std::size_t before = results_.size();
   Status status;
   if (live_) {
     status = smoother_.filter().step(merged, state_->live);
-    if (status.ok()) done_.push_back(RollingFilter::estimate(state_->live));
+    if (status.ok()) results_.push_back(RollingFilter::estimate(state_->live));
   } else {
-    status = smoother_.step(merged, *state_, done_);
+    status = smoother_.step(merged, *state_, results_);
   }
-  place_start();
-  for (std::size_t k = before; k < done_.size(); ++k) done_[k] = in_world(done_[k]);
+  initialise_pose();
+  for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
   return status;
 }
 

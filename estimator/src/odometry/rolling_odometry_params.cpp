@@ -18,7 +18,7 @@ constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin on a l
 // Checks the radius of RollingOdometry here, because the radius of the smoother has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ std::span<const char* const> RollingOdometry::Params::derived_fields() {
   return kNames;
 }
 
-void RollingOdometry::Params::assume_unknown_imus() {
+void RollingOdometry::Params::widen_priors_for_unknown_imus() {
   const auto widen = [](double& sigma, double least) { sigma = std::max(sigma, least); };
   RollingParams& filter = expert.rolling.filter;
   widen(filter.expert.prior.gyro_bias_sigma_rad_s, kUnknownGyroBias_rad_s);
@@ -61,7 +61,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   out.count = static_cast<int>(params.units.size());
   for (std::size_t k = 0; k < params.units.size(); ++k) {
     const RollingOdometry::Unit& unit = params.units[k];
-    require_fields(unit.sheet);
+    require_valid_fields(unit.sheet);
     require_within("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
     out.T_CI[k] = unit.T_BI;
     const ImuSheet& sheet = unit.sheet;

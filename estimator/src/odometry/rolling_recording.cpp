@@ -17,24 +17,24 @@ Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_[unit];
   if (!samples.empty() && sample.time_ns <= samples.back().time_ns)
-    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(samples.back().time_ns)};
+    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(samples.back().time_ns)};
   samples.push_back(sample);
   return {};
 }
 
 /// Estimates all poses from the recorded readings.
-Status RollingOdometry::finish_whole() {
+Status RollingOdometry::finish_whole_recording() {
   std::vector<UnitRecording> recordings;
   for (std::size_t k = 0; k < params_.units.size(); ++k) {
     std::vector<ImuSample>& samples = recorded_[k];
-    const std::vector<bool> inlier = find_inliers(filters_[k], samples);
-    outliers_[k].rejected += static_cast<std::size_t>(std::count(inlier.begin(), inlier.end(), false));
+    const std::vector<bool> inlier = find_inliers(outlier_filters_[k], samples);
+    outlier_filter_state_[k].rejected += static_cast<std::size_t>(std::count(inlier.begin(), inlier.end(), false));
     std::size_t next = 0;
     std::erase_if(samples, [&](const ImuSample&) { return !inlier[next++]; });
     std::vector<TimeNs> stamps;
     for (const ImuSample& sample : samples) stamps.push_back(sample.time_ns);
     double jitter_s = 0.0;
-    if (Status status = to_sample_times(clock_, stamps, jitter_s); !status.ok()) return status;
+    if (Status status = correct_stamps(sample_clock_, stamps, jitter_s); !status.ok()) return status;
     for (std::size_t j = 0; j < samples.size(); ++j) samples[j].time_ns = stamps[j];
     recordings.push_back({params_.units[k].sheet, params_.units[k].T_BI, std::move(samples)});
   }
@@ -43,10 +43,10 @@ Status RollingOdometry::finish_whole() {
     return status;
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
-    if (Status status = smoother_.step(sample, *state_, done_); !status.ok()) return status;
-    place_start();
+    if (Status status = smoother_.step(sample, *state_, results_); !status.ok()) return status;
+    initialise_pose();
   }
-  smoother_.finish(*state_, done_);
+  smoother_.finish(*state_, results_);
   return {};
 }
 

@@ -43,37 +43,38 @@ void others(Self& p, Visitor& visit) {
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones; the next three are derived from them
-  visit.scratch(s.order_);
-  visit("order", s.order_state_);
-  visit.scratch(s.clock_);
-  visit.scratch(s.merge_);
+  visit.scratch(s.stamp_order_);
+  visit("order", s.stamp_order_state_);
+  visit.scratch(s.sample_clock_);
+  visit.scratch(s.imu_merge_);
   visit.scratch(s.smoother_);
   visit.scratch(s.rails_);
-  visit.scratch(s.alignment_);
-  visit("alignment", s.alignment_state_);
+  visit.scratch(s.unit_alignment_);
+  visit("alignment", s.unit_alignment_state_);
   visit("recorded", s.recorded_);
-  visit("stamps", s.stamps_);
-  visit("merge", *s.merge_state_);
-  visit.scratch(s.merged_state_);
+  visit("stamps", s.sample_clock_state_);
+  visit("merge", *s.imu_merge_state_);
+  visit.scratch(s.merge_state_buffer_);
   visit("rolling", *s.state_);
   visit("rails", s.rails_state_);
-  visit.scratch(s.filters_);  // derived from the parameters
-  visit("outliers", s.outliers_);
-  visit.with_nan("held", s.held_);
-  visit.scratch(s.watches_);
+  visit.scratch(s.outlier_filters_);  // derived from the parameters
+  visit("outliers", s.outlier_filter_state_);
+  visit.with_nan("held", s.delayed_samples_);
+  visit.scratch(s.frozen_axis_detectors_);
   visit("frozen", s.frozen_);
-  visit.scratch(s.gravity_);  // derived from the parameters
-  visit("gravity", s.gravity_state_);
+  visit.scratch(s.rest_gravity_);  // derived from the parameters
+  visit("gravity", s.rest_gravity_state_);
   if constexpr (std::is_const_v<Self>) {
-    const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
+    const std::vector<RollingEstimate> waiting(s.results_.begin() + static_cast<std::ptrdiff_t>(s.returned_count_),
+                                               s.results_.end());
     visit("done", waiting);
   } else {
-    visit("done", s.done_);
-    s.taken_ = 0;
+    visit("done", s.results_);
+    s.returned_count_ = 0;
   }
   visit("start", s.start_);
-  visit("T_WR", s.T_WR_);
-  visit("gaps", s.gaps_);
+  visit("T_WR", s.T_W_run_);
+  visit("gaps", s.restart_count_);
   visit("restarted", s.restarted_);
   visit.scratch(s.live_);
   visit("finished", s.finished_);
@@ -86,7 +87,7 @@ std::vector<std::byte> RollingOdometry::save() const {
 Status RollingOdometry::load(std::span<const std::byte> bytes) {
   RollingOdometry fresh(params_);
   if (Status status = odometry::load(odometry::SavedKind::rolling, bytes, params_, fresh); !status.ok()) return status;
-  if (Status status = SampleClock::check_state(fresh.stamps_); !status.ok()) return status;
+  if (Status status = SampleClock::check_state(fresh.sample_clock_state_); !status.ok()) return status;
   if (Status status = fresh.smoother_.check_state(*fresh.state_); !status.ok()) return status;
   if (Status status = fresh.rails_.check_state(fresh.rails_state_); !status.ok()) return status;
   *this = std::move(fresh);

@@ -48,7 +48,7 @@ void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes) {
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload) {
   if (bytes.size() < kSavedHeader)
-    return {Trouble::too_few, "number of bytes of the saved state", double(bytes.size()), double(kSavedHeader)};
+    return {ErrorCode::too_few, "number of bytes of the saved state", double(bytes.size()), double(kSavedHeader)};
   const std::vector<std::byte> expected = header(kind, layout, bytes.size() - kSavedHeader);
   struct Part {
     const char* name;
@@ -63,11 +63,11 @@ Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> byt
                         wanted = number_at(expected, part.at, part.width);
     if (found == wanted) continue;
     const bool cut = part.at == 24 && found > wanted;
-    return {cut ? Trouble::too_few : Trouble::out_of_range, part.name, double(cut ? wanted : found),
+    return {cut ? ErrorCode::too_few : ErrorCode::out_of_range, part.name, double(cut ? wanted : found),
             double(cut ? found : wanted)};
   }
   const std::uint64_t sum = checksum_of(bytes), stated = number_at(bytes, kChecksumAt, 8);
-  if (sum != stated) return {Trouble::out_of_range, "checksum of the saved state", double(sum), double(stated)};
+  if (sum != stated) return {ErrorCode::out_of_range, "checksum of the saved state", double(sum), double(stated)};
   payload = bytes.subspan(kSavedHeader);
   return {};
 }

@@ -20,9 +20,9 @@ constexpr SavedKind kKind = SavedKind::rate_stream;
 template <>
 constexpr SavedKind kKind<RegimeStream> = SavedKind::regime_stream;
 template <>
-constexpr SavedKind kKind<CarriedStream> = SavedKind::carried_stream;
+constexpr SavedKind kKind<HandHeldStream> = SavedKind::carried_stream;
 template <>
-constexpr SavedKind kKind<CarriedLive> = SavedKind::carried_live;
+constexpr SavedKind kKind<HandHeldPipeline> = SavedKind::carried_live;
 template <>
 constexpr SavedKind kKind<RollingFilter> = SavedKind::rolling_filter;
 template <>
@@ -81,8 +81,8 @@ Status saved_params(std::span<const std::byte> bytes, typename Stream::Params& p
   template Status saved_params<Stream>(std::span<const std::byte>, Stream::Params&);
 TUMBLE_SAVED_STREAM(RateStream)
 TUMBLE_SAVED_STREAM(RegimeStream)
-TUMBLE_SAVED_STREAM(CarriedStream)
-TUMBLE_SAVED_STREAM(CarriedLive)
+TUMBLE_SAVED_STREAM(HandHeldStream)
+TUMBLE_SAVED_STREAM(HandHeldPipeline)
 TUMBLE_SAVED_STREAM(RollingFilter)
 TUMBLE_SAVED_STREAM(RollingSmoother)
 #undef TUMBLE_SAVED_STREAM

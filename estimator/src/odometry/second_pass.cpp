@@ -36,16 +36,16 @@ SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
     : params_(params),
       rate_(rate),
       mapping_(mapping),
-      wanted_(params.after_s > 0.0),
-      rests_(mapping::mapper_rest(mapping)) {
-  require_fields(params);
-  if (!wanted_) return;
+      enabled_(params.after_s > 0.0),
+      rest_detector_(mapping::mapper_rest(mapping)) {
+  require_valid_fields(params);
+  if (!enabled_) return;
   const double most_s = params.rest_s + kBefore_s + params.abandon_after_s;
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
-void SecondPass::give_up() {
-  wanted_ = false;
+void SecondPass::abandon() {
+  enabled_ = false;
   pass_.reset();
   sweeps_.clear();
   samples_ = {};
@@ -53,15 +53,15 @@ void SecondPass::give_up() {
 }
 
 void SecondPass::store(const ImuSample& sample) {
-  if (!wanted_) return;
-  if (!moves_ns_ && !rests_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s))
-    moves_ns_ = sample.time_ns;
-  if (!moves_ns_) {
+  if (!enabled_) return;
+  if (!motion_start_ns_ && !rest_detector_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s))
+    motion_start_ns_ = sample.time_ns;
+  if (!motion_start_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBefore_s));
-  } else if (seconds(sample.time_ns - counts_from_ns()) > params_.abandon_after_s) {
-    give_up();
+  } else if (seconds(sample.time_ns - buffer_start_ns()) > params_.abandon_after_s) {
+    abandon();
     return;
   }
   samples_.push(sample);
@@ -69,36 +69,36 @@ void SecondPass::store(const ImuSample& sample) {
 
 void SecondPass::store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
                        const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
-  if (!wanted_) return;
+  if (!enabled_) return;
   sweeps_.push_back({start_ns, end_ns, std::move(points), reading, verdict});
   rejected_by_first_ += verdict == SweepVerdict::rejected;
 }
 
-bool SecondPass::first_is_lost() const {
-  if (tried_ || !(params_.lost_s > 0.0)) return false;
+bool SecondPass::first_pass_lost() const {
+  if (early_pass_tried_ || !(params_.lost_s > 0.0)) return false;
   const auto rejected = [](const Sweep& sweep) { return sweep.verdict == SweepVerdict::rejected; };
   const auto last = std::find_if_not(sweeps_.rbegin(), sweeps_.rend(), rejected);
   return last != sweeps_.rbegin() && last != sweeps_.rend() &&
          seconds(sweeps_.back().end_ns - last->end_ns) >= params_.lost_s;
 }
 
-TimeNs SecondPass::counts_from_ns() const {
-  return sweeps_.empty() ? *moves_ns_ : std::max(*moves_ns_, sweeps_.front().start_ns);
+TimeNs SecondPass::buffer_start_ns() const {
+  return sweeps_.empty() ? *motion_start_ns_ : std::max(*motion_start_ns_, sweeps_.front().start_ns);
 }
 
 bool SecondPass::is_due() const {
-  if (!wanted_ || !moves_ns_ || sweeps_.empty()) return false;
-  return seconds(sweeps_.back().end_ns - counts_from_ns()) >= params_.after_s || first_is_lost();
+  if (!enabled_ || !motion_start_ns_ || sweeps_.empty()) return false;
+  return seconds(sweeps_.back().end_ns - buffer_start_ns()) >= params_.after_s || first_pass_lost();
 }
 
-RegimeStream::Params SecondPass::lagging_rate() const {
+RegimeStream::Params SecondPass::delayed_rate_params() const {
   RegimeStream::Params out = rate_;
   out.rate.lag_s = std::min(std::max(params_.lag_s, rate_.rate.lag_s), rate_.rate.lag_max_s());
   return out;
 }
 
 RegimeStream::Params SecondPass::calibrated_rate(const OdometryPass& first) const {
-  RegimeStream::Params out = lagging_rate();
+  RegimeStream::Params out = delayed_rate_params();
   const RateStream::State& state = first.rate_state().rate;
   out.rate.model.calibration = first.rates().rate().calibration(state);
   out.rate.model.calibration->covariance *= params_.inflation;
@@ -123,13 +123,13 @@ bool SecondPass::begin(const OdometryPass& first) {
   const RegimeStream::Params rate = calibrated_rate(first);
   const LidarInertialOdometry::Params mapping = calibrated_mapping(first);
   if (!check_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
-    give_up();  // the estimated calibration is out of bounds
+    abandon();  // the estimated calibration is out of bounds
     return false;
   }
   pass_.emplace(rate, mapping);
-  if (first.mapper().start()) pass_->start_at(*first.mapper().start());
+  if (first.mapper().start()) pass_->set_start_pose(*first.mapper().start());
   next_sample_ = next_sweep_ = rejected_ = 0;
-  early_ = seconds(sweeps_.back().end_ns - counts_from_ns()) < params_.after_s;
+  started_by_tracking_failure_ = seconds(sweeps_.back().end_ns - buffer_start_ns()) < params_.after_s;
   return true;
 }
 
@@ -140,11 +140,11 @@ void SecondPass::advance(OdometryPass& first) {
 
 void SecondPass::complete(OdometryPass& first) {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-  if (pass_ && early_) run(first, kAll);
-  if (!pass_ && (!wanted_ || !moves_ns_ || sweeps_.empty() || !begin(first))) return;
-  early_ = false;
+  if (pass_ && started_by_tracking_failure_) run(first, kAll);
+  if (!pass_ && (!enabled_ || !motion_start_ns_ || sweeps_.empty() || !begin(first))) return;
+  started_by_tracking_failure_ = false;
   run(first, kAll);
-  give_up();
+  abandon();
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
@@ -153,17 +153,17 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
-      take_over(first);
+      replace_first_pass(first);
       return;
     }
     Sweep& sweep = sweeps_[next_sweep_++];
     const std::span<const ImuSample> samples = samples_.all();
     while (!pass_->covers(sweep.end_ns) && next_sample_ < samples.size()) {
-      if (!pass_->add_imu(samples[next_sample_++]).ok()) return give_up();
+      if (!pass_->add_imu(samples[next_sample_++]).ok()) return abandon();
     }
     if (!pass_->covers(sweep.end_ns)) {
       tail = true;
-      pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->needed_ns(sweep.end_ns)));
+      pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->oldest_needed_ns(sweep.end_ns)));
     }
     if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than assumed: continue with the next sweep
       --next_sweep_;
@@ -171,28 +171,28 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
     }
     LidarInertialOdometry::SweepReport report;
     (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, sweep.reading, report);
-    lost_ = report.verdict == SweepVerdict::rejected;
-    rejected_ += lost_;
-    if (!early_) std::vector<LidarPoint>().swap(sweep.points);
+    last_sweep_rejected_ = report.verdict == SweepVerdict::rejected;
+    rejected_ += last_sweep_rejected_;
+    if (!started_by_tracking_failure_) std::vector<LidarPoint>().swap(sweep.points);
   }
 }
 
-void SecondPass::take_over(OdometryPass& first) {
+void SecondPass::replace_first_pass(OdometryPass& first) {
   pass_->flush_until(first.smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;
-  if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
-    first.take_map(std::move(*pass_));
-    taken_ = true;
+  if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!last_sweep_rejected_ || first_lost)) {
+    first.adopt_map(std::move(*pass_));
+    applied_ = true;
     // an early second pass replaces the first pass when the regular second pass follows
     rejected_by_first_ = rejected_;
-    if (!lost_) newest = SweepVerdict::registered;
+    if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }
-  if (!early_) return give_up();
+  if (!started_by_tracking_failure_) return abandon();
   pass_.reset();
   next_sample_ = next_sweep_ = 0;
-  early_ = false;
-  tried_ = true;
+  started_by_tracking_failure_ = false;
+  early_pass_tried_ = true;
 }
 
 }  // namespace tumble

@@ -5,22 +5,23 @@
 
 namespace tumble {
 
-Status StampOrder::judge(TimeNs stamp_ns, State& state, Verdict& verdict) const {
+Status StampOrder::classify_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const {
   verdict = Verdict::continues;
   if (const Status status = check_stamp(stamp_ns, "time_ns"); !status.ok()) return status;
   if (!state.newest_ns) return {};
-  const Status status = check_follows(stamp_ns, *state.newest_ns, gap_max_s_);
+  const Status status = check_stamp_order(stamp_ns, *state.newest_ns, gap_max_s_);
   if (status.ok()) {
     state.rejected.reset();
     return {};
   }
-  const bool gap = status.trouble == Trouble::gap;
-  if (!state.rejected || !check_follows(stamp_ns, state.rejected->last_ns, gap_max_s_).ok()) {
+  const bool gap = status.error_code == ErrorCode::gap;
+  if (!state.rejected || !check_stamp_order(stamp_ns, state.rejected->last_ns, gap_max_s_).ok()) {
     state.rejected = RejectedStamps{stamp_ns, stamp_ns};
     return status;
   }
   state.rejected->last_ns = stamp_ns;
-  const bool confirmed = check_follows(stamp_ns, state.rejected->first_ns, kStepBack_s).trouble == Trouble::gap;
+  const bool confirmed =
+      check_stamp_order(stamp_ns, state.rejected->first_ns, kStepBack_s).error_code == ErrorCode::gap;
   if (!gap && !state.single && !confirmed) return status;
   verdict = gap ? Verdict::restarts_after_gap : Verdict::restarts_after_step_back;
   return {};

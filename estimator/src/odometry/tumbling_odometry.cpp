@@ -46,9 +46,9 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
-      order_(params.expert.rate.rate.gap_max_s),
-      filter_(outlier_params(params)),
-      clock_(params.expert.stamps),
+      stamp_order_(params.expert.rate.rate.gap_max_s),
+      outlier_filter_(outlier_params(params)),
+      sample_clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
       second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)) {}
 
@@ -56,61 +56,62 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (is_whole()) return record(sample);
   StampOrder::Verdict verdict{};
-  if (const Status status = order_.judge(sample.time_ns, order_state_, verdict); !status.ok()) return status;
+  if (const Status status = stamp_order_.classify_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
+    return status;
   if (verdict == StampOrder::Verdict::restarts_after_gap) restart_rates();
   if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest();
-  if (filter_.first_is_refuted(sample, outliers_)) restart_without_first();
-  if (const std::optional<ImuSample> confirmed = filter_.settle(sample, outliers_)) {
-    if (const Status status = take_in(*confirmed); !status.ok()) return status;
+  if (outlier_filter_.first_is_outlier(sample, outlier_filter_state_)) restart_without_first_sample();
+  if (const std::optional<ImuSample> confirmed = outlier_filter_.filter_sample(sample, outlier_filter_state_)) {
+    if (const Status status = process_accepted_sample(*confirmed); !status.ok()) return status;
   }
-  if (filter_.keeps_back(sample, outliers_)) return {};
-  if (const Status status = take_in(sample); !status.ok()) return status;
+  if (outlier_filter_.must_delay(sample, outlier_filter_state_)) return {};
+  if (const Status status = process_accepted_sample(sample); !status.ok()) return status;
   const std::optional<Eigen::Vector3d> offset = gyro_offset_.observe(sample, gyro_offset_state_);
   if (!offset) return {};
   restart_with_offset(*offset);
-  return take_in(sample);
+  return process_accepted_sample(sample);
 }
 
-Status TumblingOdometry::take_in(const ImuSample& sample) {
-  SampleClock::State stamps = stamps_;  // a rejected sample must not change the clock
+Status TumblingOdometry::process_accepted_sample(const ImuSample& sample) {
+  SampleClock::State stamps = sample_clock_state_;  // a rejected sample must not change the clock
   ImuSample timed = sample;
-  if (const Status status = clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
+  if (const Status status = sample_clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
-  stamps_ = stamps;
-  OutlierFilter::pass(sample, outliers_);
-  StampOrder::accept(sample.time_ns, order_state_);
+  sample_clock_state_ = stamps;
+  OutlierFilter::pass(sample, outlier_filter_state_);
+  StampOrder::accept(sample.time_ns, stamp_order_state_);
   second_pass_.store(timed);
   newest_ns_ = timed.time_ns;
-  if (!registered_ns_) {
-    registered_ns_ = timed.time_ns;
+  if (!last_registered_ns_) {
+    last_registered_ns_ = timed.time_ns;
     early_sweeps_ += drop_until(timed.time_ns, waiting_);
   }
-  register_covered();
+  register_covered_sweeps();
   return {};
 }
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
-  if (finished_) return {Trouble::out_of_range, "sweeps after finish()", 1.0, 0.0};
-  if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
+  if (finished_) return {ErrorCode::out_of_range, "sweeps after finish()", 1.0, 0.0};
+  if (end_ns < start_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (const Status status = check_stamp(start_ns, "start_ns"); !status.ok()) return status;
   if (const Status status = check_stamp(end_ns, "end_ns"); !status.ok()) return status;
   const TimeNs from_ns = std::max(start_ns, sweep_end_ns_.value_or(start_ns));
   if (from_ns > start_ns && from_ns - start_ns > (end_ns - start_ns) / 2)
-    return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
+    return {ErrorCode::time_order, "start_ns", double(start_ns), double(from_ns)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
-  if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
-  if (registered_ns_ && end_ns <= *registered_ns_) {
+  if (end_ns > latest_ns) return {ErrorCode::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
+  if (last_registered_ns_ && end_ns <= *last_registered_ns_) {
     ++early_sweeps_;
     return {};
   }
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
   if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
   if (waiting_.size() >= most)
-    return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
+    return {ErrorCode::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
   sweep_end_ns_ = end_ns;
   waiting_.push_back({from_ns, end_ns, points_from(from_ns, start_ns, points)});
-  register_covered();
+  register_covered_sweeps();
   return {};
 }
 
@@ -123,10 +124,10 @@ Status TumblingOdometry::add_motion(const MotionReading& motion) {
 }
 
 Status TumblingOdometry::add_reading(const OdometerReading& reading) {
-  if (!newest_ns_) return {Trouble::empty, "imu samples", 0.0, 1.0};
+  if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
   const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kMost;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
-  return readings_.add(reading, pass_.needed_ns(*registered_ns_), latest_ns, most);
+  return readings_.add(reading, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
 Status TumblingOdometry::use_map(PriorMap map) {
@@ -134,9 +135,9 @@ Status TumblingOdometry::use_map(PriorMap map) {
 }
 
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
-  if (done_.empty()) return std::nullopt;
-  Sweep out = std::move(done_.front());
-  done_.pop_front();
+  if (results_.empty()) return std::nullopt;
+  Sweep out = std::move(results_.front());
+  results_.pop_front();
   return out;
 }
 
@@ -145,46 +146,46 @@ Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covar
 }
 
 std::optional<double> TumblingOdometry::estimated_jitter_s() const {
-  return clock_.corrects_stamps(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
+  return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
 }
 
 Status TumblingOdometry::health() const {
   if (is_whole()) return health_of_recording();
   const Status of_imu = pass_.rates().rate().health(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
-  if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
+  if (const Status of_force = pass_.check_force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
-  if (const Status of_vertical = mapper().vertical(); !of_vertical.ok()) return of_vertical;
+  if (const Status of_vertical = mapper().check_vertical(); !of_vertical.ok()) return of_vertical;
   if (const Status of_map = mapper().localised(); !of_map.ok()) return of_map;
-  const Status of_localisation = pass_.localisation().present();
+  const Status of_localisation = pass_.localisation().current_verdict();
   return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
 }
 
 Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
-  if (is_whole()) return finish_whole(on_sweep);
-  OutlierFilter::finish(outliers_);
+  if (is_whole()) return finish_whole_recording(on_sweep);
+  OutlierFilter::finish(outlier_filter_state_);
   if (!newest_rate()) return {};  // no samples since the last call
   flush_all();
   second_pass_.complete(pass_);
-  begin_rates();
+  start_rate_estimation();
   return {};
 }
 
 void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
-  if (done_.size() >= params_.expert.sweeps_max) {
-    done_.pop_front();
+  if (results_.size() >= params_.expert.sweeps_max) {
+    results_.pop_front();
     ++dropped_sweeps_;
   }
-  Sweep& out = done_.emplace_back();
+  Sweep& out = results_.emplace_back();
   const std::optional<OdometerReading> reading =
-      readings_.take(pass_.needed_ns(*registered_ns_), pass_.needed_ns(end_ns));
+      readings_.take(pass_.oldest_needed_ns(*last_registered_ns_), pass_.oldest_needed_ns(end_ns));
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
-  registered_ns_ = end_ns;
+  last_registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   // the second pass has its own local frame
-  if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.give_up();
+  if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.abandon();
   second_pass_.advance(pass_);
 }
 
@@ -195,16 +196,16 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
   const double period_s = 1.0 / params_.imu.rate_hz, lag_s = std::max(params_.lag_s, 2.0 * period_s);
-  return seconds(*newest_ns_ - pass_.needed_ns(end_ns)) + period_s > lag_s &&
+  return seconds(*newest_ns_ - pass_.oldest_needed_ns(end_ns)) + period_s > lag_s &&
          seconds(*newest_ns_ - *covering_ns) > lag_s - 1.5 * period_s;
 }
 
-void TumblingOdometry::register_covered() {
+void TumblingOdometry::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
     // The sample that covers the sweep's end may end up to one period later. The rate of the sample at the sweep's end
     // is therefore reported one period early.
-    if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
+    if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
     waiting_.pop_front();
@@ -212,32 +213,32 @@ void TumblingOdometry::register_covered() {
   }
   const std::optional<TimeNs> covered_ns = pass_.covered_ns();
   if (!waiting_.empty() || !covered_ns) return;
-  if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
+  if (seconds(*covered_ns - *last_registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
-    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map yet
+    if (results_.back().report.trajectory.empty()) results_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;
   }
 }
 
 void TumblingOdometry::flush_all() {
   pass_.flush_until(*newest_ns_);
-  register_covered();
+  register_covered_sweeps();
 }
 
 void TumblingOdometry::restart_rates() {
-  ++gaps_;
-  OutlierFilter::finish(outliers_);
+  ++restart_count_;
+  OutlierFilter::finish(outlier_filter_state_);
   flush_all();
-  second_pass_.give_up();
-  begin_rates();
+  second_pass_.abandon();
+  start_rate_estimation();
 }
 
 /// Restarts the run at the newest pose after the clock stepped back. Sweeps that the IMU covers are registered before.
 void TumblingOdometry::restart_at_newest() {
-  ++gaps_;
+  ++restart_count_;
   PoseState pose;
   const bool located = newest(pose).ok();
-  OutlierFilter::finish(outliers_);
+  OutlierFilter::finish(outlier_filter_state_);
   if (newest_rate()) flush_all();
   Eigen::Isometry3d T_WI = mapper().start().value_or(Eigen::Isometry3d::Identity());
   if (located) {
@@ -250,18 +251,18 @@ void TumblingOdometry::restart_at_newest() {
 }
 
 /// Restarts a run of one sample, which is an outlier.
-void TumblingOdometry::restart_without_first() {
+void TumblingOdometry::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
-  OutlierFilter::State outliers = outliers_;
+  OutlierFilter::State outliers = outlier_filter_state_;
   const std::optional<TimeNs> sweep_end_ns = sweep_end_ns_;
   reset();
-  if (start) pass_.start_at(*start);
+  if (start) pass_.set_start_pose(*start);
   waiting_ = std::move(waiting);
   sweep_end_ns_ = sweep_end_ns;
   outliers.count = 0;
   ++outliers.rejected;
-  outliers_ = outliers;
+  outlier_filter_state_ = outliers;
 }
 
 /// Restarts the run at rest, at the same start, with the gyro's zero offset as nominal bias.
@@ -269,7 +270,7 @@ void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) 
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   early_sweeps_ += waiting_.size();
   reset();
-  if (start) pass_.start_at(*start);
+  if (start) pass_.set_start_pose(*start);
   set_gyro_offset(offset_rad_s);
 }
 
@@ -277,33 +278,33 @@ void TumblingOdometry::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
   gyro_offset_state_.decided = true;
   RegimeStream::Params rate = rate_params(params_);
   rate.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
-  pass_.begin_rates(rate);
+  pass_.start_rate_estimation(rate);
   second_pass_.set_gyro_offset(offset_rad_s);
 }
 
 void TumblingOdometry::reset() {
   const auto fresh = std::make_unique<TumblingOdometry>(params_);
-  fresh->gaps_ = gaps_;
+  fresh->restart_count_ = restart_count_;
   fresh->dropped_sweeps_ = dropped_sweeps_;
   fresh->early_sweeps_ = early_sweeps_;
-  fresh->outliers_.rejected = outliers_.rejected;
-  fresh->done_ = std::move(done_);
+  fresh->outlier_filter_state_.rejected = outlier_filter_state_.rejected;
+  fresh->results_ = std::move(results_);
   fresh->pass_.use_map_of(pass_);
   *this = std::move(*fresh);
 }
 
 void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
   reset();
-  pass_.start_at(T_WI);
+  pass_.set_start_pose(T_WI);
   pass_.use_map_of(pass_);
 }
 
-void TumblingOdometry::begin_rates() {
+void TumblingOdometry::start_rate_estimation() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
   // if the estimated calibration is out of bounds, restart from the stated calibration
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
-  pass_.begin_rates(params);
+  pass_.start_rate_estimation(params);
 }
 
 }  // namespace tumble

@@ -49,7 +49,7 @@ OdometryParams TumblingExpertParams::mapping_defaults() {
 namespace odometry {
 
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
-  require_fields(params);
+  require_valid_fields(params);
   RegimeStream::Params out = params.expert.rate;
   RateModelParams& model = out.rate.model;
   model.nominal.lever_arm_m = params.lever_arm_I_m;
@@ -61,8 +61,8 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   out.rate.period_s = 1.0 / params.imu.rate_hz;
   const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ are then not used
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
-  out.evidence.gravity_m_s2 = out.carried.body.gravity_m_s2 = params.expert.gravity_m_s2;
-  out.carried.body.expert.gap_max_s = out.rate.gap_max_s;
+  out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert.gravity_m_s2;
+  out.hand_held.body.expert.gap_max_s = out.rate.gap_max_s;
   return out;
 }
 
@@ -103,7 +103,7 @@ RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& par
   out.rate.expert.accel_planes = stream.rate.expert.accel_planes;
   out.rate.expert.rests = stream.rate.expert.rests;
   out.evidence = stream.evidence;
-  out.carried = stream.carried.body;
+  out.hand_held = stream.hand_held.body;
   out.carried_min = stream.carried_min;
   out.near_s = stream.near_s;
   return out;

@@ -30,7 +30,7 @@ Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std
   outliers.rejected += std::erase_if(samples, [&](const ImuSample&) { return !inlier[next++]; });
   for (const ImuSample& sample : samples) out.stamps_ns.push_back(sample.time_ns);
   std::vector<TimeNs> times_ns = out.stamps_ns;
-  if (Status status = to_sample_times(clock, times_ns, out.corrected_jitter_s); !status.ok()) return status;
+  if (Status status = correct_stamps(clock, times_ns, out.corrected_jitter_s); !status.ok()) return status;
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].time_ns = times_ns[k];
   return {};
 }
@@ -40,8 +40,8 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
                       RecordingEstimate& out) {
   const RegimeSmoother smoother(odometry::recording_rate_params(params));
   if (Status status = smoother.estimate(samples, out.rates, out.report); !status.ok()) return status;
-  const std::optional<double> carried = out.report.judged ? std::optional(out.report.shares.carried) : std::nullopt;
-  out.findings = check_recording(checked_imu(params), samples, out.rates, carried);
+  const std::optional<double> hand_held = out.report.judged ? std::optional(out.report.shares.hand_held) : std::nullopt;
+  out.findings = check_recording(checked_imu(params), samples, out.rates, hand_held);
   out.suspect_rad2_s2 = suspect_covariance(out.findings, samples, out.rates);
   for (std::size_t k = 0; k < out.suspect_rad2_s2.size(); ++k)
     out.rates[k].covariance_rad2_s2 += out.suspect_rad2_s2[k];
@@ -52,7 +52,7 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
 Status verdict(const RecordingEstimate& whole, const StatedCalibration& stated) {
   if (!whole.findings.all.empty()) return whole.findings.all.front().status;
   if (const Status of_ranges = whole.scale.verdict(); !of_ranges.ok()) return of_ranges;
-  if (const Status of_vertical = whole.mapped.mapper.vertical(); !of_vertical.ok()) return of_vertical;
+  if (const Status of_vertical = whole.mapped.mapper.check_vertical(); !of_vertical.ok()) return of_vertical;
   if (const Status of_tracking = whole.mapped.localisation.verdict(); !of_tracking.ok()) return of_tracking;
   return whole.mapped.calibration_is_off() ? stated.verdict(whole.mapped.mapper.calibration()) : Status{};
 }
@@ -61,35 +61,38 @@ Status verdict(const RecordingEstimate& whole, const StatedCalibration& stated) 
 
 /// Stores a sample until finish().
 Status TumblingOdometry::record(const ImuSample& sample) {
-  if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
+  if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   StampOrder::Verdict verdict{};
-  if (const Status status = order_.judge(sample.time_ns, order_state_, verdict); !status.ok()) return status;
+  if (const Status status = stamp_order_.classify_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
+    return status;
   if (verdict != StampOrder::Verdict::continues && recorded_.size() > 1) {
     const TimeNs last_ns = recorded_.back().time_ns;
     const bool back = verdict == StampOrder::Verdict::restarts_after_step_back;
-    return {back ? Trouble::time_order : Trouble::gap, "time_ns", double(sample.time_ns), double(last_ns)};
+    return {back ? ErrorCode::time_order : ErrorCode::gap, "time_ns", double(sample.time_ns), double(last_ns)};
   }
   if (verdict != StampOrder::Verdict::continues) {  // the first stamp was wrong
     recorded_.clear();
-    order_state_ = {};
-    registered_ns_.reset();
+    stamp_order_state_ = {};
+    last_registered_ns_.reset();
   }
-  StampOrder::accept(sample.time_ns, order_state_);
+  StampOrder::accept(sample.time_ns, stamp_order_state_);
   recorded_.push_back(sample);
   newest_ns_ = sample.time_ns;
-  if (!registered_ns_) registered_ns_ = sample.time_ns;
+  if (!last_registered_ns_) last_registered_ns_ = sample.time_ns;
   return {};
 }
 
 /// Estimates rates, map and poses from the recorded data.
-Status TumblingOdometry::finish_whole(const SweepProgress& on_sweep) {
+Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
   if (finished_) return {};
   finished_ = true;
-  done_.clear();
+  results_.clear();
   const LidarInertialOdometry::Params mapping = odometry::mapper_params(params_);
   const auto whole = std::make_shared<RecordingEstimate>(mapping);
   std::vector<ImuSample> samples = recorded_;
-  if (Status status = select_samples(filter_, clock_, samples, outliers_, *whole); !status.ok()) return status;
+  if (Status status = select_samples(outlier_filter_, sample_clock_, samples, outlier_filter_state_, *whole);
+      !status.ok())
+    return status;
   if (Status status = estimate_rates(params_, samples, *whole); !status.ok()) return status;
   whole->rails = flag_saturated_forces(odometry::recording_rate_params(params_).rate.rails, samples);
   if (!waiting_.empty()) {
@@ -105,7 +108,7 @@ Status TumblingOdometry::finish_whole(const SweepProgress& on_sweep) {
     whole->mapped = map_with_calibration(input, mapping);
     whole->scale = find_sweep_scale(samples, whole->mapped, params_.expert.gravity_m_s2);
   }
-  for (MappedSweep& sweep : whole->mapped.sweeps) done_.push_back({sweep.status, std::move(sweep.report)});
+  for (MappedSweep& sweep : whole->mapped.sweeps) results_.push_back({sweep.status, std::move(sweep.report)});
   whole->mapped.sweeps.clear();
   whole_ = whole;
   return whole->mapped.status;

@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 constexpr Status missing(const char* field) {
-  return {Trouble::empty, field, 0.0, 1.0};
+  return {ErrorCode::empty, field, 0.0, 1.0};
 }
 
 }  // namespace
@@ -21,30 +21,30 @@ Status OdometryPass::check_state() const {
   if (window.empty()) return {};
   const TimeNs newest_ns = window.back().observation.sample.time_ns;
   if (last_mapped_ns_ && *last_mapped_ns_ > newest_ns)
-    return {Trouble::out_of_range, "pass.last_mapped_ns", double(*last_mapped_ns_), double(newest_ns)};
+    return {ErrorCode::out_of_range, "pass.last_mapped_ns", double(*last_mapped_ns_), double(newest_ns)};
   if (pending_.all().empty()) {  // all poses were reported, as after the second pass
     const bool complete = smoothed_ && smoothed_->time_ns == newest_ns && last_mapped_ns_ == newest_ns;
     return complete ? Status{} : missing("pass.pending");
   }
   const TimeNs received_ns = pending_.all().back().time_ns;
   if (received_ns == newest_ns) return {};
-  return {Trouble::out_of_range, "pass.pending", double(received_ns), double(newest_ns)};
+  return {ErrorCode::out_of_range, "pass.pending", double(received_ns), double(newest_ns)};
 }
 
 Status SecondPass::check_state(const OdometryPass& first) const {
   if (!pass_) return {};
-  if (!moves_ns_) return missing("second_pass.moves_ns");
+  if (!motion_start_ns_) return missing("second_pass.moves_ns");
   if (sweeps_.empty()) return missing("second_pass.sweeps");
   if (!first.smoothed_rate()) return missing("pass.smoothed");
   return pass_->check_state();
 }
 
 Status TumblingOdometry::check_state() const {
-  if (const Status status = SampleClock::check_state(stamps_); !status.ok()) return status;
+  if (const Status status = SampleClock::check_state(sample_clock_state_); !status.ok()) return status;
   if (const Status status = pass_.check_state(); !status.ok()) return status;
   if (const Status status = second_pass_.check_state(pass_); !status.ok()) return status;
-  if (pass_.smoothed_rate() && !registered_ns_) return missing("registered_ns");
-  if (newest_ns_ && !registered_ns_) return missing("registered_ns");
+  if (pass_.smoothed_rate() && !last_registered_ns_) return missing("registered_ns");
+  if (newest_ns_ && !last_registered_ns_) return missing("registered_ns");
   if (newest_rate() && !newest_ns_) return missing("newest_ns");
   return {};
 }

@@ -61,7 +61,7 @@ Status UnitAlignment::push(std::size_t unit, const ImuSample& sample, State& sta
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& readings = state.readings[unit];
   if (!readings.empty() && sample.time_ns <= readings.back().time_ns)
-    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(readings.back().time_ns)};
+    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(readings.back().time_ns)};
   state.first_ns = state.first_ns ? std::min(*state.first_ns, sample.time_ns) : sample.time_ns;
   readings.push_back(sample);
   return {};

@@ -10,19 +10,19 @@ namespace {
 constexpr int kReadings = 512;               // stored readings per triad: some seconds near the extremes
 constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores larger ranges
 
-RailWatch::Params watch_params(const ImuSheet& sheet) {
-  RailWatch::Params out;
+StreamingClippingFinder::Params watch_params(const ImuSheet& sheet) {
+  StreamingClippingFinder::Params out;
   out.readings_max = kReadings;
   if (sheet.gyro_range_rad_s > 0.0 && sheet.gyro_range_rad_s <= kStatedMax_rad_s)
-    out.clipping.upright_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
-  if (sheet.accel_range_m_s2 > 0.0) out.clipping.upright_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
+    out.clipping.axis_aligned_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
+  if (sheet.accel_range_m_s2 > 0.0) out.clipping.axis_aligned_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
   return out;
 }
 
 }  // namespace
 
 UnitRails::UnitRails(std::span<const ImuSheet> sheets) {
-  for (const ImuSheet& sheet : sheets) units_.push_back({RailWatch(watch_params(sheet)), sheet});
+  for (const ImuSheet& sheet : sheets) units_.push_back({StreamingClippingFinder(watch_params(sheet)), sheet});
 }
 
 UnitRails::State UnitRails::start() const {
@@ -31,12 +31,12 @@ UnitRails::State UnitRails::start() const {
   return out;
 }
 
-void UnitRails::flag(std::span<const ImuSample> samples, const State& state, Samples& out) const {
+void UnitRails::flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const {
   for (std::size_t k = 0; k < units_.size() && k < samples.size(); ++k) {
     out[k] = samples[k];
     if (!check_sample(samples[k]).ok()) continue;
-    const RailWatch::State& rails = state[k].rails;
-    const Clipping judged = units_[k].watch.judge(state[k].before ? &*state[k].before : nullptr, samples[k], rails);
+    const StreamingClippingFinder::State& rails = state[k].rails;
+    const Clipping judged = units_[k].watch.classify(state[k].before ? &*state[k].before : nullptr, samples[k], rails);
     const ConfirmedSaturation certain{.gyro = rails.known.planes_in_use(),
                                       .accel = rails.known.planes_in_use(Triad::accelerometer),
                                       .gyro_range_rad_s = units_[k].sheet.gyro_range_rad_s,
@@ -48,10 +48,10 @@ void UnitRails::flag(std::span<const ImuSample> samples, const State& state, Sam
 void UnitRails::observe(std::span<const ImuSample> samples, State& state) const {
   for (std::size_t k = 0; k < units_.size() && k < samples.size(); ++k) {
     if (!check_sample(samples[k]).ok()) continue;
-    RailWatch::State& rails = state[k].rails;
+    StreamingClippingFinder::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
-    units_[k].watch.upright_rails().classify(samples[k],
-                                             rails.known.upright_rails);  // contains the hysteresis
+    units_[k].watch.axis_aligned_rails().classify(samples[k],
+                                                  rails.known.axis_aligned_rails);  // contains the hysteresis
     state[k].before = samples[k];
   }
 }
@@ -59,8 +59,8 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
 Status UnitRails::check_state(const State& state) const {
   for (std::size_t k = 0; k < state.size(); ++k) {
     const bool room = k < units_.size() ? units_[k].watch.has_room_for(state[k].rails)
-                                        : RailWatch::equal(state[k].rails, {}) && !state[k].before;
-    if (!room) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
+                                        : StreamingClippingFinder::equal(state[k].rails, {}) && !state[k].before;
+    if (!room) return {ErrorCode::out_of_range, "rails.readings", 1.0, 0.0};
   }
   return {};
 }

@@ -8,8 +8,8 @@ namespace tumble {
 namespace {
 
 TimeNs middle_ns(const OdometerReading& reading) {
-  const TimeNs from_ns = begins_ns(reading);
-  return from_ns + (ends_ns(reading) - from_ns) / 2;
+  const TimeNs from_ns = reading_start_ns(reading);
+  return from_ns + (reading_end_ns(reading) - from_ns) / 2;
 }
 
 }  // namespace
@@ -19,13 +19,14 @@ Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, Time
   const bool motion = std::holds_alternative<MotionReading>(reading);
   const char* const first = motion ? "from_ns" : "time_ns";
   const char* const last = motion ? "to_ns" : "time_ns";
-  const TimeNs from_ns = begins_ns(reading), to_ns = ends_ns(reading), earliest_ns = done_ns - kBeyond_ns;
-  if (from_ns < earliest_ns) return {Trouble::time_order, first, double(from_ns), double(earliest_ns)};
-  if (to_ns > latest_ns) return {Trouble::out_of_range, last, double(to_ns), double(latest_ns)};
+  const TimeNs from_ns = reading_start_ns(reading), to_ns = reading_end_ns(reading),
+               earliest_ns = done_ns - kExtrapolation_ns;
+  if (from_ns < earliest_ns) return {ErrorCode::time_order, first, double(from_ns), double(earliest_ns)};
+  if (to_ns > latest_ns) return {ErrorCode::out_of_range, last, double(to_ns), double(latest_ns)};
   const TimeNs middle = middle_ns(reading);
-  if (middle <= done_ns) return {Trouble::time_order, last, double(to_ns), double(done_ns)};
+  if (middle <= done_ns) return {ErrorCode::time_order, last, double(to_ns), double(done_ns)};
   if (waiting_.size() >= most)
-    return {Trouble::out_of_range, "readings waiting", double(waiting_.size() + 1), double(most)};
+    return {ErrorCode::out_of_range, "readings waiting", double(waiting_.size() + 1), double(most)};
   const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
   waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), middle, later), reading);
   return {};
@@ -34,8 +35,9 @@ Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, Time
 std::optional<OdometerReading> WaitingReadings::find(TimeNs from_ns, TimeNs end_ns) const {
   const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
   auto next = std::upper_bound(waiting_.begin(), waiting_.end(), end_ns, later);
-  while (next != waiting_.begin() && middle_ns(*--next) > from_ns - kBeyond_ns) {
-    if (begins_ns(*next) >= from_ns - kBeyond_ns && ends_ns(*next) <= end_ns + kBeyond_ns) return *next;
+  while (next != waiting_.begin() && middle_ns(*--next) > from_ns - kExtrapolation_ns) {
+    if (reading_start_ns(*next) >= from_ns - kExtrapolation_ns && reading_end_ns(*next) <= end_ns + kExtrapolation_ns)
+      return *next;
   }
   return std::nullopt;
 }
@@ -44,10 +46,11 @@ std::optional<OdometerReading> WaitingReadings::take(TimeNs from_ns, TimeNs end_
   std::optional<OdometerReading> out;
   for (; !waiting_.empty() && middle_ns(waiting_.front()) <= end_ns; waiting_.pop_front()) {
     const OdometerReading& reading = waiting_.front();
-    if (begins_ns(reading) >= from_ns - kBeyond_ns && ends_ns(reading) <= end_ns + kBeyond_ns) {
+    if (reading_start_ns(reading) >= from_ns - kExtrapolation_ns &&
+        reading_end_ns(reading) <= end_ns + kExtrapolation_ns) {
       out = reading;
     } else {
-      ++straddling_;
+      ++spanning_two_sweeps_;
     }
   }
   return out;

@@ -45,7 +45,7 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
   moved_at_end_.setZero();
   auto& [filter, cursor] = at;
   if (segment == 0 && cursor.next == 1) store(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
-  RollingSums sums;
+  RollingIntegrals sums;
   Readings readings(params_, samples_, cursor);
   Reading reading;
   while (readings.next(reading)) {
@@ -55,7 +55,7 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
         first + records_.size() < end) {
       const PathNode& decided = path_[first + records_.size()];
       NodeRecord& record = records_.emplace_back();
-      close_node(params_, sums, 0.5 * (cursor.last_rate_rad_s + rate), decided, filter, record);
+      complete_node(params_, sums, 0.5 * (cursor.last_rate_rad_s + rate), decided, filter, record);
       record.time_ns = cursor.time_ns;
       sums = {};
       if (first + records_.size() == cut_after_) cut_ = at;

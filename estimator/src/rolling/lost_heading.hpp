@@ -14,7 +14,7 @@ namespace tumble::rolling {
 /// grows with the square of the standard deviation.
 inline constexpr double kLostHeading_rad = 0.1;
 
-inline bool lost_heading(const Covariance& P) {
+inline bool heading_lost(const Covariance& P) {
   return P(kAttitude + 2, kAttitude + 2) > squared(kLostHeading_rad);
 }
 

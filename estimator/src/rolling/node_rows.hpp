@@ -13,12 +13,12 @@ namespace tumble::rolling {
 
 /// Applies the rolling constraint: the contact point does not move, or stays on the floor when slipping. An unknown
 /// velocity is assumed to be small, see rolling.md (R17), (R20).
-template <class Take>
+template <class EstimateCallback>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
-                  const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, Take&& take) {
+                  const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {
   // removes the nonlinear part, which is not an error of the state
   const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, mode);
-  if (!slips(mode)) {
+  if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.H.row(axis)), -u[axis], variance[axis]);
   }
   if (mode != RollingMode::bump) take(Row(c.H.row(2)), -u.z(), variance.z());
@@ -29,13 +29,13 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
 
 /// Applies the measurements at rest: velocity is zero, and rate is zero unless the sphere spins in place. See
 /// rolling.md (R28).
-template <class Take>
-void rest_rows(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal, bool spins_in_place,
-               Take&& take) {
+template <class EstimateCallback>
+void rest_rows(const RollingParams& params, const RollingIntegrals& sums, const RollingNominal& nominal,
+               bool spins_in_place, EstimateCallback&& take) {
   for (int axis = 0; axis < 3; ++axis) {
     take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.rest_velocity_sigma_m_s));
     if (spins_in_place) continue;
-    const double bias_rad_s = sums.w_I_rad[axis] / sums.node_s;  // without the nominal bias
+    const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_s;  // without the nominal bias
     take(kGyroBias + axis, bias_rad_s, squared(params.expert.contact.rest_rate_sigma_rad_s));
   }
 }

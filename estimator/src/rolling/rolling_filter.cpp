@@ -22,7 +22,7 @@ static_assert(RollingFilter::kStates == rolling::kStates);
 
 }  // namespace
 
-RollingFilter::RollingFilter(const Params& p) : params_(p), rests_(p.expert.rest) {
+RollingFilter::RollingFilter(const Params& p) : params_(p), rest_detector_(p.expert.rest) {
   require_valid(p);
 }
 
@@ -36,7 +36,7 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
       bridge(sample, dt_s, state, listener);
     } else {
       state.average.add(sample, dt_s);
-      if (state.average.full(params_.expert.reading_s, dt_s)) take_average(state, listener);
+      if (state.average.full(params_.expert.reading_s, dt_s)) process_average(state, listener);
     }
   } else {
     Eigen::Quaterniond q_WI = params_.q_WI_start.value_or(Eigen::Quaterniond::Identity());
@@ -60,12 +60,12 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
   state.started = true;
 }
 
-void RollingFilter::take_average(State& state, Listener listener) const {
+void RollingFilter::process_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
   // A node is closed by the reading after its end, because the rate at the node's end is between two readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
-    close_node(reading.mean.angular_velocity_rad_s, state);
+    complete_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
   }
   rolling::integrate(params_, reading, state.nominal, state.sums);
@@ -73,16 +73,16 @@ void RollingFilter::take_average(State& state, Listener listener) const {
 }
 
 void RollingFilter::bridge(const ImuSample& sample, double gap_s, State& state, Listener listener) const {
-  if (state.average.readings > 0) take_average(state, listener);
+  if (state.average.readings > 0) process_average(state, listener);
   ImuSample before;
   before.angular_velocity_rad_s = state.last_rate_rad_s;
   const int pieces = rolling::gap_pieces(params_, gap_s);
   for (int k = 0; k < pieces; ++k) {
     rolling::GapUncertainty uncertainty;
-    const ImuAverage piece = rolling::gap_piece(params_, before, sample, gap_s, k, uncertainty);
+    const ImuAverage piece = rolling::gap_step(params_, before, sample, gap_s, k, uncertainty);
     const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
     if (state.sums.node_s >= params_.expert.node_s - 0.5 * piece.length_s) {
-      close_node(rate, state);
+      complete_node(rate, state);
       listener.call(listener.to, state);
     }
     rolling::integrate_gap(params_, piece, uncertainty, state.nominal, state.sums);
@@ -92,35 +92,35 @@ void RollingFilter::bridge(const ImuSample& sample, double gap_s, State& state, 
   state.gap_longest_s = std::max(state.gap_longest_s, gap_s);
 }
 
-void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const {
+void RollingFilter::complete_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const {
   const rolling::Moving B = rolling::transition(state.sums);
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     rolling::predict(params_, state.sums, B, h.x, h.P);
   }
-  state.pruned_spread_m2.setZero();
+  state.pruned_position_spread_m2.setZero();
   detect_rest(state);
   Hypothesis& best = state.hypotheses[0];
   if (rolling::reset_tilt(params_, state.sums, state.at_rest, state.nominal, best.P)) {
     best.x.setZero();
-    keep_first(1, state);
+    keep_most_probable(1, state);
   }
-  const bool lost_heading = rolling::lost_heading(best.P);
+  const bool heading_lost = rolling::heading_lost(best.P);
   if (state.at_rest) {
     correct_at_rest(state);
   } else {
-    choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), lost_heading, state);
+    choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), heading_lost, state);
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
   // If the hypotheses about past motion disagree, the uncertainty of the current position increases.
   if (state.at_rest && state.count == 1) {
-    state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_spread_m2;
-    state.position_covariance_m2 += state.pruned_spread_m2;
+    state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_spread_m2;
+    state.position_covariance_m2 += state.pruned_position_spread_m2;
   }
   flag_uncertain(state);
-  weigh_events(state);
-  rebase(lost_heading, state);
+  weigh_modes(state);
+  move_linearisation_point(heading_lost, state);
   constrain_position(state);
   state.sums = {};
   ++state.node;
@@ -133,11 +133,12 @@ void RollingFilter::detect_rest(State& state) const {
     state.at_rest = state.spins_in_place = false;
     return;
   }
-  const Eigen::Vector3d w_mean = state.sums.w_I_rad / h + state.nominal.gyro_bias_rad_s;
+  const Eigen::Vector3d w_mean = state.sums.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
   const TimeNs from_ns = state.rest.last_mean_ns;  // nodes are contiguous
-  state.at_rest = rests_.observe_mean(w_mean, state.sums.f_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
-                                      state.nominal.gyro_bias_rad_s, state.rest);
-  state.slow_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.slow_rate_rad_s);
+  state.at_rest =
+      rest_detector_.observe_mean(w_mean, state.sums.force_integral_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
+                                  state.nominal.gyro_bias_rad_s, state.rest);
+  state.low_passed_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.low_passed_rate_rad_s);
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
@@ -149,7 +150,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
   const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +
                                   squared(params_.expert.contact.rest_rate_sigma_rad_s) * averaged;
   const Eigen::Array3d off =
-      (state.slow_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
+      (state.low_passed_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
@@ -172,18 +173,18 @@ Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
 
 void RollingFilter::flag_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
-  const bool event = slips(state.hypotheses[0].mode);
+  const bool event = may_slip(state.hypotheses[0].mode);
   if (!event) state.variance_before_event_m2 = variance_m2;
   state.uncertain = event && variance_m2 - state.variance_before_event_m2 > squared(params_.expert.modes.uncertain_m);
 }
 
-void RollingFilter::weigh_events(State& state) {
+void RollingFilter::weigh_modes(State& state) {
   double slipping = 0.0, hopping = 0.0, total = 0.0;
   for (int k = 0; k < state.count; ++k) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
     total += weight;
-    if (slips(h.mode)) slipping += weight;
+    if (may_slip(h.mode)) slipping += weight;
     if (h.mode == RollingMode::bump) hopping += weight;
   }
   state.slip_probability = slipping / total;
@@ -194,7 +195,7 @@ void RollingFilter::weigh_events(State& state) {
 void RollingFilter::constrain_position(State& state) const {
   const bool quiet =
       seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
-      !slips(state.hypotheses[0].mode);
+      !may_slip(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (!stands || !state.position_constrained) {
@@ -206,13 +207,13 @@ void RollingFilter::constrain_position(State& state) const {
 
 /// Moves the errors of the best hypothesis into the nominal trajectory and the constants. The states of all hypotheses
 /// are then relative to the best hypothesis.
-void RollingFilter::rebase(bool lost_heading, State& state) const {
+void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::turned_by_heading(x);
-  rolling::rebase(x, state.nominal);
+  rolling::move_linearisation_point(x, state.nominal);
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     h.x -= x;
-    if (!lost_heading) continue;
+    if (!heading_lost) continue;
     rolling::move_error(turned, h.x);
     rolling::move_errors(turned, h.P);
   }
@@ -238,7 +239,7 @@ void RollingFilter::report(State& state) const {
 /// whether the contact point moves.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
-  if (event == slips(state.mode)) return state.mode;
+  if (event == may_slip(state.mode)) return state.mode;
   if (!event) return RollingMode::grip;
   return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
 }
@@ -259,7 +260,7 @@ RollingEstimate RollingFilter::estimate(const State& state) {
 
 Status RollingFilter::check_state(const State& state) {
   if (!state.started || state.count >= 1) return {};
-  return {Trouble::out_of_range, "live.count", double(state.count), 1.0};
+  return {ErrorCode::out_of_range, "live.count", double(state.count), 1.0};
 }
 
 }  // namespace tumble

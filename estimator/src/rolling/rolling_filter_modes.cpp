@@ -100,8 +100,9 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_change(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
-  const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
-  return horizontal + log_normal(u.z(), vertical);
+  const double check_vertical =
+      c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
+  return horizontal + log_normal(u.z(), check_vertical);
 }
 
 /// Returns the log probability of a transition between two modes within a node: rolling.md (R22).
@@ -128,7 +129,7 @@ struct Candidate {
   double log_weight = 0.0;
   int parent = 0;
   RollingMode mode = RollingMode::grip;
-  std::int64_t switched_node = 0;
+  std::int64_t mode_start_node = 0;
 };
 using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
 
@@ -144,16 +145,16 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
     const RollingFilter::Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
     const Eigen::Vector3d u = c.velocity(h.x);
     for (const RollingMode mode : kModes) {
-      const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
+      const bool bound = may_slip(h.mode) && state.node - h.mode_start_node < shortest;
       if (mode != h.mode && bound) continue;
-      if (too_fast && !slips(mode)) continue;
+      if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a gap provides no evidence of a mode
-      if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
+      if (!in_gap) likelihood = may_slip(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
       const double impact = mode == RollingMode::bump
                                 ? 0.0
                                 : state.sums.unexplained_impact_m_s / params.expert.contact.unexplained_impact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
-                      mode == h.mode ? h.switched_node : state.node};
+                      mode == h.mode ? h.mode_start_node : state.node};
     }
   }
   // std::stable_sort would allocate memory. Equal weights are ordered by origin, so the order is unique.
@@ -165,12 +166,12 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
 
 /// Returns the start node of a mode after merging. Mode starts that are close in time merge, and the merging distance
 /// grows with the age of the starts.
-std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
+std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
-  const std::int64_t age = std::min(node - switched_node, long_ago);
+  const std::int64_t age = std::min(node - mode_start_node, long_ago);
   std::int64_t width = 1;
   while (width * kAgesApart < age) width *= 2;
-  return switched_node >= node - long_ago ? switched_node / width * width : node - long_ago;
+  return mode_start_node >= node - long_ago ? mode_start_node / width * width : node - long_ago;
 }
 
 struct Kept {
@@ -184,11 +185,11 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
   Kept kept;
   for (const Candidate& candidate : candidates) {
     if (kept.count == kept.of.size() || candidate.log_weight < candidates[0].log_weight + kDropped) break;
-    const bool dissents = candidate.switched_node < candidates[0].switched_node;
+    const bool dissents = candidate.mode_start_node < candidates[0].mode_start_node;
     if (kept.count + kDissenters >= kept.of.size() && !dissents) continue;
-    const std::int64_t since = beginning(candidate.switched_node, node, node_s);
+    const std::int64_t since = beginning(candidate.mode_start_node, node, node_s);
     const auto same = [&](const Candidate& other) {
-      return other.mode == candidate.mode && beginning(other.switched_node, node, node_s) == since;
+      return other.mode == candidate.mode && beginning(other.mode_start_node, node, node_s) == since;
     };
     if (std::any_of(kept.of.begin(), kept.of.begin() + static_cast<std::ptrdiff_t>(kept.count), same)) continue;
     kept.of[kept.count++] = candidate;
@@ -232,9 +233,9 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 }  // namespace
 
 /// Updates the weights of the hypotheses and selects the most probable hypotheses: rolling.md (R26).
-void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const {
+void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
-  if (lost_heading) rolling::blind_to_heading(c);
+  if (heading_lost) rolling::blind_to_heading(c);
   const double node_s = state.sums.node_s;
   Candidates candidates;
   const std::span<const Candidate> ordered = propose(params_, c, state, candidates);
@@ -252,14 +253,14 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_
     h.contact_velocity_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
-    h.switched_node = candidate.switched_node;
+    h.mode_start_node = candidate.mode_start_node;
     h.parent = candidate.parent;
   }
-  keep_first(kept.count, state);
+  keep_most_probable(kept.count, state);
 }
 
 /// Clears unused hypotheses, so that equal estimates have equal states.
-void RollingFilter::keep_first(std::size_t count, State& state) {
+void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
   if (first < begin + state.count) std::fill(first, begin + state.count, Hypothesis{});
@@ -279,8 +280,8 @@ void RollingFilter::correct_at_rest(State& state) const {
                        });
     h.log_weight += std::max(likelihood, kRestFloor);
     h.parent = k;
-    if (slips(h.mode)) {
-      h.switched_node = state.node;
+    if (may_slip(h.mode)) {
+      h.mode_start_node = state.node;
       h.mode = RollingMode::grip;
     }
     h.contact_velocity_W_m_s.setZero();
@@ -294,7 +295,7 @@ void RollingFilter::correct_at_rest(State& state) const {
   rearrange(order, count, state.hypotheses);
   // After some rest, the hypotheses agree about the present. One hypothesis is then sufficient.
   const bool rested = seconds(state.rest.within_bias_since_ns) > kLongAgo_s;
-  if (rested && state.count > 1) state.pruned_spread_m2 = position_spread(state);
+  if (rested && state.count > 1) state.pruned_position_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -302,7 +303,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     h.log_weight -= best;
     if (k == 0 || (!rested && h.log_weight > kDropped)) kept = k + 1;
   }
-  keep_first(kept, state);
+  keep_most_probable(kept, state);
 }
 
 }  // namespace tumble

@@ -22,20 +22,20 @@ void members(Self& s, Visitor& visit) {
   visit("nominal.last_rate_I_rad_s", s.last_rate_I_rad_s);
 }
 
-template <StateOf<RollingSums> Self, class Visitor>
+template <StateOf<RollingIntegrals> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("sums.R_s", s.R_s);
-  visit("sums.R_force_s", s.R_force_s);
-  visit("sums.f_W_m_s", s.f_W_m_s);
-  visit("sums.R_f", s.R_f);
-  visit("sums.R_w", s.R_w);
-  visit("sums.rotated_rate_cross_force", s.rotated_rate_cross_force);
-  visit("sums.w_I_rad", s.w_I_rad);
-  visit("sums.f_I_m_s", s.f_I_m_s);
-  visit("sums.rotated_rad2_s", s.rotated_rad2_s);
+  visit("sums.R_s", s.rotation_integral_s);
+  visit("sums.R_force_s", s.rotation_integral_used_force_s);
+  visit("sums.f_W_m_s", s.force_integral_W_m_s);
+  visit("sums.R_f", s.rotation_force_integral);
+  visit("sums.R_w", s.rotation_rate_integral);
+  visit("sums.rotated_rate_cross_force", s.rate_cross_force_integral_W);
+  visit("sums.w_I_rad", s.rate_integral_I_rad);
+  visit("sums.f_I_m_s", s.force_integral_I_m_s);
+  visit("sums.rotated_rad2_s", s.squared_rate_integral_rad2_s);
   visit("sums.rate_clipped_s", s.rate_clipped_s);
   visit("sums.force_clipped_s", s.force_clipped_s);
-  visit("sums.recovered_s", s.recovered_s);
+  visit("sums.recovered_s", s.recovered_rate_s);
   visit("sums.impact_m_s", s.impact_m_s);
   visit("sums.unexplained_impact_m_s", s.unexplained_impact_m_s);
   visit("sums.subsample_saturation_W_m_s", s.subsample_saturation_W_m_s);
@@ -52,7 +52,7 @@ void members(Self& s, Visitor& visit) {
   visit("hypothesis.P", s.P);
   visit("hypothesis.contact_velocity_W_m_s", s.contact_velocity_W_m_s);
   visit("hypothesis.log_weight", s.log_weight);
-  visit("hypothesis.switched_node", s.switched_node);
+  visit("hypothesis.switched_node", s.mode_start_node);
   visit("hypothesis.parent", s.parent, 0.0, RollingFilter::kHypotheses - 1.0);
   visit("hypothesis.mode", s.mode, RollingMode::rough);
 }
@@ -76,9 +76,9 @@ void members(Self& s, Visitor& visit) {
   visit("live.nominal", s.nominal);
   visit("live.sums", s.sums);
   visit("live.average", s.average);
-  visit("live.pruned_spread_m2", s.pruned_spread_m2);
+  visit("live.pruned_spread_m2", s.pruned_position_spread_m2);
   visit("live.rest", s.rest);
-  visit("live.slow_rate_rad_s", s.slow_rate_rad_s);
+  visit("live.slow_rate_rad_s", s.low_passed_rate_rad_s);
   visit("live.position_constrained", s.position_constrained);
   visit("live.variance_before_event_m2", s.variance_before_event_m2);
   visit("live.last_rate_rad_s", s.last_rate_rad_s);
@@ -89,17 +89,17 @@ void members(Self& s, Visitor& visit) {
   visit("live.started", s.started);
 }
 
-template <StateOf<RollingSmoother::Step> Self, class Visitor>
+template <StateOf<RollingSmoother::NodeModes> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   for (auto& parent : s.parent) visit("step.parent", parent, 0.0, RollingFilter::kHypotheses - 1.0);
   for (auto& mode : s.mode) visit("step.mode", mode, RollingMode::rough);
-  visit("step.spread_m2", s.spread_m2);
+  visit("step.spread_m2", s.position_spread_m2);
   visit("step.rest_s", s.rest_s);
   visit("step.at_rest", s.at_rest);
   visit("step.spins_in_place", s.spins_in_place);
 }
 
-template <StateOf<RollingSmoother::Committed> Self, class Visitor>
+template <StateOf<RollingSmoother::FinalPassState> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("committed.nominal", s.nominal);
   visit("committed.P", s.P);
@@ -111,7 +111,7 @@ void members(Self& s, Visitor& visit) {
   visit("committed.last_rate_rad_s", s.last_rate_rad_s);
   visit("committed.gap_rate_rad_s", s.gap_rate_rad_s);
   visit("committed.gap_start_ns", s.gap_start_ns);
-  visit("committed.gap_piece", s.gap_piece, 0.0, 1e6);
+  visit("committed.gap_piece", s.gap_step, 0.0, 1e6);
   visit("committed.started", s.started);
 }
 

@@ -125,7 +125,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 }  // namespace
 
 /// Integrates a reading: rolling.md (R2) to (R9).
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
   const double dt_s = reading.length_s;
@@ -164,17 +164,17 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d gained = unturned ? keeps_centre : Eigen::Vector3d(R_T * f - fallen);
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
-  sums.R_s += R_T;
-  for (int axis = 0; axis < 3; ++axis) sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
+  sums.rotation_integral_s += R_T;
+  for (int axis = 0; axis < 3; ++axis) sums.rotation_rate_integral.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
   if (!unturned) {  // otherwise no error of force or attitude affects the velocity
-    sums.R_force_s += R_T;
-    sums.f_W_m_s += R_T * f;
-    for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
-    sums.rotated_rate_cross_force += R_T * w.cross(f_raw);
+    sums.rotation_integral_used_force_s += R_T;
+    sums.force_integral_W_m_s += R_T * f;
+    for (int axis = 0; axis < 3; ++axis) sums.rotation_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
+    sums.rate_cross_force_integral_W += R_T * w.cross(f_raw);
   }
-  sums.w_I_rad += dt_s * w;
-  sums.f_I_m_s += dt_s * f_raw;
-  sums.rotated_rad2_s += dt_s * w.squaredNorm();
+  sums.rate_integral_I_rad += dt_s * w;
+  sums.force_integral_I_m_s += dt_s * f_raw;
+  sums.squared_rate_integral_rad2_s += dt_s * w.squaredNorm();
   const double about_gravity = std::abs(f.norm() - gravity) - kUsual_m_s2;
   sums.impact_m_s += dt_s * std::max(0.0, about_gravity);
   sums.unexplained_impact_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
@@ -188,14 +188,14 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   }
   if (railed || unturned) sums.force_clipped_s += dt_s;
   if (lost) sums.rate_clipped_s += dt_s;
-  if (beyond && !lost) sums.recovered_s += dt_s;
+  if (beyond && !lost) sums.recovered_rate_s += dt_s;
   sums.node_s += dt_s;
 }
 
 RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal) {
   RollingNominal out = nominal;
   if (reading.readings == 0) return out;
-  RollingSums unused;
+  RollingIntegrals unused;
   integrate(params, reading, out, unused);
   return out;
 }
@@ -204,8 +204,8 @@ int gap_pieces(const RollingParams& params, double gap_s) {
   return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.node_s)));
 }
 
-ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
-                     GapUncertainty& uncertainty) {
+ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
+                    GapUncertainty& uncertainty) {
   const int pieces = gap_pieces(params, gap_s);
   const double share = (k + 0.5) / pieces;
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
@@ -217,10 +217,10 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
   // A gap has the duration T. A parabola between the rates before and after the gap has the integral a T^3 / 12:
   // rolling.md (R31).
-  const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
-  uncertainty.rad2 = off_rad * off_rad / pieces;
+  const double mean_force_tilt_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
+  uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
   // variance of the contact velocity in a gap: rolling.md (R32)
-  uncertainty.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
+  uncertainty.rate_rad2_s = squared(mean_force_tilt_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
   uncertainty.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
@@ -228,7 +228,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
 }
 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
-                   RollingNominal& nominal, RollingSums& sums) {
+                   RollingNominal& nominal, RollingIntegrals& sums) {
   integrate(params, piece, nominal, sums, Force::unknown);
   sums.gap_s += piece.length_s;
   sums.gap_rad2 += uncertainty.rad2;
@@ -237,21 +237,21 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 }
 
 /// Returns the transition matrix of the moving states: rolling.md (R10).
-Moving transition(const RollingSums& sums) {
+Moving transition(const RollingIntegrals& sums) {
   Moving B = Moving::Zero();
-  B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
-  B.block<3, 9>(kAttitude, kGyroScale) = -sums.R_w;
-  B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.f_W_m_s);
-  B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_force_s;
-  B.block<3, 9>(kVelocity, kAccelScale) = -sums.R_f;
-  B.block<3, 1>(kVelocity, kDelay) = -sums.rotated_rate_cross_force;
+  B.block<3, 3>(kAttitude, kGyroBias) = -sums.rotation_integral_s;
+  B.block<3, 9>(kAttitude, kGyroScale) = -sums.rotation_rate_integral;
+  B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.force_integral_W_m_s);
+  B.block<3, 3>(kVelocity, kAccelBias) = -sums.rotation_integral_used_force_s;
+  B.block<3, 9>(kVelocity, kAccelScale) = -sums.rotation_force_integral;
+  B.block<3, 1>(kVelocity, kDelay) = -sums.rate_cross_force_integral_W;
   B.middleRows<3>(kPosition) = 0.5 * sums.node_s * B.middleRows<3>(kVelocity);
   B.block<3, 3>(kPosition, kVelocity) += sums.node_s * Eigen::Matrix3d::Identity();
   return B;
 }
 
 /// Predicts the states and their covariance over a node: rolling.md (R11) to (R14).
-void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P) {
+void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
   P.topRows<9>() += (B * P).eval();
@@ -259,12 +259,12 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   make_symmetric(P);
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
-      squared(params.expert.noise.rate_error_sqrts) * sums.rotated_rad2_s + sums.gap_rad2 +
+      squared(params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s + sums.gap_rad2 +
       squared(params.expert.rails.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
-      squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
+      squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_rate_s;
   const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
                           squared(params.expert.contact.impact_share * sums.impact_m_s) +
-                          squared(params.expert.noise.spin_force_sqrts * sums.rotated_rad2_s) / h +
+                          squared(params.expert.noise.spin_force_sqrts * sums.squared_rate_integral_rad2_s) / h +
                           sums.gap_speed_m2_s2 +
                           squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
@@ -278,7 +278,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
 
 /// Computes the contact velocity, its derivatives, and its variance: rolling.md (R15), (R16), (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                const RollingSums& sums) {
+                const RollingIntegrals& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d w_W = R * (rate_I_rad_s - nominal.gyro_bias_rad_s - nominal.gyro_scale * rate_I_rad_s);
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
@@ -306,7 +306,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_share * r * w_W.norm());
   // A clip flag counts at any rate, because saturation may occur below the stated range.
-  const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_s > 0.0;
+  const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
     out.grip_variance += squared(r * params.expert.rails.clipped_rate_sigma_rad_s);
@@ -327,7 +327,7 @@ std::optional<double> lost_velocity_variance(const RollingParams& params, double
 }
 
 bool resets_slope(RollingMode from, RollingMode to) {
-  return from != to && !slips(to);
+  return from != to && !may_slip(to);
 }
 
 /// Resets the slope of the floor after a change of the contact mode: rolling.md (R21).
@@ -348,11 +348,11 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
 }
 
 /// If the tilt is uncertain, aligns the attitude with the mean specific force: rolling.md (R30).
-bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
+bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
-  if (sums.rotated_rad2_s > squared(kFastRate_rad_s) * sums.node_s) return false;
-  const Eigen::Vector3d f_I_m_s2 = sums.f_I_m_s / sums.node_s;
+  if (sums.squared_rate_integral_rad2_s > squared(kFastRate_rad_s) * sums.node_s) return false;
+  const Eigen::Vector3d f_I_m_s2 = sums.force_integral_I_m_s / sums.node_s;
   const double tilt_variance = std::max(P(kAttitude, kAttitude), P(kAttitude + 1, kAttitude + 1));
   if (tilt_variance < squared(at_rest ? kUncertainTilt_rad : kLostTilt_rad)) return false;
   const double force = f_I_m_s2.norm();
@@ -380,7 +380,7 @@ void update(int index, double measured, double variance, Vector& x, Covariance& 
 }
 
 /// Moves the errors x into the nominal states: rolling.md (R1).
-void rebase(const Vector& x, RollingNominal& nominal) {
+void move_linearisation_point(const Vector& x, RollingNominal& nominal) {
   nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
   nominal.v_WI_m_s += x.segment<3>(kVelocity);
   nominal.p_WI_m += x.segment<3>(kPosition);

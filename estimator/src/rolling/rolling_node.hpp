@@ -55,7 +55,7 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
 /// Force states whether a force is measured (at least up to saturation) or unknown, as in a gap.
 enum class Force { read, unknown };
 
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known = Force::read);
 
 /// Returns the nominal trajectory, extrapolated by readings that are not yet processed.
@@ -67,20 +67,20 @@ int gap_pieces(const RollingParams& params, double gap_s);
 struct GapUncertainty {
   double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
 };
-ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
-                     GapUncertainty& uncertainty);
+ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
+                    GapUncertainty& uncertainty);
 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
-                   RollingNominal& nominal, RollingSums& sums);
+                   RollingNominal& nominal, RollingIntegrals& sums);
 
 /// Returns the transition of the error over the node: x <- x + (B x on top).
-Moving transition(const RollingSums& sums);
-void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
+Moving transition(const RollingIntegrals& sums);
+void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 
 /// Computes the contact at a node. `rate_I_rad_s` is the unprocessed reading at the node. `sums` contains the sums over
 /// the node; the rate's uncertainty in a gap adds to the noise of the contact.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                const RollingSums& sums);
+                const RollingIntegrals& sums);
 
 /// Updates the floor's slope for a change of mode. The slope is a random walk while the mode lasts. When the contact
 /// point stops again, the slope becomes level or unknown. `h_s` is the duration of the node.
@@ -96,7 +96,7 @@ bool resets_slope(RollingMode from, RollingMode to);
 
 /// Levels a tilt that was lost during clipping, by the mean force of the node, at rest or in motion. The function also
 /// resets the velocity. Returns false if levelling is not needed, or if the force of the node is not usable.
-bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
+bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
 /// Applies a Kalman update by a scalar row: measurement = row x + noise.
@@ -106,6 +106,6 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
 /// Adds the error `x` to the nominal trajectory and constants.
-void rebase(const Vector& x, RollingNominal& nominal);
+void move_linearisation_point(const Vector& x, RollingNominal& nominal);
 
 }  // namespace tumble::rolling

@@ -28,7 +28,7 @@ RollingParams quieter(RollingParams params, double share) {
 /// Returns the contact mode, out of two, that constrains the contact point less.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
-    if (slips(mode)) return mode == RollingMode::bump ? 3 : 2;
+    if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
     return mode == RollingMode::grip ? 0 : 1;
   };
   return rank(a) >= rank(b) ? a : b;
@@ -64,28 +64,27 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
 }
 
 /// While the sphere is at rest, keeps the reported position constant.
-void constrain_position(const rolling::PathNode& node, RollingSmoother::Committed& committed,
+void constrain_position(const rolling::PathNode& node, RollingSmoother::FinalPassState& committed,
                         RollingEstimate& estimate) {
-  const bool stands = node.stands && !slips(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
+  const bool stands = node.stands && !may_slip(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (stands && !committed.position_constrained) committed.constrained_p_WG_m = estimate.p_WG_m;
   if (stands) estimate.p_WG_m = committed.constrained_p_WG_m;
   committed.position_constrained = stands;
 }
 
-RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
+RollingSmoother::EstimateCallback appending(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
 /// Returns the start of the final pass, which is the committed node or the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
                   rolling::LastPass::Checkpoint& start) {
-  const RollingSmoother::Committed& last = state.committed;
+  const RollingSmoother::FinalPassState& last = state.committed;
   start.filter.mode = last.mode;
   if (last.started) {
     start.filter.nominal = last.nominal;
     start.filter.P = last.P;
-    start.reading = {last.last_time_ns,   last.last_rate_rad_s, 0,
-                     last.gap_rate_rad_s, last.gap_start_ns,    last.gap_piece};
+    start.reading = {last.last_time_ns, last.last_rate_rad_s, 0, last.gap_rate_rad_s, last.gap_start_ns, last.gap_step};
     return;
   }
   const ImuSample& sample = state.samples[0];
@@ -98,25 +97,25 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
 
 struct Events {
   std::vector<bool> uncertain;
-  double committed_m2 = 0.0;  ///< event_variance_m2 of RollingSmoother::Committed after the node `emitted`
+  double committed_m2 = 0.0;  ///< event_variance_m2 of RollingSmoother::FinalPassState after the node `emitted`
 };
 
 Events find_events(const RollingSmoother::Params& params, std::span<const rolling::PathNode> path,
                    std::span<const double> horizontal_m2, std::size_t emitted,
-                   const RollingSmoother::Committed& committed) {
+                   const RollingSmoother::FinalPassState& committed) {
   const std::size_t count = horizontal_m2.size();
   Events out;
   out.uncertain.resize(count, false);
   double before_m2 = committed.event_variance_m2;
   for (std::size_t a = 0; a < count;) {
-    if (!slips(path[a].mode)) {
+    if (!may_slip(path[a].mode)) {
       before_m2 = stated(params) * horizontal_m2[a];
       if (a + 1 == emitted) out.committed_m2 = before_m2;
       ++a;
       continue;
     }
     std::size_t b = a;
-    while (b < count && slips(path[b].mode)) {
+    while (b < count && may_slip(path[b].mode)) {
       if (b + 1 == emitted) out.committed_m2 = before_m2;
       ++b;
     }
@@ -160,10 +159,10 @@ bool RollingSmoother::State::operator==(const State& other) const {
 }
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
-  require_fields(p);
+  require_valid_fields(p);
   require_within("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRun);
   require_within("block_s", p.block_s, p.filter.expert.node_s, 1e3);
-  path_params_ = quieter(p.filter, p.path_noise);
+  final_pass_params_ = quieter(p.filter, p.path_noise);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.expert.node_s - 1e-9));
 }
@@ -177,24 +176,24 @@ Status RollingSmoother::check_state(const State& state) const {
   if (const Status status = RollingFilter::check_state(state.live); !status.ok()) return status;
   const std::size_t most = lag_nodes_ + block_nodes_;
   if (params_.lag_s < kWholeRun && state.steps.size() > most)
-    return {Trouble::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
+    return {ErrorCode::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
   const std::size_t samples_most = kBeyondStorage * preallocated_samples();
   if (params_.lag_s < kWholeRun && state.samples.size() > samples_most)
-    return {Trouble::out_of_range, "rolling.samples", double(state.samples.size()), double(samples_most)};
-  const Committed& committed = state.committed;
+    return {ErrorCode::out_of_range, "rolling.samples", double(state.samples.size()), double(samples_most)};
+  const FinalPassState& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
     // A node may be within a gap. The next sample may then be much later than the node.
-    const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
-    const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
+    const TimeNs from_ns = k == 0 && committed.gap_step > 0 ? committed.gap_start_ns : before_ns;
+    const Status status = check_stamp_order(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
   }
-  if (committed.gap_piece == 0) return {};
-  if (state.samples.empty()) return {Trouble::empty, "rolling.samples", 0.0, 1.0};
+  if (committed.gap_step == 0) return {};
+  if (state.samples.empty()) return {ErrorCode::empty, "rolling.samples", 0.0, 1.0};
   const double gap_s = seconds(state.samples.front().time_ns - committed.gap_start_ns);
   const int pieces = rolling::gap_pieces(filter, gap_s);
-  if (committed.gap_piece < pieces) return {};
-  return {Trouble::out_of_range, "committed.gap_piece", double(committed.gap_piece), double(pieces)};
+  if (committed.gap_step < pieces) return {};
+  return {ErrorCode::out_of_range, "committed.gap_piece", double(committed.gap_step), double(pieces)};
 }
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
@@ -203,12 +202,12 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
     state.samples.reserve(std::min(preallocated_samples(), kSetAsideMost));
   }
   const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
-    Step step;
+    NodeModes step;
     for (std::size_t k = 0; k < RollingFilter::kHypotheses; ++k) {
       step.parent[k] = static_cast<std::uint8_t>(live.hypotheses[k].parent);
       step.mode[k] = live.hypotheses[k].mode;
     }
-    step.spread_m2 = live.pruned_spread_m2;
+    step.position_spread_m2 = live.pruned_position_spread_m2;
     step.rest_s = seconds(live.rest.within_bias_since_ns);
     step.at_rest = live.at_rest;
     step.spins_in_place = live.spins_in_place;
@@ -217,25 +216,25 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
   const std::size_t nodes = state.steps.size();
   if (const Status bad = filter_.step(sample, state.live, closed); !bad.ok()) return bad;
   state.samples.push_back(sample);
-  const Take append = appending(out);
+  const EstimateCallback append = appending(out);
   while (state.steps.size() > nodes && state.steps.size() >= lag_nodes_ + block_nodes_) {
     const std::size_t before = state.steps.size();
-    run_window(best_path(state), block_nodes_, state, append);
+    smooth_window(most_probable_path(state), block_nodes_, state, append);
     if (state.steps.size() == before) break;
   }
   return {};
 }
 
-void RollingSmoother::finish(State& state, const Take& take) const {
-  run_window(best_path(state), state.steps.size() + 1, state, take);
+void RollingSmoother::finish(State& state, const EstimateCallback& take) const {
+  smooth_window(most_probable_path(state), state.steps.size() + 1, state, take);
 }
 
 void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) const {
   finish(state, appending(out));
 }
 
-void RollingSmoother::finish(std::span<const RollingMode> known, State& state, const Take& take) const {
-  Path path = best_path(state);
+void RollingSmoother::finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const {
+  Path path = most_probable_path(state);
   if (state.samples.empty()) return;
   std::size_t n = 0;
   double node_s = 0.0;
@@ -251,40 +250,41 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
     for (std::size_t k = reading.first; k < std::min(reading.end, known.size()); ++k) mode = looser(mode, known[k]);
     node_s += reading.average.length_s;
   }
-  run_window(path, path.nodes.size() + 1, state, take);
+  smooth_window(path, path.nodes.size() + 1, state, take);
 }
 
 /// Returns the modes of the most probable hypothesis, from the newest node back to the committed node.
-RollingSmoother::Path RollingSmoother::best_path(const State& state) const {
+RollingSmoother::Path RollingSmoother::most_probable_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
   const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest.rest_s);
   std::size_t which = 0;
   double lasts_s = 0.0;  // duration of the rest that contains the node
   for (std::size_t n = path.nodes.size(); n-- > 0;) {
-    const Step& step = state.steps[n];
+    const NodeModes& step = state.steps[n];
     rolling::PathNode& node = path.nodes[n];
     lasts_s = step.rest_s > 0.0 ? std::max(lasts_s, step.rest_s) : 0.0;
     node.stands = lasts_s > 0.0 && lasts_s >= constrain_after_s;
     node.mode = step.mode[which];
     node.at_rest = step.at_rest;
     node.spins_in_place = step.spins_in_place;
-    node.spread_m2 = step.spread_m2;
+    node.position_spread_m2 = step.position_spread_m2;
     which = step.parent[which];
   }
   return path;
 }
 
-void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const {
+void RollingSmoother::smooth_window(const Path& path, std::size_t emitted, State& state,
+                                    const EstimateCallback& take) const {
   if (state.samples.empty()) return;
   std::optional<rolling::LastPass::Distance> distance;
   if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  const auto owned_pass = std::make_unique<rolling::LastPass>(path_params_, state.samples, path.nodes, distance);
+  const auto owned_pass = std::make_unique<rolling::LastPass>(final_pass_params_, state.samples, path.nodes, distance);
   rolling::LastPass& pass = *owned_pass;
   const auto start = std::make_unique<rolling::LastPass::Checkpoint>();
-  start_window(params_.filter, path_params_, state, *start);
+  start_window(params_.filter, final_pass_params_, state, *start);
   pass.run(*start, emitted);
   state.constants = pass.end().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end().P(rolling::kRadius, rolling::kRadius)));
@@ -301,7 +301,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
 
   if (emitted <= pass.nodes()) {
     const auto& [filter, cursor] = pass.cut();
-    Committed& last = state.committed;  // the constant position of the committed node remains
+    FinalPassState& last = state.committed;  // the constant position of the committed node remains
     last.nominal = filter.nominal;
     last.P = filter.P;
     last.mode = filter.mode;
@@ -310,12 +310,12 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
     last.last_rate_rad_s = cursor.last_rate_rad_s;
     last.gap_rate_rad_s = cursor.gap_rate_rad_s;
     last.gap_start_ns = cursor.gap_start_ns;
-    last.gap_piece = cursor.gap_piece;
+    last.gap_step = cursor.gap_step;
     last.started = true;
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed.gap_piece = 0;  // the gap ends here
+    state.committed.gap_step = 0;  // the gap ends here
     state.samples.clear();
     state.steps.clear();
   }

@@ -54,14 +54,14 @@ bool Readings::next_piece(double gap_s, Reading& out) {
   ImuSample before;
   before.angular_velocity_rad_s = cursor_.gap_rate_rad_s;
   const int pieces = gap_pieces(params_, gap_s);
-  out.average = gap_piece(params_, before, after, gap_s, cursor_.gap_piece, out.uncertainty);
+  out.average = gap_step(params_, before, after, gap_s, cursor_.gap_step, out.uncertainty);
   out.in_gap = true;
-  ++cursor_.gap_piece;
-  const bool last = cursor_.gap_piece == pieces;
-  const double share = static_cast<double>(cursor_.gap_piece) / pieces;
+  ++cursor_.gap_step;
+  const bool last = cursor_.gap_step == pieces;
+  const double share = static_cast<double>(cursor_.gap_step) / pieces;
   out.end_ns = last ? after.time_ns : cursor_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
   if (last) {
-    cursor_.gap_piece = 0;
+    cursor_.gap_step = 0;
     out.end = ++cursor_.next;
   }
   cursor_.time_ns = out.end_ns;
@@ -73,7 +73,7 @@ bool Readings::next(Reading& out) {
   out = {};
   out.first = out.end = cursor_.next;
   if (cursor_.next >= samples_.size()) return false;
-  if (cursor_.gap_piece > 0) return next_piece(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
+  if (cursor_.gap_step > 0) return next_piece(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
   TimeNs last_ns = cursor_.time_ns;
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
@@ -104,8 +104,8 @@ Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covarianc
   return out;
 }
 
-void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
-                const PathNode& path, PathFilter& filter, NodeRecord& record) {
+void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
+                   const PathNode& path, PathFilter& filter, NodeRecord& record) {
   record.path = path;
   record.B = transition(sums);
   Vector x = Vector::Zero();
@@ -113,7 +113,7 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
   record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.P);
   record.resets_slope = resets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
-  record.lost_heading = lost_heading(filter.P);
+  record.heading_lost = heading_lost(filter.P);
   const auto take = [&](const auto& row, double measured, double variance) {
     measure(row, measured, variance, record, x, filter.P);
   };
@@ -121,13 +121,13 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
     rest_rows(params, sums, filter.nominal, path.spins_in_place, take);
   } else {
     Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
-    if (record.lost_heading) blind_to_heading(c);
+    if (record.heading_lost) blind_to_heading(c);
     contact_rows(params, c, path.mode, sums.node_s, filter.nominal.v_WI_m_s, x, filter.P, take);
   }
   make_symmetric(filter.P);
-  filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;
-  rebase(x, filter.nominal);
-  if (record.lost_heading) {
+  filter.P.block<3, 3>(kPosition, kPosition) += path.position_spread_m2;
+  move_linearisation_point(x, filter.nominal);
+  if (record.heading_lost) {
     record.turned = turned_by_heading(x);
     move_errors(record.turned, filter.P);
   }
@@ -139,7 +139,7 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
 
 Reported error_before_update(const NodeRecord& node) {
   const Reported error = node.smoothed + node.correction;
-  return node.lost_heading ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
+  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
 }
 
 /// Applies a known distance between start and end: rolling.md (R41).
@@ -160,7 +160,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   Vector x = Vector::Zero();
   measure(H, distance_m - length_m, sigma_m * sigma_m, last, x, filter.P);
   make_symmetric(filter.P);
-  rebase(x, filter.nominal);
+  move_linearisation_point(x, filter.nominal);
   last.correction += reported(x);
   last.P_rows = output_covariance_rows(filter.P);
   last.nominal = filter.nominal;
@@ -177,7 +177,7 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
                          .finished();
     node.smoothed = -node.P_rows * lambda;
     node.smoothed_P = own - node.P_rows * Lambda * node.P_rows.transpose();
-    if (node.lost_heading) move_back(node.turned, adjoint);
+    if (node.heading_lost) move_back(node.turned, adjoint);
     for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {
       const Row& H = node.H[k];
       const Vector& K = node.gain[k];

@@ -15,7 +15,7 @@ struct PathNode {
   bool at_rest = false;
   bool spins_in_place = false;  ///< at rest, but rotating about the contact point
   bool stands = false;          ///< at rest long enough that the position may be constant
-  Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
 inline constexpr int kReported = 12;  ///< number of states of a pose: attitude, velocity, position, lever arm
@@ -31,7 +31,7 @@ struct NodeRecord {
   int rows = 0;
   bool resets_slope = false;
   bool tilt_reset = false;
-  bool lost_heading = false;
+  bool heading_lost = false;
   Eigen::Matrix<double, kReported, kStates> P_rows;  ///< rows of P after the update
   Reported correction;                               ///< correction of the nominal by the update
   Vector turned;                                     ///< turned_by_heading() of the correction, if the heading is lost
@@ -64,7 +64,7 @@ class Readings {
     // Data of the current gap.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
     TimeNs gap_start_ns = 0;
-    int gap_piece = 0;
+    int gap_step = 0;
     bool operator==(const Cursor&) const = default;
   };
 
@@ -99,8 +99,8 @@ struct PathFilter {
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
 
 /// Closes a node: prediction, measurements, and correction of the nominal. `record` must have its initial values.
-void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
-                const PathNode& path, PathFilter& filter, NodeRecord& record);
+void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
+                   const PathNode& path, PathFilter& filter, NodeRecord& record);
 
 /// Returns the smoothed error at the node about the nominal before the node's update.
 Reported error_before_update(const NodeRecord& node);

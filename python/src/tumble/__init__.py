@@ -6,7 +6,7 @@ x y z w, and rotate sensor or body axes to the world (z up). Invalid input raise
 `parameters()` of a class lists its keywords.
 
 Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
-Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream, CarriedStream (live), find_rails
+Rates           RegimeSmoother, RateSmoother, HandHeldSmoother, Saave (whole recordings), RegimeStream, RateStream, HandHeldStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
@@ -19,9 +19,9 @@ import importlib.metadata
 
 from ._tumble import (
     Attitudes,
-    CarriedReport,
-    CarriedSmoother,
-    CarriedStream,
+    HandHeldReport,
+    HandHeldSmoother,
+    HandHeldStream,
     ImuSheet,
     LidarInertialOdometry,
     LidarSheet,
@@ -71,7 +71,7 @@ from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
 __version__ = importlib.metadata.version("tumble")
 __all__ = [
-    "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
+    "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",

@@ -22,7 +22,7 @@ struct AdapterParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.diagnostics_period_s,
           {"diagnostics_period_s", "s", 0.1, 1e6,
-           "time between two publications of the diagnostics, by the stamps of the IMU", Rank::first});
+           "time between two publications of the diagnostics, by the stamps of the IMU", FieldRank::basic});
   }
 };
 
@@ -39,7 +39,7 @@ struct TumblingAdapterParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.odometry);
     visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
-                           "time between two publications of the map, by the stamps of the IMU", Rank::first});
+                           "time between two publications of the map, by the stamps of the IMU", FieldRank::basic});
     visit.group("", p.adapter);
   }
   static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }

@@ -43,9 +43,9 @@ struct AccelerometerFilter {
     RateCovariance after = P;
     for (int i = 0; i < kIterations; ++i) {
       const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, rig, difference);
-      const Vector3d innovation = -(f.residual + f.by_knot * (before - x));
+      const Vector3d innovation = -(f.residual + f.jacobian_knot * (before - x));
       after = P;
-      x = before + vector_update<3, 6>(f.by_knot, innovation, variance * Eigen::Matrix3d::Identity(), after);
+      x = before + vector_update<3, 6>(f.jacobian_knot, innovation, variance * Eigen::Matrix3d::Identity(), after);
     }
     P = 0.5 * (after + after.transpose());
   }
@@ -54,8 +54,8 @@ struct AccelerometerFilter {
 }  // namespace
 
 AccelerometerRate::AccelerometerRate(const Params& params)
-    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
-  require_fields(params);
+    : params_(params), rails_({.axis_aligned_rails = params.rails, .tilted = params.tilted_rails}) {
+  require_valid_fields(params);
 }
 
 Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
@@ -65,7 +65,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
   for (const AuxiliaryAccelerometer& auxiliary_imu : auxiliary_imus) {
     const std::size_t count = auxiliary_imu.specific_force_m_s2.size();
     if (count != samples.size()) {
-      return {Trouble::too_few, "auxiliary_imu", static_cast<double>(count), static_cast<double>(samples.size())};
+      return {ErrorCode::too_few, "auxiliary_imu", static_cast<double>(count), static_cast<double>(samples.size())};
     }
   }
   const std::vector<Clipping> clippings = rails_.find(samples).clippings;
@@ -80,7 +80,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k > 0) filter.predict(seconds(samples[k].time_ns - samples[k - 1].time_ns), params_.jerk_psd);
     const Vector3d &reading = samples[k].angular_velocity_rad_s, &force = samples[k].specific_force_m_s2;
-    const int clipped = clippings[k].gyro | clippings[k].missing_gyro;
+    const int clipped = clippings[k].gyro | clippings[k].unusable_gyro;
     for (int j = 0; j < 3 && params_.use_gyro; ++j) {
       if ((clipped >> j & 1) == 0) filter.measure_axis(j, reading[j], gyro_variance);
     }

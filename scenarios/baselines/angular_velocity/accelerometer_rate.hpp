@@ -45,13 +45,13 @@ class AccelerometerRate {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
-      visit(
-          p.tilted_rails,
-          on_off("tilted_rails", "1: also search tilted saturation limits; 0: treat each axis separately, as published",
-                 Rank::first));
+      visit(p.tilted_rails,
+            switch_field("tilted_rails",
+                         "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                         FieldRank::basic));
       visit(p.use_gyro,
-            on_off("use_gyro", "1: also use the unclipped axes of the primary gyro; 0: use accelerometers only",
-                   Rank::first));
+            switch_field("use_gyro", "1: also use the unclipped axes of the primary gyro; 0: use accelerometers only",
+                         FieldRank::basic));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.accel_noise_density,
             {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer"});
@@ -60,7 +60,7 @@ class AccelerometerRate {
       visit(p.accel_scale_error, {"accel_scale_error", "1", 0.0, 1.0,
                                   "scale and misalignment error of the accelerometers, as a share of the force"});
       visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
-                         Rank::first});
+                         FieldRank::basic});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
                           "maximum time between two samples; a longer gap ends the run with an error"});

@@ -116,7 +116,7 @@ class Chain {
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  Chain(const Axis& axis, const Process& process, std::span<const NormalSite> bounds)
+  Chain(const Axis& axis, const Process& process, std::span<const GaussianSite> bounds)
       : axis_(axis), process_(process), after_(axis.samples.size()) {
     Moment now{Vector::Zero(), process.start()};
     for (std::size_t k = 0; k < after_.size(); ++k) {
@@ -182,7 +182,7 @@ class Chain {
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);
-  std::vector<NormalSite> active(axis.samples.size());
+  std::vector<GaussianSite> active(axis.samples.size());
   std::vector<Value> values = Chain<BoundedJerk>(axis, process, active).smoothed();
   std::vector<double> variances(values.size());
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -199,7 +199,7 @@ std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::P
       const double beyond = std::copysign(1.0, axis.reading(k)) * (values[k].rate - axis.reading(k));
       const bool standing = active[k].precision > 0.0;
       if (standing ? beyond <= 0.0 : beyond >= 0.0) continue;
-      active[k] = standing ? NormalSite{} : NormalSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
+      active[k] = standing ? GaussianSite{} : GaussianSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
       moved = true;
     }
     if (!moved) break;
@@ -224,8 +224,8 @@ std::vector<Value> bridge(const Axis& axis, const ClippedBaseline::Params& param
 }  // namespace
 
 ClippedBaseline::ClippedBaseline(const Params& params)
-    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
-  require_fields(params);
+    : params_(params), rails_({.axis_aligned_rails = params.rails, .tilted = params.tilted_rails}) {
+  require_valid_fields(params);
 }
 
 Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
@@ -239,13 +239,13 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   for (axis.index = 0; axis.index < 3; ++axis.index) {
     const int bit = 1 << axis.index;
     for (std::size_t k = 0; k < count; ++k) {
-      axis.overflown[k] = (clippings[k].missing_gyro & bit) != 0;
+      axis.overflown[k] = (clippings[k].unusable_gyro & bit) != 0;
       axis.clipped[k] = axis.overflown[k] || (clippings[k].gyro & bit) != 0;
     }
     const std::vector<Value> values = bridge(axis, params_);
     for (std::size_t k = 0; k < count; ++k) {
       double rate = axis.reading(k);
-      if ((clippings[k].missing_gyro & bit) != 0) {
+      if ((clippings[k].unusable_gyro & bit) != 0) {
         rate = std::clamp(values[k].rate, -params_.rate_max_rad_s, params_.rate_max_rad_s);
       } else if (axis.clipped[k]) {
         const double low = std::abs(rate), side = std::copysign(1.0, rate);
@@ -257,7 +257,7 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   }
   for (std::size_t k = 0; k < count; ++k) {
     out[k].time_ns = samples[k].time_ns;
-    out[k].clipped_axes = clippings[k].gyro | clippings[k].missing_gyro;
+    out[k].clipped_axes = clippings[k].gyro | clippings[k].unusable_gyro;
     out[k].source = out[k].clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
   }
   return {};

@@ -182,8 +182,8 @@ void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
 }  // namespace
 
 StandstillSmoother::StandstillSmoother(const Params& params)
-    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
-  require_fields(params);
+    : params_(params), rails_({.axis_aligned_rails = params.rails, .tilted = params.tilted_rails}) {
+  require_valid_fields(params);
 }
 
 Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
@@ -213,7 +213,7 @@ Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vec
       restart(samples[k], belief, step.transition);
     }
     step.before = belief;
-    const int clipped = clippings[k].gyro | clippings[k].missing_gyro;
+    const int clipped = clippings[k].gyro | clippings[k].unusable_gyro;
     for (int j = 0; j < 3; ++j) {
       if ((clippings[k].gyro >> j & 1) != 0) hold(params_, samples[k].angular_velocity_rad_s[j], j, belief);
       if ((clipped >> j & 1) != 0) continue;
@@ -231,7 +231,7 @@ Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vec
     belief = smoothed;
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
-    state.clipped_axes = clippings[k].gyro | clippings[k].missing_gyro;
+    state.clipped_axes = clippings[k].gyro | clippings[k].unusable_gyro;
     state.source = state.clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
     for (int j = 0; j < 3; ++j) {
       const double reading = samples[k].angular_velocity_rad_s[j], side = std::copysign(1.0, reading);

@@ -52,10 +52,10 @@ class StandstillSmoother {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
-      visit(
-          p.tilted_rails,
-          on_off("tilted_rails", "1: also search tilted saturation limits; 0: treat each axis separately, as published",
-                 Rank::first));
+      visit(p.tilted_rails,
+            switch_field("tilted_rails",
+                         "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                         FieldRank::basic));
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity"});
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.accel_noise_density,
@@ -63,9 +63,9 @@ class StandstillSmoother {
       visit(p.accel_error_m_s2,
             {"accel_error_m_s2", "m/s^2", 0.0, 100.0,
              "standard deviation of the scale and bias error of the specific force, treated as noise of each sample",
-             Rank::first});
+             FieldRank::basic});
       visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
-                         Rank::first});
+                         FieldRank::basic});
       visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "maximum change of the rate at a standstill"});
       visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "maximum change of the force at a standstill"});
       visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "minimum duration of a standstill"});

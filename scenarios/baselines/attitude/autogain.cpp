@@ -44,7 +44,7 @@ Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eig
 }  // namespace
 
 Autogain::Autogain(const Params& p) : params_(p) {
-  require_fields(p);
+  require_valid_fields(p);
   require_within("upper_rad_s", p.upper_rad_s, p.lower_rad_s + 1e-9, 100.0);
 }
 

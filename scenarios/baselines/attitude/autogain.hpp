@@ -52,19 +52,23 @@ class Autogain {
       visit(p.profile,
             {"profile", "1", 0.0, 2.0,
              "dependence of the gain on the rate: 0: eq. 2 of the paper; 1: the authors' code of 2021; 2: smooth",
-             Rank::first});
-      visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0, "Madgwick gain at full rate (Theta, eq. 4)", Rank::first});
-      visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4, "time constant of the complementary step at rest (eq. 5)", Rank::first});
+             FieldRank::basic});
+      visit(p.gain_rad_s,
+            {"gain_rad_s", "rad/s", 0.0, 10.0, "Madgwick gain at full rate (Theta, eq. 4)", FieldRank::basic});
+      visit(p.tau_s,
+            {"tau_s", "s", 1e-3, 1e4, "time constant of the complementary step at rest (eq. 5)", FieldRank::basic});
       visit(p.lower_rad_s, {"lower_rad_s", "rad/s", 0.0, 100.0,
-                            "rate below which the accelerometer has full weight (eq. 2)", Rank::first});
-      visit(p.upper_rad_s, {"upper_rad_s", "rad/s", 1e-9, 100.0,
-                            "rate above which the gyro has full weight, added to lower_rad_s (eq. 2)", Rank::first});
+                            "rate below which the accelerometer has full weight (eq. 2)", FieldRank::basic});
+      visit(p.upper_rad_s,
+            {"upper_rad_s", "rad/s", 1e-9, 100.0,
+             "rate above which the gyro has full weight, added to lower_rad_s (eq. 2)", FieldRank::basic});
       visit(p.roll_error_2021,
-            on_off("roll_error_2021", "1: never correct the roll angle, as in the authors' code of 2021", Rank::first));
-      visit(p.tilt_form, on_off("tilt_form",
-                                "1: the complementary step is the smallest rotation; 0: the step turns towards a "
-                                "target in roll, pitch and yaw",
-                                Rank::first));
+            switch_field("roll_error_2021", "1: never correct the roll angle, as in the authors' code of 2021",
+                         FieldRank::basic));
+      visit(p.tilt_form, switch_field("tilt_form",
+                                      "1: the complementary step is the smallest rotation; 0: the step turns towards a "
+                                      "target in roll, pitch and yaw",
+                                      FieldRank::basic));
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }

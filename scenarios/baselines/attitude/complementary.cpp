@@ -12,7 +12,7 @@
 namespace tumble::baselines {
 
 Complementary::Complementary(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status Complementary::step(const ImuSample& sample, State& state) const {

@@ -12,7 +12,7 @@
 namespace tumble::baselines {
 
 Eskf::Eskf(const Params& p) : params_(p) {
-  require_fields(p);
+  require_valid_fields(p);
 }
 
 Status Eskf::step(const ImuSample& sample, State& state) const {

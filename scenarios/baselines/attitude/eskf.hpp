@@ -35,16 +35,16 @@ class Eskf {
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
       visit(p.gyro_noise_rad_sqrts,
-            {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "angle random walk", Rank::first});
+            {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "angle random walk", FieldRank::basic});
       visit(p.bias_walk_rad_s_sqrts,
-            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro bias", Rank::first});
-      visit(p.bias_sigma_start_rad_s,
-            {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", Rank::first});
+            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro bias", FieldRank::basic});
+      visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0,
+                                       "prior standard deviation of the gyro bias", FieldRank::basic});
       visit(p.tilt_sigma_start_rad, {"tilt_sigma_start_rad", "rad", 1e-12, 3.141592653589793,
-                                     "standard deviation of the tilt from the first sample", Rank::first});
+                                     "standard deviation of the tilt from the first sample", FieldRank::basic});
       visit(p.acceleration_noise_m_s2_sqrts,
             {"acceleration_noise_m_s2_sqrts", "m/s^2 sqrt(s)", 1e-12, 100.0,
-             "standard deviation of the mean acceleration of the body over 1 s (white noise)", Rank::first});
+             "standard deviation of the mean acceleration of the body over 1 s (white noise)", FieldRank::basic});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }

@@ -50,7 +50,7 @@ Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Ve
 }
 
 Madgwick::Madgwick(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status Madgwick::step(const ImuSample& sample, State& state) const {

@@ -9,7 +9,7 @@
 namespace tumble::baselines {
 
 Mahony::Mahony(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status Mahony::step(const ImuSample& sample, State& state) const {

@@ -24,9 +24,9 @@ class Mahony {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.proportional_rad_s, {"proportional_rad_s", "rad/s", 0.0, 100.0,
-                                   "proportional gain kp on the tilt error (eq. 32)", Rank::first});
+                                   "proportional gain kp on the tilt error (eq. 32)", FieldRank::basic});
       visit(p.integral_rad_s2, {"integral_rad_s2", "rad/s^2", 0.0, 100.0,
-                                "integral gain ki, which estimates the gyro bias (eq. 32)", Rank::first});
+                                "integral gain ki, which estimates the gyro bias (eq. 32)", FieldRank::basic});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }

@@ -120,12 +120,12 @@ PoseState pose_state(const Eigen::Isometry3d& T, const Eigen::Vector3d& v_m_s, T
 }
 
 Status trouble_of(const Sweep& sweep, std::size_t in_range) {
-  if (sweep.points.empty()) return {Trouble::empty, "points", 0.0, 1.0};
+  if (sweep.points.empty()) return {ErrorCode::empty, "points", 0.0, 1.0};
   const auto differs = [&](const LidarPoint& p) { return p.offset_ns != sweep.points.front().offset_ns; };
   if (std::none_of(sweep.points.begin(), sweep.points.end(), differs)) {
-    return {Trouble::degenerate, "spread of offset_ns", 0.0, 1.0};
+    return {ErrorCode::degenerate, "spread of offset_ns", 0.0, 1.0};
   }
-  if (in_range == 0) return {Trouble::too_few, "points in range", 0.0, 1.0};
+  if (in_range == 0) return {ErrorCode::too_few, "points in range", 0.0, 1.0};
   return {};
 }
 
@@ -134,7 +134,7 @@ Status trouble_of(const Sweep& sweep, std::size_t in_range) {
 PublishedChain::PublishedChain(const Params& params, std::span<const ImuSample> samples,
                                std::span<const RateState> rates)
     : params_(params), samples_(samples), odometry_(params.madgwick_gain_rad_s, samples, rates), icp_(params.icp) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 bool PublishedChain::covers(const Sweep& sweep) const {
@@ -144,21 +144,21 @@ bool PublishedChain::covers(const Sweep& sweep) const {
 Status PublishedChain::add(const Sweep& sweep, SweepReport& report) {
   for (const LidarPoint& point : sweep.points) {
     if (point.offset_ns <= sweep.end_ns - sweep.start_ns) continue;
-    return {Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(sweep.end_ns - sweep.start_ns)};
+    return {ErrorCode::out_of_range, "offset_ns", double(point.offset_ns), double(sweep.end_ns - sweep.start_ns)};
   }
   odometry_.advance(sweep.end_ns);
   const TimeNs at_ns = registered_at(sweep, params_.stamp_step_ns);
   std::vector<TrimmedIcp::Point> points = deskewed(sweep, at_ns, odometry_, params_);
-  const Status trouble = trouble_of(sweep, points.size());
-  if (!trouble.ok()) points.clear();
+  const Status error_code = trouble_of(sweep, points.size());
+  if (!error_code.ok()) points.clear();
   const bool registered = registers(sweep, at_ns, points, report);
   report_poses(sweep, report);
   if (registered) feed_back(at_ns);
-  return trouble;
+  return error_code;
 }
 
 std::vector<MapPoint> PublishedChain::map() const {
-  return mapping::with_normals(map_, seen_from_, 20, 1.0);
+  return mapping::to_map_points(map_, seen_from_, 20, 1.0);
 }
 
 bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const TrimmedIcp::Point> points,
@@ -173,7 +173,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   } else {
     const TrimmedIcp::Result result = icp_.align(points, T, map_);
     report.iterations = result.iterations;
-    report.inlier_share = result.kept_share;
+    report.inlier_ratio = result.kept_share;
     dead_ = result.verdict != RegistrationVerdict::converged && params_.abort_ends_mapping;
     if (result.verdict != RegistrationVerdict::converged) return false;
     report.verdict = SweepVerdict::registered;

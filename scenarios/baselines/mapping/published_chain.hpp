@@ -42,19 +42,22 @@ class PublishedChain {
       visit(p.skew_sigma_m_s,
             {"skew_sigma_m_s", "m/s", 0.0, 100.0,
              "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth",
-             Rank::first});
-      visit(p.late_velocity, on_off("late_velocity",
-                                    "1: use the mean velocity since the last sweep as the present velocity, which is "
-                                    "half a sweep late, as in the launch files",
-                                    Rank::first));
-      visit(p.voxel_averages_time, on_off("voxel_averages_time",
-                                          "1: average the times of the points in a voxel, also across the start of the "
-                                          "sweep, as in the launch files; 0: average their variances",
-                                          Rank::first));
-      visit(p.abort_ends_mapping,
-            on_off("abort_ends_mapping",
-                   "1: a failed registration ends mapping, as in the launch files; 0: the sweep uses odometry only",
-                   Rank::first));
+             FieldRank::basic});
+      visit(p.late_velocity,
+            switch_field("late_velocity",
+                         "1: use the mean velocity since the last sweep as the present velocity, which is "
+                         "half a sweep late, as in the launch files",
+                         FieldRank::basic));
+      visit(p.voxel_averages_time,
+            switch_field("voxel_averages_time",
+                         "1: average the times of the points in a voxel, also across the start of the "
+                         "sweep, as in the launch files; 0: average their variances",
+                         FieldRank::basic));
+      visit(
+          p.abort_ends_mapping,
+          switch_field("abort_ends_mapping",
+                       "1: a failed registration ends mapping, as in the launch files; 0: the sweep uses odometry only",
+                       FieldRank::basic));
       visit.group("", p.icp);
       visit(p.own_body_L.min(),
             {"own_body_min_m", "m", -kUnbounded, kUnbounded,

@@ -23,16 +23,16 @@ Eigen::Isometry3d pose_of(const MotionState& state) {
 
 RigidOdometry::RigidOdometry(const Params& params)
     : params_(params), map_({params.map_voxel_m, params.map_spacing_m}), registration_(params.registration) {
-  require_fields(params);
+  require_valid_fields(params);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
 }
 
 Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                 const Motion& motion, SweepReport& report) {
   report = SweepReport{};
-  if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
+  if (end_ns < start_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (motion.start.time_ns > start_ns) {
-    return {Trouble::time_order, "motion.start", double(motion.start.time_ns), double(start_ns)};
+    return {ErrorCode::time_order, "motion.start", double(motion.start.time_ns), double(start_ns)};
   }
   if (Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
   SweepTrajectory trajectory;
@@ -59,7 +59,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
     if (first && counts.used >= params_.registration.matches_min) report.verdict = SweepVerdict::first;
     if (!first) register_points(report);
     if (first || params_.extend_always || report.verdict != SweepVerdict::rejected) {
-      extend_map(counts.rings_differ, report);
+      extend_map(counts.has_ring_numbers, report);
     }
   }
   describe(trajectory, report);
@@ -89,24 +89,24 @@ void RigidOdometry::register_points(SweepReport& report) {
   Registration::Result result;
   const Status status = registration_.align(prior, {&instant, 1}, predicted_.time_ns, chosen_, map_, still, result);
   report.iterations = result.iterations;
-  report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
+  report.inlier_ratio = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
   if (result.verdict == RegistrationVerdict::too_few && chosen_.size() >= params_.registration.matches_min) {
     report.verdict = SweepVerdict::degenerate;  // no constraints: keep the motion model
   }
   if (result.verdict != RegistrationVerdict::converged) return;
   state_ = result.mean.state;
-  report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
-  report.weakest_direction = result.directions.col(0);
-  report.weakest_sigma_m = result.weakest_sigma_m;
-  report.verdict =
-      report.weakest_sigma_m > params_.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
+  report.eigenvalue_ratio = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
+  report.least_constrained_direction = result.directions.col(0);
+  report.least_constrained_sigma_m = result.least_constrained_sigma_m;
+  report.verdict = report.least_constrained_sigma_m > params_.degenerate_sigma_m ? SweepVerdict::degenerate
+                                                                                 : SweepVerdict::registered;
 }
 
-void RigidOdometry::extend_map(bool rings_differ, SweepReport& report) {
+void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
   const Eigen::Isometry3d T_WI = pose_of(state_);
   place(T_WI);
-  const std::uint32_t base = scan_lines_.base((T_WI.linear() * params_.T_IL.linear()).col(2), rings_differ);
+  const std::uint32_t base = scan_lines_.base((T_WI.linear() * params_.T_IL.linear()).col(2), has_ring_numbers);
   const auto sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto sigma = static_cast<float>(std::sqrt(registration_.point_variance_m2(points_[i])));
@@ -135,8 +135,8 @@ void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& rep
 }
 
 std::vector<MapPoint> RigidOdometry::map() const {
-  return mapping::with_normals(map_, seen_from_W_m_, params_.registration.neighbours,
-                               params_.registration.match_distance_m);
+  return mapping::to_map_points(map_, seen_from_W_m_, params_.registration.neighbours,
+                                params_.registration.match_distance_m);
 }
 
 }  // namespace tumble::baselines

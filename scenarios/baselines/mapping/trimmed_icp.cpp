@@ -25,7 +25,7 @@ Vector6 solve(const Matrix6& H, const Vector6& g) {
 }  // namespace
 
 TrimmedIcp::TrimmedIcp(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
   require_within("trim_min", params.trim_min, 1e-3, params.trim_max);
 }
 

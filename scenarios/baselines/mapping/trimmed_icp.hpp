@@ -46,16 +46,17 @@ class TrimmedIcp {
     static void fields(Self& p, Visitor& visit) {
       visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
       visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0,
-                                 "maximum distance between a point and its matches in the map", Rank::first});
+                                 "maximum distance between a point and its matches in the map", FieldRank::basic});
       visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "number of map points used for each normal"});
       visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "minimum share of matches that trimming keeps"});
       visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "maximum share of matches that trimming keeps"});
       visit(p.trim_lambda,
             {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost function that selects the share"});
-      visit(p.count_unmatched_slots, on_off("trim_counts_unmatched",
-                                            "1: compute the share over all match slots, including unmatched slots, as "
-                                            "in the launch files (which read beyond the array)",
-                                            Rank::first));
+      visit(p.count_unmatched_slots,
+            switch_field("trim_counts_unmatched",
+                         "1: compute the share over all match slots, including unmatched slots, as "
+                         "in the launch files (which read beyond the array)",
+                         FieldRank::basic));
       visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps"});
       visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});
       visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "rotation step below which the registration has converged"});

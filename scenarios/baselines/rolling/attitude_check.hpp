@@ -11,9 +11,9 @@ namespace tumble::baselines {
 /// Returns `non_finite`, or `out_of_range` if the norm of `q_WI` differs from 1 by more than 1e-6.
 inline Status check_attitude(const Eigen::Quaterniond& q_WI) {
   constexpr double kUnitTolerance = 1e-6;
-  if (!q_WI.coeffs().allFinite()) return {Trouble::non_finite, "q_WI", q_WI.coeffs().sum(), 1.0};
+  if (!q_WI.coeffs().allFinite()) return {ErrorCode::non_finite, "q_WI", q_WI.coeffs().sum(), 1.0};
   const double length = q_WI.coeffs().stableNorm();
-  if (std::abs(length - 1.0) > kUnitTolerance) return {Trouble::out_of_range, "q_WI", length, 1.0};
+  if (std::abs(length - 1.0) > kUnitTolerance) return {ErrorCode::out_of_range, "q_WI", length, 1.0};
   return {};
 }
 

@@ -22,7 +22,7 @@ Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
 }  // namespace
 
 AutogainFusion::AutogainFusion(const Params& p) : params_(p), autogain_(p.autogain) {
-  require_fields(p);
+  require_valid_fields(p);
 }
 
 Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {

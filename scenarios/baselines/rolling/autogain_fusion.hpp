@@ -43,32 +43,37 @@ class AutogainFusion {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
       visit(p.limiter, {"limiter", "1", 0.0, 100.0,
-                        "maximum ratio of integrated to rolling velocity; 1.1 in the authors' code", Rank::first});
+                        "maximum ratio of integrated to rolling velocity; 1.1 in the authors' code", FieldRank::basic});
       visit(p.rotation_weight,
-            {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)", Rank::first});
-      visit(p.acceleration_weight,
-            {"acceleration_weight", "1", 0.0, 10.0, "weight of the integrated acceleration (eq. 13)", Rank::first});
+            {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)", FieldRank::basic});
+      visit(p.acceleration_weight, {"acceleration_weight", "1", 0.0, 10.0,
+                                    "weight of the integrated acceleration (eq. 13)", FieldRank::basic});
       visit.group("autogain_", p.autogain);
-      visit(p.integrate_in_body, on_off("integrate_in_body",
-                                        "true: integrate eq. 7 in the rotating frame, without the term w x v; false: "
-                                        "integrate in the world frame",
-                                        Rank::first));
-      visit(p.direction_only,
-            on_off("direction_only",
-                   "true, as in the authors' code: normalise f before gravity is removed, without multiplying by g",
-                   Rank::first));
+      visit(p.integrate_in_body,
+            switch_field("integrate_in_body",
+                         "true: integrate eq. 7 in the rotating frame, without the term w x v; false: "
+                         "integrate in the world frame",
+                         FieldRank::basic));
+      visit(
+          p.direction_only,
+          switch_field("direction_only",
+                       "true, as in the authors' code: normalise f before gravity is removed, without multiplying by g",
+                       FieldRank::basic));
       visit(p.recursive_coupling,
-            on_off("recursive_coupling",
-                   "true, as in the authors' code: eq. 8 scales the stored integral at each sample", Rank::first));
+            switch_field("recursive_coupling",
+                         "true, as in the authors' code: eq. 8 scales the stored integral at each sample",
+                         FieldRank::basic));
       visit(p.limit_per_axis,
-            on_off("limit_per_axis", "true: limit along the world's axes; false: limit the horizontal vector",
-                   Rank::first));
+            switch_field("limit_per_axis", "true: limit along the world's axes; false: limit the horizontal vector",
+                         FieldRank::basic));
       visit(p.shrink_per_axis,
-            on_off("shrink_per_axis",
-                   "true: eq. 12 subtracts v_z^2 from each axis; false: once from the horizontal vector", Rank::first));
-      visit(p.vertical_by_norm, on_off("vertical_by_norm",
-                                       "true, as in the authors' code: limit |v_z| by the norm of v_rot; false: by the "
-                                       "mean of both magnitudes"));
+            switch_field("shrink_per_axis",
+                         "true: eq. 12 subtracts v_z^2 from each axis; false: once from the horizontal vector",
+                         FieldRank::basic));
+      visit(p.vertical_by_norm,
+            switch_field("vertical_by_norm",
+                         "true, as in the authors' code: limit |v_z| by the norm of v_rot; false: by the "
+                         "mean of both magnitudes"));
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }

@@ -7,7 +7,7 @@
 namespace tumble::baselines {
 
 DoubleIntegration::DoubleIntegration(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
 }
 
 Status DoubleIntegration::step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {

@@ -15,16 +15,16 @@ constexpr double kRateLargest_rad_s = 1e6;
 
 Status check_input(const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI) {
   // sum() is NaN or infinite if any component is NaN or infinite. stableNorm() does not guarantee this.
-  if (!w_I_rad_s.allFinite()) return {Trouble::non_finite, "w_I_rad_s", w_I_rad_s.sum(), kRateLargest_rad_s};
+  if (!w_I_rad_s.allFinite()) return {ErrorCode::non_finite, "w_I_rad_s", w_I_rad_s.sum(), kRateLargest_rad_s};
   const double rate = w_I_rad_s.stableNorm();
-  if (rate > kRateLargest_rad_s) return {Trouble::out_of_range, "w_I_rad_s", rate, kRateLargest_rad_s};
+  if (rate > kRateLargest_rad_s) return {ErrorCode::out_of_range, "w_I_rad_s", rate, kRateLargest_rad_s};
   return check_attitude(q_WI);
 }
 
 }  // namespace
 
 RollingOdometry::RollingOdometry(const Params& params) : params_(params) {
-  require_fields(params);
+  require_valid_fields(params);
   require_within("normal_W length", params.normal_W.norm(), 1.0 - kUnitTolerance, 1.0 + kUnitTolerance);
 }
 

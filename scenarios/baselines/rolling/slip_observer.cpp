@@ -46,7 +46,7 @@ SlipObserver::State::State() {
 }
 
 SlipObserver::SlipObserver(const Params& p) : params_(p) {
-  require_fields(p);
+  require_valid_fields(p);
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
 

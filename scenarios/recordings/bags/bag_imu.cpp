@@ -30,8 +30,8 @@ std::string repeats_text(std::size_t repeated) {
   return "number of duplicate messages (same stamp and content) that were read once: " + std::to_string(repeated);
 }
 
-sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::string& topic, const BagReading& reading,
-                        std::vector<std::string>& notes) {
+sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
+                        const BagReading& reading, std::vector<std::string>& notes) {
   sim::ImuRecord imu = without_readings(reading.imu);
   imu.name = sensor_name(topic);
   std::string frame;

@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 /// Reads a topic of type sensor_msgs/Imu. Single faulty messages are left out with a note. Returns no readings for a
 /// topic without messages, unless the caller chose the topics. Throws BadInput for implausible units, or if too many
 /// messages are faulty.
-sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::string& topic, const BagReading& reading,
-                        std::vector<std::string>& notes);
+sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
+                        const BagReading& reading, std::vector<std::string>& notes);
 
 /// Returns a note on the number of duplicate messages, or "".
 std::string repeats_text(std::size_t repeated);

@@ -68,7 +68,7 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
 
 /// Returns the mounting of the reference frame: the user's choice, else the frame that the messages name, if the bag
 /// contains its transform.
-Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorPlaces& places,
+Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorMountings& places,
                                     const BagReading& reading, Imported& out) {
   const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();
   if (reading.reference_of == ReferenceOf::lidar) return lidar_of_poses(out.sensors, topic);
@@ -86,7 +86,7 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
 
 }  // namespace
 
-void attach_reference(const OpenedBag& bag, const SensorPlaces& places, const BagReading& reading, Imported& out) {
+void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out) {
   const std::string& topic = reading.reference_topic;
   NamedPoses found = reference_poses(bag, topic, reading.stamps);
   const Eigen::Isometry3d T_BA = pose_of_reference(topic, found.frame, places, reading, out);

@@ -109,7 +109,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   return out;
 }
 
-BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
+BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
   SweepReading sweeps = reading.sweeps;
   sweeps.device.name = sensor_name(topic);

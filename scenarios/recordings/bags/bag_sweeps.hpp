@@ -36,7 +36,7 @@ struct CloudHeaders {
 CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const BagReading& reading);
 
 /// Reads the points of a topic. Single faulty clouds are left out with a note.
-BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
+BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes);
 
 }  // namespace tumble::scenarios

@@ -41,7 +41,7 @@ StaticFrames read_frames(const OpenedBag& bag) {
       for (const ros::TransformStamped& each : message.transforms) frames.add(each, origin.where);
     });
   }
-  frames.require_no_ring(bag.place + ": topic " + kStaticTopic);
+  frames.require_no_cycle(bag.place + ": topic " + kStaticTopic);
   return frames;
 }
 
@@ -122,7 +122,7 @@ class TopicsOfKind {
   const char* option_;
 };
 
-void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
+void add_imus(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, Imported& out) {
   const std::vector<std::string> topics = bag.chosen(reading.imu_topics, is_imu_type, kImu);
   const TopicsOfKind imus(topics, !reading.imu_topics.empty(), reading.leave_out_topics, "--imu-topic");
   imus.read(out.notes, [&](const std::string& topic) {
@@ -138,7 +138,7 @@ void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& read
         "' is the primary IMU, because its topic comes first (set --imu-topic to choose another topic)");
 }
 
-void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
+void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, Imported& out) {
   const bool chosen = !reading.lidar_topics.empty();
   std::vector<std::pair<std::string, BuiltSweeps>> lidars;
   const auto read = [&](const std::string& topic) {
@@ -174,7 +174,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   Imported out;
   out.notes = reader.notes;
   for (const std::string& remark : frames.remarks()) out.notes.push_back(std::string(kStaticTopic) + ": " + remark);
-  SensorPlaces places(frames, bag.place + ": topic " + kStaticTopic);
+  SensorMountings places(frames, bag.place + ": topic " + kStaticTopic);
   add_imus(bag, places, reading, out);
   add_lidars(bag, places, reading, out);
   note_unread_clouds(bag, out.notes);

@@ -29,13 +29,13 @@ std::string sensor_name(std::string topic) {
   return topic;
 }
 
-void SensorPlaces::place(const std::string& topic, const std::string& frame, const char* option, bool given,
-                         Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
+void SensorMountings::place(const std::string& topic, const std::string& frame, const char* option, bool given,
+                            Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
   given = given || !T_BA.isApprox(Eigen::Isometry3d::Identity());
   const std::string body = frames_.body();
   const auto stated = body.empty() ? std::nullopt : frames_.pose(body, frame, where_);
   if (stated) {
-    place_in_body(topic, *stated, given, T_BA, notes);
+    mounting_in_body(topic, *stated, given, T_BA, notes);
   } else if (!given) {
     if (const Placed* beside = neighbour(frame); beside != nullptr) {
       T_BA = beside->T_BA * *frames_.pose(beside->frame, frame, where_);
@@ -53,8 +53,8 @@ void SensorPlaces::place(const std::string& topic, const std::string& frame, con
   placed_.push_back({topic, frame, T_BA});
 }
 
-void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given,
-                                 Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) const {
+void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given,
+                                       Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) const {
   constexpr double kSame = 1e-3;  // m, and approximately rad
   const std::string body = frames_.body();
   if (!given) {
@@ -68,7 +68,7 @@ void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry
   }
 }
 
-const SensorPlaces::Placed* SensorPlaces::neighbour(const std::string& frame) const {
+const SensorMountings::Placed* SensorMountings::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
     // drivers give all sensors of a device one frame, so equal frames do not relate two sensors
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
@@ -76,7 +76,7 @@ const SensorPlaces::Placed* SensorPlaces::neighbour(const std::string& frame) co
   return nullptr;
 }
 
-std::optional<Eigen::Isometry3d> SensorPlaces::of(const std::string& frame) const {
+std::optional<Eigen::Isometry3d> SensorMountings::of(const std::string& frame) const {
   for (const Placed& each : placed_) {
     if (each.frame == frame) return each.T_BA;
   }

@@ -15,10 +15,10 @@ std::string sensor_name(std::string topic);
 
 /// Stores the mountings of a bag's sensors on the body, from /tf_static or from the user. Used only within
 /// scenarios/recordings/bags.
-class SensorPlaces {
+class SensorMountings {
  public:
   /// `where` is the location of the topic for error messages.
-  SensorPlaces(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
+  SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA from /tf_static. If the user has set T_BA (`given`, or not the identity), only differences
   /// are reported. The mounting refers to the body's frame if the bag has one. Otherwise, the mounting refers to the
@@ -37,8 +37,8 @@ class SensorPlaces {
     std::string topic, frame;
     Eigen::Isometry3d T_BA;
   };
-  void place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given, Eigen::Isometry3d& T_BA,
-                     std::vector<std::string>& notes) const;
+  void mounting_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given, Eigen::Isometry3d& T_BA,
+                        std::vector<std::string>& notes) const;
   /// Returns the first earlier sensor that /tf_static connects to the frame.
   const Placed* neighbour(const std::string& frame) const;
 

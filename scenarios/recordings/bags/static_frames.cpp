@@ -26,7 +26,7 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   const auto p = Eigen::Vector3d::Map(transform.translation.data());
   Eigen::Quaterniond q;
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
-  Hung hung{parent, Eigen::Isometry3d::Identity(), ""};
+  FrameLink hung{parent, Eigen::Isometry3d::Identity(), ""};
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
     hung.problem = what + ": the translation must be finite and at most 1 km";
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
@@ -47,8 +47,8 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   frames_.insert_or_assign(child, std::move(hung));
 }
 
-void StaticFrames::require_no_ring(const std::string& where) const {
-  for (const auto& [frame, on] : frames_) way_up(frame, where);
+void StaticFrames::require_no_cycle(const std::string& where) const {
+  for (const auto& [frame, on] : frames_) path_to_root(frame, where);
 }
 
 std::string StaticFrames::body() const {
@@ -59,13 +59,14 @@ std::string StaticFrames::body() const {
   return "";
 }
 
-std::vector<StaticFrames::Hung> StaticFrames::way_up(const std::string& frame, const std::string& where) const {
-  std::vector<Hung> out = {{frame, Eigen::Isometry3d::Identity(), ""}};
+std::vector<StaticFrames::FrameLink> StaticFrames::path_to_root(const std::string& frame,
+                                                                const std::string& where) const {
+  std::vector<FrameLink> out = {{frame, Eigen::Isometry3d::Identity(), ""}};
   for (std::size_t steps = 0; steps <= frames_.size(); ++steps) {
     const auto found = frames_.find(out.back().parent);
     if (found == frames_.end() || found->second.parent == found->first) return out;
     const auto& [parent, T_parent, problem] = found->second;
-    const Hung& below = out.back();
+    const FrameLink& below = out.back();
     out.push_back({parent, T_parent * below.T_parent, below.problem.empty() ? problem : below.problem});
   }
   throw BadInput(where + ": '" + frame + "' and its parent frames form a loop");
@@ -73,9 +74,10 @@ std::vector<StaticFrames::Hung> StaticFrames::way_up(const std::string& frame, c
 
 std::optional<Eigen::Isometry3d> StaticFrames::pose(const std::string& frame_A, const std::string& frame_B,
                                                     const std::string& where) const {
-  const std::vector<Hung> A = way_up(without_slash(frame_A), where), B = way_up(without_slash(frame_B), where);
-  for (const Hung& a : A) {
-    const auto b = std::find_if(B.begin(), B.end(), [&](const Hung& each) { return each.parent == a.parent; });
+  const std::vector<FrameLink> A = path_to_root(without_slash(frame_A), where),
+                               B = path_to_root(without_slash(frame_B), where);
+  for (const FrameLink& a : A) {
+    const auto b = std::find_if(B.begin(), B.end(), [&](const FrameLink& each) { return each.parent == a.parent; });
     if (b == B.end()) continue;
     for (const std::string& problem : {a.problem, b->problem}) {
       if (!problem.empty()) throw BadInput(problem);

@@ -24,7 +24,7 @@ class StaticFrames {
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   /// Throws BadInput, with a message that starts with `where`, if the frames form a cycle.
-  void require_no_ring(const std::string& where) const;
+  void require_no_cycle(const std::string& where) const;
 
   const std::vector<std::string>& remarks() const { return remarks_; }
 
@@ -37,14 +37,14 @@ class StaticFrames {
                                         const std::string& where) const;
 
  private:
-  struct Hung {
+  struct FrameLink {
     std::string parent;
     Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
     std::string problem;         ///< why the transform is invalid; "" if valid
   };
   /// Returns the frame and all its ancestors. Each entry contains the pose of `frame` in the ancestor.
-  std::vector<Hung> way_up(const std::string& frame, const std::string& where) const;
-  std::map<std::string, Hung> frames_;
+  std::vector<FrameLink> path_to_root(const std::string& frame, const std::string& where) const;
+  std::map<std::string, FrameLink> frames_;
   std::vector<std::string> remarks_;
 };
 

@@ -314,7 +314,7 @@ void SweepBuilder::require_range(const std::string& where) const {
                   reading_.range_max_m > 0.0 ? "the range in the data sheet" : "the range of any robot lidar"));
 }
 
-void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
+void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   std::string names;
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
   if (left_out_.count() > 0) notes.push_back(left_out_.note(record_.sweep_start_ns.size() + skipped_));
@@ -380,7 +380,7 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
         in_ns(record_.sweep_period_ns), in_ns(longest_ns_)));
     record_.sweep_period_ns = longest_ns_;
   }
-  note_what_was_left(notes);
+  note_dropped_points(notes);
   scale_intensity(notes);
   return {std::move(record_), std::move(store_), std::move(last_point_ns_)};
 }

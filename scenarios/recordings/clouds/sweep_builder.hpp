@@ -111,7 +111,7 @@ class SweepBuilder {
   std::int64_t longest_sweep_ns() const;  ///< also the largest distance of a point from the stamp of its sweep
   double range_max_m() const;
   void require_range(const std::string& where) const;
-  void note_what_was_left(std::vector<std::string>& notes) const;
+  void note_dropped_points(std::vector<std::string>& notes) const;
   std::size_t points() const { return store_ ? store_->size() : record_.position_L_m.size(); }
 
   SweepReading reading_;

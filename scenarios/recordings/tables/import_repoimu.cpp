@@ -308,7 +308,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   for (std::int64_t& time : log.readings.time_ns) time -= first_ns;
   for (ReferencePose& pose : log.poses) pose.time_ns -= first_ns;
   out.info.origin_ns += first_ns;
-  const HoldReport hold = undo_hold(log.readings, imu);
+  const RepeatReport hold = remove_repeats(log.readings, imu);
   if (!hold.text().empty()) out.notes.push_back(hold.text());
   finish_readings(path.string(), AccelUnit::m_s2, imu);
   for (const std::string& note :

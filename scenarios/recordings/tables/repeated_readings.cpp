@@ -73,8 +73,8 @@ std::vector<Eigen::Vector3d> at_rows(const std::vector<Eigen::Vector3d>& values,
 
 }  // namespace
 
-HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
-  HoldReport report;
+RepeatReport remove_repeats(const LoggedReadings& log, sim::ImuRecord& imu) {
+  RepeatReport report;
   report.rows = log.time_ns.size();
   const std::vector<std::size_t> gyro = fresh_rows(log.gyro_rad_s), accel = fresh_rows(log.accel_m_s2);
   report.gyro_repeated = repeated_share(gyro.size(), report.rows);
@@ -93,7 +93,7 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
   return report;
 }
 
-std::string HoldReport::text() const {
+std::string RepeatReport::text() const {
   if (!gyro_repeats && !accel_repeats) return "";
   std::string out = fmt::format(
       "the device repeats readings (sample and hold): {:.1f} % of the gyro's rows and {:.1f} % of the accelerometer's "

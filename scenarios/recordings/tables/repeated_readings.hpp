@@ -18,8 +18,8 @@ struct LoggedReadings {
   std::vector<Eigen::Vector3d> gyro_rad_s, accel_m_s2;
 };
 
-/// Result of undo_hold for a note. Each number is a fraction of the rows.
-struct HoldReport {
+/// Result of remove_repeats for a note. Each number is a fraction of the rows.
+struct RepeatReport {
   double gyro_repeated = 0.0, accel_repeated = 0.0;
   bool gyro_repeats = false, accel_repeats = false;
   std::size_t rows = 0, readings = 0, accel_readings = 0;
@@ -31,7 +31,7 @@ struct HoldReport {
 /// regularised within the log step in which they arrived. If the accelerometer repeats readings for longer than the
 /// gyro, its readings are interpolated linearly at the gyro's times, which low-passes the specific force. Fills
 /// time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
-HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu);
+RepeatReport remove_repeats(const LoggedReadings& log, sim::ImuRecord& imu);
 
 /// Returns a note on probable accelerometer saturation, or "". An axis and sign counts as saturated if readings
 /// accumulate at an extreme beyond 1.5 g. At least five readings must be within 2 % of the extreme (a tilted limit),

@@ -38,11 +38,11 @@ std::string share_text(double share) {
 }
 
 /// Describes the fault of the file and the correction.
-std::string remedy(Written written, double delay_s) {
+std::string remedy(QuaternionConvention written, double delay_s) {
   std::string out;
-  if (written == Written::w_first || written == Written::w_first_inverse)
+  if (written == QuaternionConvention::w_first || written == QuaternionConvention::w_first_inverse)
     out += ". The quaternions of the reference have w first, but the order must be qx qy qz qw; move the column of w";
-  if (written == Written::inverse || written == Written::w_first_inverse)
+  if (written == QuaternionConvention::inverse || written == QuaternionConvention::w_first_inverse)
     out +=
         ". The poses of the reference describe the world in sensor axes, but must describe the sensor in world axes; "
         "invert the poses";
@@ -61,7 +61,7 @@ std::string caution(const TurningCheck& check, const std::string& frame, const s
   const std::string text =
       "caution: " + disagreement(check, imu) + fmt::format(", but at most {} is expected; ", share_text(kContradicts));
   const TurningFit& reading = check.reading.undelayed;
-  if (reading.difference < kReferenceAgrees && reading.written == Written::as_stated) {
+  if (reading.difference < kReferenceAgrees && reading.written == QuaternionConvention::as_stated) {
     return text + fmt::format("the difference would be {} if the poses belonged to the {}{}",
                               share_text(reading.difference), frame,
                               frame == "IMU" ? "" : ": give --reference-frame " + frame);
@@ -82,7 +82,7 @@ std::string caution(const TurningCheck& check, const std::string& frame, const s
 
 std::string agreement(const TurningCheck& check, const std::string& imu) {
   const TurningFit& likely = check.reading.likely();
-  const TurningFit& fit = likely.written == Written::as_stated ? likely : check.stated;
+  const TurningFit& fit = likely.written == QuaternionConvention::as_stated ? likely : check.stated;
   const std::string text =
       fmt::format("the reference agrees with the gyro of '{}': rotations differ by {} (median of {} pairs of poses)",
                   imu, share_text(fit.difference), check.pairs);
@@ -100,7 +100,7 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
 /// Returns true if the reference differs from the gyro only by a delay, which may be accepted.
 bool fits_as_stated(const TurningCheck& check) {
   const TurningFit& fit = check.reading.likely();
-  return fit.written == Written::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
+  return fit.written == QuaternionConvention::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
 }
 
 [[noreturn]] void refuse(const TurningCheck& check, const std::string& imu, const std::string& where, double corrected,
@@ -113,17 +113,18 @@ bool fits_as_stated(const TurningCheck& check) {
 void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const TurningFit& fit = check.reading.likely();
   if (fit.difference >= kReferenceAgrees) return;
-  const bool rewritten = fit.written != Written::as_stated && check.stated.difference > kExplained &&
+  const bool rewritten = fit.written != QuaternionConvention::as_stated && check.stated.difference > kExplained &&
                          fit.difference < kExplanationLeaves * check.stated.difference;
   if (rewritten || is_delayed(fit.delay_s))
-    refuse(check, imu, where, fit.difference, remedy(rewritten ? fit.written : Written::as_stated, fit.delay_s));
+    refuse(check, imu, where, fit.difference,
+           remedy(rewritten ? fit.written : QuaternionConvention::as_stated, fit.delay_s));
 }
 
 /// Throws BadInput if the gyro contradicts the clock of a reference whose mounting differs from the stated mounting.
 void require_clock(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const MountingFit& fit = check.mounting.likely();
   if (fit.difference < kReferenceAgrees && is_delayed(fit.delay_s))
-    refuse(check, imu, where, fit.difference, remedy(Written::as_stated, fit.delay_s));
+    refuse(check, imu, where, fit.difference, remedy(QuaternionConvention::as_stated, fit.delay_s));
 }
 
 }  // namespace

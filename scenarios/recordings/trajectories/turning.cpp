@@ -115,10 +115,11 @@ std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   return even;
 }
 
-Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, Written written) {
-  const bool w_first = written == Written::w_first || written == Written::w_first_inverse;
+Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, QuaternionConvention written) {
+  const bool w_first = written == QuaternionConvention::w_first || written == QuaternionConvention::w_first_inverse;
   const Eigen::Quaterniond q = w_first ? Eigen::Quaterniond(read.x(), read.y(), read.z(), read.w()) : read;
-  return written == Written::inverse || written == Written::w_first_inverse ? q.conjugate() : q;
+  return written == QuaternionConvention::inverse || written == QuaternionConvention::w_first_inverse ? q.conjugate()
+                                                                                                      : q;
 }
 
 /// Compares the rotations of attitude pairs under one interpretation with the gyro's rotations over these pairs.
@@ -127,7 +128,8 @@ class TurningComparison {
   TurningComparison(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                     const sim::ImuRecord& imu)
       : frames_(frames), gyro_(imu), pairs_(pairs_of(attitudes)) {
-    for (const Written written : {Written::as_stated, Written::w_first, Written::inverse, Written::w_first_inverse}) {
+    for (const QuaternionConvention written : {QuaternionConvention::as_stated, QuaternionConvention::w_first,
+                                               QuaternionConvention::inverse, QuaternionConvention::w_first_inverse}) {
       for (std::size_t frame = 0; frame < frames.size(); ++frame) add_reading(written, frame);
     }
   }
@@ -205,7 +207,7 @@ class TurningComparison {
 
  private:
   struct Reading {
-    Written written;
+    QuaternionConvention written;
     std::size_t frame;
     std::vector<Eigen::Quaterniond> seen_I;  ///< rotation of each pair, IMU axes
   };
@@ -214,7 +216,7 @@ class TurningComparison {
     Eigen::Quaterniond turn;
   };
 
-  void add_reading(Written written, std::size_t frame) {
+  void add_reading(QuaternionConvention written, std::size_t frame) {
     const Eigen::Quaterniond& q_AI = frames_[frame].q_AI;
     for (const Reading& other : readings_) {  // mounted alike
       if (other.written == written && angle_rad(frames_[other.frame].q_AI, q_AI) < 1e-3) return;
@@ -278,10 +280,11 @@ double uprightness(const TurningComparison& comparison, const sim::ImuRecord& im
 /// If the rotations do not determine the order and direction of the quaternions, gravity may decide. The comparison
 /// uses the delay of `fit`.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
-  if (fit.written == Written::as_stated) return;
+  if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);
   for (const TurningFit& other : comparison.alike(fit)) {
-    if (other.written != Written::as_stated && uprightness(comparison, imu, other) > uprightness(comparison, imu, fit))
+    if (other.written != QuaternionConvention::as_stated &&
+        uprightness(comparison, imu, other) > uprightness(comparison, imu, fit))
       fit = other;
   }
 }
@@ -293,7 +296,8 @@ void compare_with_gravity(const TurningComparison& comparison, const sim::ImuRec
   check.order_known = alike.size() < 2 || stated > kUpright;
   if (stated > kTilted) return;
   for (const TurningFit& other : alike) {
-    if (other.written != Written::as_stated && uprightness(comparison, imu, other) > kUpright) check.upright = other;
+    if (other.written != QuaternionConvention::as_stated && uprightness(comparison, imu, other) > kUpright)
+      check.upright = other;
   }
 }
 

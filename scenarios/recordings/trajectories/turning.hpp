@@ -28,12 +28,12 @@ struct CandidateFrame {
 };
 
 /// Possible meanings of the quaternions in a pose file.
-enum class Written { as_stated, w_first, inverse, w_first_inverse };
+enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
 /// Difference between the gyro and the attitudes under one interpretation. The difference is the median rotation
 /// difference over pairs of attitudes, as a fraction of the median rotation.
 struct TurningFit {
-  Written written = Written::as_stated;
+  QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
   double delay_s = 0.0;   ///< time by which the stamps of the attitudes are late
   double difference = 0.0;

@@ -30,8 +30,8 @@ System random_system(std::size_t count, std::uint64_t seed) {
     for (double& x : m.reshaped()) x = noise();
   };
   for (std::size_t k = 0; k < count; ++k) {
-    Eigen::Matrix<double, 8, kState> here, next;
-    Eigen::Matrix<double, 8, kBorder> border;
+    Eigen::Matrix<double, 8, kBlockSize> here, next;
+    Eigen::Matrix<double, 8, kBorderSize> border;
     fill(here);
     fill(next);
     fill(border);
@@ -51,27 +51,27 @@ System random_system(std::size_t count, std::uint64_t seed) {
 }
 
 MatrixXd dense_matrix(const System& s) {
-  const Index n = static_cast<Index>(s.blocks.size()) * kState;
-  MatrixXd H = MatrixXd::Zero(n + kBorder, n + kBorder);
+  const Index n = static_cast<Index>(s.blocks.size()) * kBlockSize;
+  MatrixXd H = MatrixXd::Zero(n + kBorderSize, n + kBorderSize);
   for (std::size_t k = 0; k < s.blocks.size(); ++k) {
-    const Index i = static_cast<Index>(k) * kState;
-    H.block(i, i, kState, kState) = s.blocks[k].diagonal;
-    H.block(i, n, kState, kBorder) = s.blocks[k].border;
-    H.block(n, i, kBorder, kState) = s.blocks[k].border.transpose();
+    const Index i = static_cast<Index>(k) * kBlockSize;
+    H.block(i, i, kBlockSize, kBlockSize) = s.blocks[k].diagonal;
+    H.block(i, n, kBlockSize, kBorderSize) = s.blocks[k].border;
+    H.block(n, i, kBorderSize, kBlockSize) = s.blocks[k].border.transpose();
     if (k + 1 == s.blocks.size()) continue;
-    H.block(i, i + kState, kState, kState) = s.blocks[k].coupling;
-    H.block(i + kState, i, kState, kState) = s.blocks[k].coupling.transpose();
+    H.block(i, i + kBlockSize, kBlockSize, kBlockSize) = s.blocks[k].coupling;
+    H.block(i + kBlockSize, i, kBlockSize, kBlockSize) = s.blocks[k].coupling.transpose();
   }
-  H.bottomRightCorner(kBorder, kBorder) = s.corner.matrix;
+  H.bottomRightCorner(kBorderSize, kBorderSize) = s.corner.matrix;
   return H;
 }
 
 VectorXd dense_gradient(const System& s) {
-  const Index n = static_cast<Index>(s.blocks.size()) * kState;
-  VectorXd g(n + kBorder);
+  const Index n = static_cast<Index>(s.blocks.size()) * kBlockSize;
+  VectorXd g(n + kBorderSize);
   for (std::size_t k = 0; k < s.blocks.size(); ++k)
-    g.segment(static_cast<Index>(k) * kState, kState) = s.blocks[k].gradient;
-  g.tail(kBorder) = s.corner.gradient;
+    g.segment(static_cast<Index>(k) * kBlockSize, kBlockSize) = s.blocks[k].gradient;
+  g.tail(kBorderSize) = s.corner.gradient;
   return g;
 }
 
@@ -81,7 +81,7 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     const MatrixXd H = dense_matrix(s);
     const VectorXd want = H.ldlt().solve(dense_gradient(s));
     const MatrixXd covariance = H.inverse();
-    const Index n = static_cast<Index>(count) * kState;
+    const Index n = static_cast<Index>(count) * kBlockSize;
 
     for (std::size_t k = 0; k < count; ++k) {
       ASSERT_TRUE(eliminate(s.blocks[k], k + 1 < count ? &s.blocks[k + 1] : nullptr, s.corner));
@@ -90,20 +90,21 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     BorderMatrix border_covariance;
     ASSERT_TRUE(solve_corner(s.corner, border, border_covariance));
     // condition numbers below 1e5: rounding of 1e-11 at most, measured 1e-13
-    EXPECT_LE((border - want.tail(kBorder)).norm(), 1e-9 * want.norm());
-    EXPECT_LE((border_covariance - covariance.bottomRightCorner(kBorder, kBorder)).norm(), 1e-9 * covariance.norm());
+    EXPECT_LE((border - want.tail(kBorderSize)).norm(), 1e-9 * want.norm());
+    EXPECT_LE((border_covariance - covariance.bottomRightCorner(kBorderSize, kBorderSize)).norm(),
+              1e-9 * covariance.norm());
 
     StateVector step;
     Conditional conditional;
     for (std::size_t k = count; k-- > 0;) {
-      const Index i = static_cast<Index>(k) * kState;
+      const Index i = static_cast<Index>(k) * kBlockSize;
       const bool last = k + 1 == count;
       step = back_substitute(s.blocks[k], last ? nullptr : &step, border);
       conditional = back_conditional(s.blocks[k], last ? nullptr : &conditional);
       const Marginal found = marginal(conditional, border_covariance);
-      EXPECT_LE((step - want.segment(i, kState)).norm(), 1e-9 * want.norm()) << k;
-      EXPECT_LE((found.state - covariance.block(i, i, kState, kState)).norm(), 1e-9 * covariance.norm()) << k;
-      EXPECT_LE((found.cross - covariance.block(i, n, kState, kBorder)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((step - want.segment(i, kBlockSize)).norm(), 1e-9 * want.norm()) << k;
+      EXPECT_LE((found.state - covariance.block(i, i, kBlockSize, kBlockSize)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((found.cross - covariance.block(i, n, kBlockSize, kBorderSize)).norm(), 1e-9 * covariance.norm()) << k;
       EXPECT_LE((rate_covariance(conditional, border_covariance) - found.state.topLeftCorner<3, 3>()).norm(),
                 1e-12 * covariance.norm())
           << k;
@@ -114,15 +115,16 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
 TEST(ArrowSolver, ErrorsMoveTheSolutionAsInTheDenseSystem) {
   for (std::size_t count : {1u, 2u, 17u}) {
     System s = random_system(count, count);
-    const Index n = static_cast<Index>(count) * kState;
+    const Index n = static_cast<Index>(count) * kBlockSize;
     oracles::Gaussian noise(100 + count);
-    MatrixXd gained(n + kBorder, kErrors);
+    MatrixXd gained(n + kBorderSize, kErrorCount);
     for (double& x : gained.reshaped()) x = noise();
     const MatrixXd want = dense_matrix(s).ldlt().solve(gained);
 
-    BorderErrors border = gained.bottomRows(kBorder);
+    BorderErrors border = gained.bottomRows(kBorderSize);
     std::vector<ErrorMatrix> errors(count);
-    for (std::size_t k = 0; k < count; ++k) errors[k] = gained.middleRows<kState>(static_cast<Index>(k) * kState);
+    for (std::size_t k = 0; k < count; ++k)
+      errors[k] = gained.middleRows<kBlockSize>(static_cast<Index>(k) * kBlockSize);
     for (std::size_t k = 0; k < count; ++k) {
       const bool last = k + 1 == count;
       ASSERT_TRUE(eliminate(s.blocks[k], last ? nullptr : &s.blocks[k + 1], s.corner));
@@ -132,18 +134,20 @@ TEST(ArrowSolver, ErrorsMoveTheSolutionAsInTheDenseSystem) {
     BorderMatrix border_covariance;
     ASSERT_TRUE(solve_corner(s.corner, step, border_covariance));
     const BorderErrors border_moved = border_covariance * border;
-    EXPECT_LE((border_moved - want.bottomRows(kBorder)).norm(), 1e-9 * want.norm());
+    EXPECT_LE((border_moved - want.bottomRows(kBorderSize)).norm(), 1e-9 * want.norm());
     ErrorMatrix moved;
     for (std::size_t k = count; k-- > 0;) {
       moved = back_substitute_errors(s.blocks[k], errors[k], k + 1 == count ? nullptr : &moved, border_moved);
-      EXPECT_LE((moved - want.middleRows<kState>(static_cast<Index>(k) * kState)).norm(), 1e-9 * want.norm()) << k;
+      EXPECT_LE((moved - want.middleRows<kBlockSize>(static_cast<Index>(k) * kBlockSize)).norm(), 1e-9 * want.norm())
+          << k;
     }
   }
 }
 
 TEST(ArrowSolver, EliminatingTheFirstBlockIsItsMarginalisation) {
   System s = random_system(4, 9);
-  const MatrixXd want = dense_matrix(s).inverse().bottomRightCorner(3 * kState + kBorder, 3 * kState + kBorder);
+  const MatrixXd want =
+      dense_matrix(s).inverse().bottomRightCorner(3 * kBlockSize + kBorderSize, 3 * kBlockSize + kBorderSize);
   ASSERT_TRUE(eliminate(s.blocks[0], &s.blocks[1], s.corner));
   System rest{{s.blocks.begin() + 1, s.blocks.end()}, s.corner};
   EXPECT_LE((dense_matrix(rest).inverse() - want).norm(), 1e-9 * want.norm());

@@ -36,8 +36,8 @@ DeviceUncertainty::Posterior posterior_by(const DeviceUncertainty& device, const
 TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
   const SensorErrorPriors sizes;
   const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.3), {});
-  EXPECT_NEAR(posterior.unlike, 0.3, 1e-12);
-  const SensorErrors::Vector sheet = prior_deviations(sizes, 0.0), unknown = prior_deviations(sizes, 1.0);
+  EXPECT_NEAR(posterior.uncalibrated_probability, 0.3, 1e-12);
+  const SensorErrors::Vector sheet = prior_sigmas(sizes, 0.0), unknown = prior_sigmas(sizes, 1.0);
   const SensorErrors::Vector expected = 0.7 * sheet.cwiseAbs2() + 0.3 * unknown.cwiseAbs2();
   EXPECT_LT((posterior.covariance.diagonal() - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ((posterior.covariance - SensorErrors::Matrix(posterior.covariance.diagonal().asDiagonal())).norm(), 0.0);
@@ -57,7 +57,7 @@ TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
   };
   const double of_sheet = 0.7 * density(sizes.delay_s), of_unknown = 0.3 * density(sizes.delay_uncalibrated_s);
   const double unlike = of_unknown / (of_sheet + of_unknown);
-  EXPECT_NEAR(posterior.unlike, unlike, 1e-9);
+  EXPECT_NEAR(posterior.uncalibrated_probability, unlike, 1e-9);
   const auto about_nil = [&](double size) {
     const double told = 1.0 / (believed_s * believed_s), mean = delay_s * told / (told + 1.0 / (size * size));
     return 1.0 / (told + 1.0 / (size * size)) + mean * mean;
@@ -70,18 +70,18 @@ TEST(DeviceUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
   const DeviceUncertainty device({}, 0.3);
   const DeviceUncertainty::Posterior late = posterior_by(device, delay_of(8e-3, 1e-4)),
                                      in_time = posterior_by(device, delay_of(0.0, 1e-5));
-  EXPECT_GT(late.unlike, 0.999);
+  EXPECT_GT(late.uncalibrated_probability, 0.999);
   EXPECT_GT(late.covariance(kDelay, kDelay), 8e-3 * 8e-3 * 0.9);
   EXPECT_GT(late.covariance(0, 0), 0.9 * 0.01 * 0.01) << "who states one wrongly states all wrongly";
-  EXPECT_LT(in_time.unlike, 0.02);
-  EXPECT_GT(device.common_delay_s2(late), 10.0 * device.common_delay_s2(in_time));
+  EXPECT_LT(in_time.uncalibrated_probability, 0.02);
+  EXPECT_GT(device.common_delay_variance_s2(late), 10.0 * device.common_delay_variance_s2(in_time));
 }
 
 TEST(DeviceUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
   const SensorErrorPriors sizes;
   const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
-  EXPECT_EQ(posterior.unlike, 0.0);
-  EXPECT_LE(posterior.covariance(0, 0), 1.001 * prior_deviations(sizes, 0.0)[0] * prior_deviations(sizes, 0.0)[0]);
+  EXPECT_EQ(posterior.uncalibrated_probability, 0.0);
+  EXPECT_LE(posterior.covariance(0, 0), 1.001 * prior_sigmas(sizes, 0.0)[0] * prior_sigmas(sizes, 0.0)[0]);
 }
 
 TEST(DeviceUncertainty, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
@@ -91,7 +91,7 @@ TEST(DeviceUncertainty, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
   DeviceUncertainty::Posterior before;
   device.reset(before);
   EXPECT_EQ(posterior_by(device, bad).covariance, before.covariance);
-  EXPECT_EQ(posterior_by(device, bad).unlike, before.unlike);
+  EXPECT_EQ(posterior_by(device, bad).uncalibrated_probability, before.uncalibrated_probability);
 }
 
 struct Held {

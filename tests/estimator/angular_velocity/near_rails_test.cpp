@@ -29,7 +29,7 @@ RailPlanes planes(double slope = -0.02) {
 
 struct Twirl {
   std::vector<ImuSample> samples;
-  std::vector<double> lost_rad_s;  // what the window of each lost
+  std::vector<double> expected_deficit_rad_s;  // what the window of each lost
 };
 
 // Means over windows of a rate about x that swings with `amplitude` at so many Hz; each `times` said.
@@ -48,7 +48,7 @@ Twirl twirl(double amplitude_rad_s, double hz, int times = 1) {
       ImuSample sample;
       sample.angular_velocity_rad_s = Vector3d(read, 0.0, 0.0);
       out.samples.push_back(sample);
-      out.lost_rad_s.push_back(std::abs(whole - read));
+      out.expected_deficit_rad_s.push_back(std::abs(whole - read));
     }
   }
   return out;
@@ -65,7 +65,7 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
       for (std::size_t k = 0; k < near.size(); ++k) {
         const Vector3d& reading = motion.samples[k].angular_velocity_rad_s;
         if (known.element[0]->holds(reading, reading.x() < 0.0 ? -1 : 1)) continue;
-        const bool lost = motion.lost_rad_s[k] > 1e-6;
+        const bool lost = motion.expected_deficit_rad_s[k] > 1e-6;
         in_part += lost ? 1 : 0;
         told += lost && near[k] == 1 ? 1 : 0;
         besides += !lost && near[k] != 0 ? 1 : 0;

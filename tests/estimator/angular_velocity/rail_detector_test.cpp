@@ -55,7 +55,7 @@ TEST(RailDetector, FindsAPlateauThatNobodyStatedAndItsRaggedEdges) {
     if (std::abs(run[k].angular_velocity_rad_s.x()) < 0.97 * 10.5) {
       EXPECT_EQ(got[k].gyro, 0) << k;
     }
-    EXPECT_EQ(got[k].missing_gyro, 0);
+    EXPECT_EQ(got[k].unusable_gyro, 0);
   }
   EXPECT_GT(clipped, 200u);
 }
@@ -156,7 +156,7 @@ TEST(RailDetector, AFlipFromRailToRailIsAnOverflow) {
   sample.angular_velocity_rad_s.x() = 10.5;
   EXPECT_EQ(rails.classify(sample, state).gyro, 1);
   sample.angular_velocity_rad_s.x() = -10.2;
-  EXPECT_EQ(rails.classify(sample, state).missing_gyro, 1);
+  EXPECT_EQ(rails.classify(sample, state).unusable_gyro, 1);
   EXPECT_EQ(rails.classify(sample, state).gyro, 0);
   sample.angular_velocity_rad_s.x() = 10.5;
   EXPECT_EQ(rails.classify(sample, state).gyro, 1);

@@ -18,7 +18,7 @@
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -130,7 +130,7 @@ TEST(RailJudgement, RailsOfTwoSignsThatDifferAreNoDevicesOwn) {
     std::vector<bool> lost;
     const std::vector<ImuSample> samples = swung_wand(offset_rad_s, lost);
     const ClippingFinder::Found found = ClippingFinder({}).find(samples);
-    EXPECT_EQ(found.rails.upright, offset_rad_s == 0.0) << offset_rad_s;
+    EXPECT_EQ(found.rails.gyro_clips_after_compensation, offset_rad_s == 0.0) << offset_rad_s;
     int of_all = 0, missed = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       of_all += lost[k];
@@ -234,7 +234,7 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   ASSERT_GT(count, 50);
   EXPECT_LT(along, 0.3 * by_axis);
   std::vector<Clipping> few(3);
-  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).trouble, Trouble::too_few);
+  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code, ErrorCode::too_few);
 }
 
 // Published with the upright rail of each axis, judged by planes on demand.
@@ -260,8 +260,8 @@ TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
 // The first readings, at rest as a rule, tell the noise however much is forgotten after them.
 TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   for (const int readings_max : {64, 1024}) {
-    const RailWatch watch({.clipping = {}, .readings_max = readings_max});
-    RailWatch::State state = watch.start();
+    const StreamingClippingFinder watch({.clipping = {}, .readings_max = readings_max});
+    StreamingClippingFinder::State state = watch.start();
     const auto reading = [](int k) {
       // a slow wobble near one level: none of it is dull
       return Vector3d(9.0 + 0.3 * std::sin(0.7 * k) + 1e-6 * k, 0.1 * std::cos(0.3 * k), 1e-3 * k);
@@ -289,16 +289,16 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
 TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found batch = ClippingFinder({}).find(tumble.samples);
-  const RailWatch watch({});
-  RailWatch::State state = watch.start();
+  const StreamingClippingFinder watch({});
+  StreamingClippingFinder::State state = watch.start();
   for (const ImuSample& sample : tumble.samples) watch.observe(sample, state);
   int clipped = 0, apart = 0, apart_by_before = 0;
   for (std::size_t k = 1; k + 1 < tumble.samples.size(); ++k) {
     const ImuSample *const before = &tumble.samples[k - 1], &now = tumble.samples[k], *const after = before + 2;
     clipped += batch.clippings[k].gyro != 0;
-    apart += watch.judge(before, now, state, after).gyro != batch.clippings[k].gyro;
-    apart_by_before += watch.judge(before, now, state).gyro != batch.clippings[k].gyro;
-    watch.upright_rails().classify(now, state.known.upright_rails);
+    apart += watch.classify(before, now, state, after).gyro != batch.clippings[k].gyro;
+    apart_by_before += watch.classify(before, now, state).gyro != batch.clippings[k].gyro;
+    watch.axis_aligned_rails().classify(now, state.known.axis_aligned_rails);
   }
   std::printf("%d clipped, apart %d, without the sample after %d\n", clipped, apart, apart_by_before);
   ASSERT_GT(clipped, 50);
@@ -312,7 +312,7 @@ TEST(RailJudgement, TellsWhatAReadingIsWorth) {
   sample.specific_force_m_s2 = {1.0, -50.0, 2.0};
   Clipping clipping;
   clipping.gyro = 3;
-  clipping.missing_gyro = 4;
+  clipping.unusable_gyro = 4;
   clipping.accel = 2;
   EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 0), ElementReading::clipped_high);
   EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 1), ElementReading::clipped_low);

@@ -117,10 +117,10 @@ TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
     for (const double down : {0.25, 0.5}) {
       std::vector<RateObservation> tops = cut_tops(8.5, 0.4, down, sign);
       inflate_motion_plateaus(plane_of_x(8.7), {}, 0.02, 0.005, tops);
-      EXPECT_NEAR(2.0 * tops[30].lost_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
+      EXPECT_NEAR(2.0 * tops[30].expected_deficit_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
       EXPECT_EQ(tops[30].suspect, 2u);
       EXPECT_EQ(tops[5].suspect, 0u);
-      EXPECT_EQ(tops[30].lost_sigma_rad_s.x(), 0.0);
+      EXPECT_EQ(tops[30].expected_deficit_sigma_rad_s.x(), 0.0);
       // neither clipped nor measured, as the stream has it
       EXPECT_EQ(rate_source(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::bounded_only);
       EXPECT_EQ(rate_source(tops[5], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::measured);
@@ -148,23 +148,23 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
 // A rail of 0.06 of tilt lies no lower than 9.5 - 0.06 * 2 where 9.5 was read beside 2; a reading of 8.5 beside 0.5 is
 // at most at one of 8.53.
 TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
-  LeastRails least;
+  MinSaturationLevels least;
   least.add({2.0, 9.5, 0.0});
-  EXPECT_TRUE(least.refute({0.5, 8.5, 0.0}, 1));
-  EXPECT_FALSE(least.refute({0.5, 9.4, 0.0}, 1));
-  EXPECT_FALSE(least.refute({13.0, 8.5, 0.0}, 1));  // a tilt makes more of so much motion beside
-  EXPECT_FALSE(least.refute({0.5, -8.5, 0.0}, 1));  // nothing was read on that side
-  EXPECT_FALSE(least.refute({8.5, 0.5, 0.0}, 0));   // nor of that element
+  EXPECT_TRUE(least.rules_out({0.5, 8.5, 0.0}, 1));
+  EXPECT_FALSE(least.rules_out({0.5, 9.4, 0.0}, 1));
+  EXPECT_FALSE(least.rules_out({13.0, 8.5, 0.0}, 1));  // a tilt makes more of so much motion beside
+  EXPECT_FALSE(least.rules_out({0.5, -8.5, 0.0}, 1));  // nothing was read on that side
+  EXPECT_FALSE(least.rules_out({8.5, 0.5, 0.0}, 0));   // nor of that element
 
   for (const bool beyond : {false, true}) {
     std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
-    const LeastRails known = beyond ? least : LeastRails{};
+    const MinSaturationLevels known = beyond ? least : MinSaturationLevels{};
     inflate_motion_plateaus(plane_of_x(8.7), known, 0.02, 0.005, top);
     EXPECT_EQ(top[30].suspect != 0, !beyond);
     RateObservation single = top[30];
     single.suspect = 0;
     inflate_possible_saturation(plane_of_x(8.5), known, 0.005, &top[20].sample, single, &top[40].sample);
-    EXPECT_EQ(single.lone != 0, !beyond);
+    EXPECT_EQ(single.isolated_high_axes != 0, !beyond);
   }
 }
 

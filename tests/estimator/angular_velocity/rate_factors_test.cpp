@@ -34,7 +34,7 @@ Point random_point(oracles::Gaussian& noise) {
 Derivative analytic(const Factor& factor, const Point& p) {
   const RateFactor f = factor(p.knot, p.rig);
   Derivative d;
-  d << f.by_knot, f.jacobian_calibration;
+  d << f.jacobian_knot, f.jacobian_calibration;
   return d;
 }
 
@@ -184,16 +184,16 @@ TEST(LateFlight, DerivativesAreThoseOfTheResidual) {
     const Point p = flying_point(noise);
     const double delay_s = 0.005 * noise();
     const Factor factor = [&](const RateKnot& k, const RigConstants& r) {
-      return late_flight_factor(k, r, kReading, delay_s, nullptr);
+      return delayed_flight_factor(k, r, kReading, delay_s, nullptr);
     };
     // a polynomial of low degree in all but the inertia: differences err by the step's square
     EXPECT_LT(disagreement(analytic(factor, p), numeric(factor, p)), 1e-5);
-    Vector3d by_delay;
-    (void)late_flight_factor(p.knot, p.rig, kReading, delay_s, &by_delay);
+    Vector3d jacobian_delay;
+    (void)delayed_flight_factor(p.knot, p.rig, kReading, delay_s, &jacobian_delay);
     constexpr double kStep_s = 1e-6;
-    const Vector3d moved = late_flight_factor(p.knot, p.rig, kReading, delay_s + kStep_s, nullptr).residual -
-                           late_flight_factor(p.knot, p.rig, kReading, delay_s - kStep_s, nullptr).residual;
-    EXPECT_LT((moved / (2.0 * kStep_s) - by_delay).norm(), 1e-5 * (1.0 + by_delay.norm()));
+    const Vector3d moved = delayed_flight_factor(p.knot, p.rig, kReading, delay_s + kStep_s, nullptr).residual -
+                           delayed_flight_factor(p.knot, p.rig, kReading, delay_s - kStep_s, nullptr).residual;
+    EXPECT_LT((moved / (2.0 * kStep_s) - jacobian_delay).norm(), 1e-5 * (1.0 + jacobian_delay.norm()));
   }
 }
 
@@ -201,11 +201,11 @@ TEST(LateFlight, IsTheFlightOfTheEarlierInstant) {
   oracles::Gaussian noise(13);
   for (int i = 0; i < 20; ++i) {
     const Point p = flying_point(noise);
-    EXPECT_EQ(late_flight_factor(p.knot, p.rig, kReading, 0.0, nullptr).residual,
+    EXPECT_EQ(delayed_flight_factor(p.knot, p.rig, kReading, 0.0, nullptr).residual,
               flight_factor(p.knot, p.rig, kReading).residual);
     const auto off = [&](double delay_s) {
       const RateKnot earlier = turned(p.knot, p.rig, -delay_s);
-      return (late_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr).residual -
+      return (delayed_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr).residual -
               flight_factor(earlier, p.rig, kReading).residual)
           .norm();
     };
@@ -223,11 +223,11 @@ TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
   oracles::Gaussian noise(13);
   for (const double delay_s : {0.0, 5e-4, 3e-3}) {
     const Point p = random_point(noise);
-    const RateFactor whole = late_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr),
-                     part = late_flight_by_rig(p.knot, p.rig, kReading, delay_s);
+    const RateFactor whole = delayed_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr),
+                     part = delayed_flight_jacobian_calibration(p.knot, p.rig, kReading, delay_s);
     EXPECT_EQ(part.residual, whole.residual);
     EXPECT_EQ(part.jacobian_calibration.leftCols<9>(), whole.jacobian_calibration.leftCols<9>());
-    EXPECT_TRUE(part.by_knot.isZero(0.0));
+    EXPECT_TRUE(part.jacobian_knot.isZero(0.0));
     EXPECT_TRUE(part.jacobian_calibration.rightCols<RigConstants::kSize - 9>().isZero(0.0));
     EXPECT_FALSE(whole.jacobian_calibration.middleCols<5>(9).isZero(0.0) && delay_s > 0.0) << "by inertia too";
   }

@@ -41,32 +41,32 @@ TEST(RateSmootherInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
   std::vector<RateState> out(2);
   RateReport report;
   report.iterations = 77;
-  const auto expect = [&](const std::vector<ImuSample>& samples, Trouble trouble, const std::string& field) {
+  const auto expect = [&](const std::vector<ImuSample>& samples, ErrorCode error_code, const std::string& field) {
     const Status status = smoother.estimate(samples, out, report);
-    EXPECT_EQ(status.trouble, trouble) << status.message();
+    EXPECT_EQ(status.error_code, error_code) << status.message();
     EXPECT_EQ(status.field, field);
     EXPECT_EQ(out.size(), 2u);
     EXPECT_EQ(report.iterations, 77);
     return status;
   };
   const std::vector<ImuSample> good = short_tumble().samples;
-  expect({}, Trouble::empty, "samples");
-  EXPECT_EQ(expect({good[0]}, Trouble::too_few, "samples").bound, 2.0);
+  expect({}, ErrorCode::empty, "samples");
+  EXPECT_EQ(expect({good[0]}, ErrorCode::too_few, "samples").bound, 2.0);
   std::vector<ImuSample> bad = good;
   bad[50].angular_velocity_rad_s.y() = std::nan("");
-  EXPECT_TRUE(std::isnan(expect(bad, Trouble::non_finite, "angular_velocity_rad_s").value));
+  EXPECT_TRUE(std::isnan(expect(bad, ErrorCode::non_finite, "angular_velocity_rad_s").value));
   bad = good;
   bad[50].specific_force_m_s2.y() = INFINITY;
-  expect(bad, Trouble::non_finite, "specific_force_m_s2");
+  expect(bad, ErrorCode::non_finite, "specific_force_m_s2");
   bad = good;
   bad[50].time_ns = bad[49].time_ns;
-  EXPECT_EQ(expect(bad, Trouble::time_order, "time_ns").bound, 5e8);
+  EXPECT_EQ(expect(bad, ErrorCode::time_order, "time_ns").bound, 5e8);
   bad = good;
   bad[50].time_ns = bad[40].time_ns;
-  expect(bad, Trouble::time_order, "time_ns");
+  expect(bad, ErrorCode::time_order, "time_ns");
   bad = good;
   for (std::size_t k = 50; k < bad.size(); ++k) bad[k].time_ns += 2'000'000'000;
-  EXPECT_DOUBLE_EQ(expect(bad, Trouble::gap, "time_s since the last sample").value, 2.01);
+  EXPECT_DOUBLE_EQ(expect(bad, ErrorCode::gap, "time_s since the last sample").value, 2.01);
 }
 
 TEST(RateSmootherInput, ShortGapsAreBridged) {

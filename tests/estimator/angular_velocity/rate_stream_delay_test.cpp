@@ -11,7 +11,7 @@
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
-#include "tumble/angular_velocity/detail/stroke_sums.hpp"
+#include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -23,16 +23,16 @@ using Eigen::Vector3d;
 constexpr double kStrokePeriod_s = 0.01;
 
 // Struck every tenth interval, the accelerometer `late` eighths of a sample behind: turns that go with the force.
-StrokeSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0) {
-  StrokeSums out;
+ImpactSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0) {
+  ImpactSums out;
   for (int k = 0; k < intervals; ++k) {
-    StrokeSums::Tried force;
+    ImpactSums::DelayGrid force;
     const auto at = [&](double eighth) {
       const double since = std::fmod(8.0 * k + eighth + 800.0, 80.0);
       const double phase = std::min(since, 80.0 - since) / 8.0;  // samples from the nearest stroke
       return between_m_s2 + 100.0 * std::exp(-0.5 * phase * phase);
     };
-    for (int i = 0; i < StrokeSums::kTried; ++i) force[i] = at(i - StrokeSums::kMost - late);
+    for (int i = 0; i < ImpactSums::kDelayCount; ++i) force[i] = at(i - ImpactSums::kDelayMax - late);
     out.add(3.0 * at(0.0), force);
   }
   return out;
@@ -66,7 +66,7 @@ RateStream::Params looking(bool looks_for_it = true) {
   return out;
 }
 
-TEST(StrokeSums, TellADelayThatIsThere) {
+TEST(ImpactSums, TellADelayThatIsThere) {
   for (const int late : {-20, -3, 0, 8, 13, 30}) {
     const TriadDelay told = struck_every_tenth(late, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s);
     EXPECT_NEAR(told.delay_s, late * kStrokePeriod_s / 8.0, 1e-9) << late;
@@ -75,13 +75,13 @@ TEST(StrokeSums, TellADelayThatIsThere) {
   }
 }
 
-TEST(StrokeSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
+TEST(ImpactSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
   EXPECT_EQ(struck_every_tenth(8, 29).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
   EXPECT_EQ(struck_every_tenth(8, 200, 10.0).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
       << "never without a force";
   EXPECT_EQ(struck_every_tenth(36, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
   // what is forgotten counts for less of each, and for the same delay
-  StrokeSums half = struck_every_tenth(8, 200);
+  ImpactSums half = struck_every_tenth(8, 200);
   half.decay(0.5);
   EXPECT_NEAR(half.intervals, 100.0, 1e-12);
   EXPECT_NEAR(half.estimate_delay(kStrokePeriod_s, kStrokePeriod_s).delay_s, kStrokePeriod_s, 1e-9);
@@ -97,10 +97,10 @@ TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
       return std::exp(-0.5 * delay_s * delay_s / variance) / std::sqrt(variance);
     };
     const double odds = 0.7 / 0.3 * density(sizes.delay_s) / density(sizes.delay_uncalibrated_s);
-    EXPECT_NEAR(DeviceUncertainty(sizes, 0.3).odds_of_sheet(delay_s, sigma_s), odds, 1e-9 * odds) << delay_s;
+    EXPECT_NEAR(DeviceUncertainty(sizes, 0.3).data_sheet_odds(delay_s, sigma_s), odds, 1e-9 * odds) << delay_s;
   }
-  EXPECT_GT(DeviceUncertainty(sizes, 0.3).odds_of_sheet(4.5e-3, sigma_s), 0.05);
-  EXPECT_LT(DeviceUncertainty(sizes, 0.3).odds_of_sheet(6e-3, sigma_s), 0.05);
+  EXPECT_GT(DeviceUncertainty(sizes, 0.3).data_sheet_odds(4.5e-3, sigma_s), 0.05);
+  EXPECT_LT(DeviceUncertainty(sizes, 0.3).data_sheet_odds(6e-3, sigma_s), 0.05);
 }
 
 // One number alone: of what readings say three hundredths are believed, and strokes are entered to be believed in full.
@@ -108,14 +108,14 @@ TEST(RateStreamDelay, AFurtherDelayIsTheWeightedMean) {
   SensorErrorEvidence told;
   const double of_readings_s = 2e-4, of_strokes_s = 1.5e-3, reach_s = 0.04;
   const double readings = DeviceUncertainty::kEvidenceWeight / (of_readings_s * of_readings_s),
-               strokes = 1.0 / (of_strokes_s * of_strokes_s);
+               impacts = 1.0 / (of_strokes_s * of_strokes_s);
   told.information(SensorErrors::kDelay, SensorErrors::kDelay) =
-      (readings + strokes) / DeviceUncertainty::kEvidenceWeight;
-  told.gradient[SensorErrors::kDelay] = (readings * 1e-3 - strokes * 2e-3) / DeviceUncertainty::kEvidenceWeight;
-  const double expected = (readings * 1e-3 - strokes * 2e-3) / (readings + strokes + 1.0 / (reach_s * reach_s));
-  EXPECT_NEAR(DeviceUncertainty({}, 0.3).further_delay_s(told, reach_s), expected, 1e-12);
+      (readings + impacts) / DeviceUncertainty::kEvidenceWeight;
+  told.gradient[SensorErrors::kDelay] = (readings * 1e-3 - impacts * 2e-3) / DeviceUncertainty::kEvidenceWeight;
+  const double expected = (readings * 1e-3 - impacts * 2e-3) / (readings + impacts + 1.0 / (reach_s * reach_s));
+  EXPECT_NEAR(DeviceUncertainty({}, 0.3).delay_correction_s(told, reach_s), expected, 1e-12);
   told.information(SensorErrors::kDelay, SensorErrors::kDelay) = -1e12;
-  EXPECT_EQ(DeviceUncertainty({}, 0.3).further_delay_s(told, reach_s), 0.0);
+  EXPECT_EQ(DeviceUncertainty({}, 0.3).delay_correction_s(told, reach_s), 0.0);
 }
 
 TEST(RateStreamDelay, IsThatOfTheBatch) {
@@ -135,7 +135,7 @@ TEST(RateStreamDelay, IsThatOfTheBatch) {
     EXPECT_NEAR(errors.errors.accel_delay_s, 0.01, 3.0 * sigma_s) << seed;
     EXPECT_NEAR(errors.errors.accel_delay_s, report.sensor_errors.errors.accel_delay_s, 3.0 * sigma_s) << seed;
     EXPECT_LT(sigma_s, 2e-3);
-    EXPECT_EQ(state.device.front().posterior.unlike, 1.0);
+    EXPECT_EQ(state.device.front().posterior.uncalibrated_probability, 1.0);
   }
   EXPECT_GE(found, 4);
 }
@@ -173,7 +173,7 @@ TEST(RateStreamDelay, OneThatChangesItsSignIsFollowedOrDropped) {
         ASSERT_TRUE(method.push(sample, state, one).ok());
       }
     }
-    EXPECT_LT(state.device.front().delay.in_use_s, 5e-3) << seed;
+    EXPECT_LT(state.device.front().delay.applied_delay_s, 5e-3) << seed;
     dropped += found ? 1 : 0;
   }
   EXPECT_GE(dropped, 2);
@@ -249,10 +249,10 @@ TEST(RateStreamDelay, SplittingAnywhereChangesNothing) {
   other.window[3].read.force_m_s2.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
-  other.device.front().delay.strokes.product[7] += 1e-9;
+  other.device.front().delay.impacts.product[7] += 1e-9;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
-  other.device.front().delay.in_use_s = 1.0;
+  other.device.front().delay.applied_delay_s = 1.0;
   EXPECT_STREQ(method.check_state(other).field, "delay.in_use_s");
 }
 

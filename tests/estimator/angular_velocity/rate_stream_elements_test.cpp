@@ -74,7 +74,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
       RateReport report;
       ASSERT_TRUE(RateSmoother(batch_params).estimate(tumble.samples, batch, report).ok());
       ASSERT_EQ(live.size(), batch.size());
-      EXPECT_EQ(state.rails.known.upright, report.clips_after_compensation);
+      EXPECT_EQ(state.rails.known.gyro_clips_after_compensation, report.clips_after_compensation);
       std::vector<double> apart;
       int judged_apart = 0;
       for (std::size_t k = 0; k < batch.size(); ++k) {
@@ -117,7 +117,7 @@ TEST(RateStreamElements, SplittingAnywhereChangesNothing) {
   other.rails.memory[0].readings.back().x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
-  other.rails.known.upright = !other.rails.known.upright;
+  other.rails.known.gyro_clips_after_compensation = !other.rails.known.gyro_clips_after_compensation;
   EXPECT_FALSE(RateStream::equal(other, whole));
 }
 
@@ -256,7 +256,8 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
       if (rate) out.push_back(*rate);
       if (k != kTop + 3) continue;
       ASSERT_TRUE(state.rails.known.planes.element[0]);
-      for (const RateStream::Knot& knot : state.window) suspect += (knot.observation.may_hide() >> 1 & 1) != 0;
+      for (const RateStream::Knot& knot : state.window)
+        suspect += (knot.observation.possibly_saturated_axes() >> 1 & 1) != 0;
     }
     EXPECT_GE(suspect, 3) << seed;
     for (std::size_t k = kTop; k < kTop + 4; ++k) {

@@ -147,14 +147,14 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   other.window[3].observation.subsample_saturated ^= 1;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
-  other.window[3].observation.lost_rad_s.x() += 1e-12;
+  other.window[3].observation.expected_deficit_rad_s.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
-  other.window[3].observation.lost_sigma_rad_s.x() += 1e-12;
+  other.window[3].observation.expected_deficit_sigma_rad_s.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
-  ASSERT_TRUE(other.left);
-  other.left->rate_rad_s.x() += 1e-12;
+  ASSERT_TRUE(other.last_marginalised);
+  other.last_marginalised->rate_rad_s.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
 }
 
@@ -209,7 +209,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
     if (k % 97 == 0) split = RateStream::State(split);
   }
   EXPECT_TRUE(RateStream::equal(whole, split));
-  split.waiting += 1;
+  split.samples_since_step += 1;
   EXPECT_FALSE(RateStream::equal(whole, split));
 }
 
@@ -289,23 +289,23 @@ TEST(RateStream, BadSamplesGiveAStatusAndLeaveTheStateAlone) {
   std::optional<RateState> one;
   for (std::size_t k = 0; k < 120; ++k) ASSERT_TRUE(method.push(samples[k], state, one).ok());
   const RateStream::State before = state;
-  const auto expect = [&](ImuSample sample, Trouble trouble) {
+  const auto expect = [&](ImuSample sample, ErrorCode error_code) {
     const Status status = method.push(sample, state, one);
-    EXPECT_EQ(status.trouble, trouble) << status.message();
+    EXPECT_EQ(status.error_code, error_code) << status.message();
     EXPECT_FALSE(one.has_value());
     EXPECT_TRUE(RateStream::equal(state, before));
   };
   ImuSample bad = samples[120];
   bad.angular_velocity_rad_s.x() = std::nan("");
-  expect(bad, Trouble::non_finite);
+  expect(bad, ErrorCode::non_finite);
   bad = samples[120];
   bad.specific_force_m_s2.z() = INFINITY;
-  expect(bad, Trouble::non_finite);
-  expect(samples[119], Trouble::time_order);
-  expect(samples[100], Trouble::time_order);
+  expect(bad, ErrorCode::non_finite);
+  expect(samples[119], ErrorCode::time_order);
+  expect(samples[100], ErrorCode::time_order);
   bad = samples[120];
   bad.time_ns += 2'000'000'000;
-  expect(bad, Trouble::gap);
+  expect(bad, ErrorCode::gap);
   EXPECT_TRUE(method.push(samples[120], state, one).ok());
 }
 
@@ -364,8 +364,8 @@ TEST(RateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
   EXPECT_EQ(far.value, -11.0);
   EXPECT_EQ(far.bound, -10.0);
   EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.elements[5] = std::nan(""); }).field, "rig constants");
-  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(3, 3) = 0.0; }).trouble, Trouble::degenerate);
-  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).trouble, Trouble::degenerate);
+  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(3, 3) = 0.0; }).error_code, ErrorCode::degenerate);
+  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).error_code, ErrorCode::degenerate);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Watched {
 
 /// Samples of a body that turns: the gyro reads every `period` of them, a quarter of one after the first. Its rate
 /// rises by 1e-4 rad/s a sample.
-Watched watch_repeats(double period, double rate_rad_s, bool clipped = false) {
+Watched detect_frozen_units(double period, double rate_rad_s, bool clipped = false) {
   Watched out;
   const RepeatDetector holds;
   double before = -1.0;
@@ -42,7 +42,7 @@ Watched watch_repeats(double period, double rate_rad_s, bool clipped = false) {
 
 TEST(RepeatDetector, TellsPeriodAndRepeats) {
   for (const double period : {1.25, 1.8, 3.3, 7.9}) {
-    const Watched found = watch_repeats(period, 1.0);
+    const Watched found = detect_frozen_units(period, 1.0);
     const RepeatedReading& gyro = found.state.of(Triad::gyro);
     ASSERT_TRUE(gyro.is_slower_than_log()) << period;
     EXPECT_NEAR(gyro.period_samples, period, 0.01 * period);
@@ -56,21 +56,21 @@ TEST(RepeatDetector, TellsPeriodAndRepeats) {
 }
 
 TEST(RepeatDetector, WhatIsStaleIsTheSlopeTimesTheAge) {
-  const Watched found = watch_repeats(3.3, 1.0);
+  const Watched found = detect_frozen_units(3.3, 1.0);
   const RepeatedReading& gyro = found.state.of(Triad::gyro);
   const double behind = gyro.age_samples + 0.5 * (gyro.period_samples - 1.0);
-  EXPECT_NEAR(gyro.stale().y(), 1e-4 * behind, 1e-4 * 0.05 * behind);
-  EXPECT_EQ(gyro.stale().x(), 0.0);
+  EXPECT_NEAR(gyro.change_since_reading().y(), 1e-4 * behind, 1e-4 * 0.05 * behind);
+  EXPECT_EQ(gyro.change_since_reading().x(), 0.0);
 }
 
 // Controls: new readings each time, a body that rests, a sensor that froze.
 TEST(RepeatDetector, SaysNothingOfOthers) {
-  EXPECT_FALSE(watch_repeats(1.0, 1.0).state.of(Triad::gyro).is_slower_than_log());
-  EXPECT_EQ(watch_repeats(1.0, 1.0).state.of(Triad::gyro).stale(), Eigen::Vector3d::Zero());
-  EXPECT_FALSE(watch_repeats(3.3, 0.0).state.of(Triad::gyro).is_slower_than_log());
-  EXPECT_FALSE(watch_repeats(1e6, 1.0).state.of(Triad::gyro).is_slower_than_log());
-  EXPECT_FALSE(watch_repeats(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());  // at its rails on all axes
-                                                                                           // it repeats too
+  EXPECT_FALSE(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).is_slower_than_log());
+  EXPECT_EQ(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).change_since_reading(), Eigen::Vector3d::Zero());
+  EXPECT_FALSE(detect_frozen_units(3.3, 0.0).state.of(Triad::gyro).is_slower_than_log());
+  EXPECT_FALSE(detect_frozen_units(1e6, 1.0).state.of(Triad::gyro).is_slower_than_log());
+  EXPECT_FALSE(detect_frozen_units(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());  // at its rails on all
+                                                                                                 // axes it repeats too
 }
 
 }  // namespace

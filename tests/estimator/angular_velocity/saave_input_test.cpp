@@ -63,37 +63,37 @@ TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
   const Saave saave(stated_device());
   std::vector<RateState> out(2);
   out[1].clipped_axes = 5;
-  const auto expect = [&](const std::vector<ImuSample>& run, Trouble trouble, const std::string& field) {
+  const auto expect = [&](const std::vector<ImuSample>& run, ErrorCode error_code, const std::string& field) {
     const Status status = saave.estimate(run, out);
-    EXPECT_EQ(status.trouble, trouble) << status.message();
+    EXPECT_EQ(status.error_code, error_code) << status.message();
     EXPECT_EQ(status.field, field);
     EXPECT_EQ(out.size(), 2u);
     EXPECT_EQ(out.at(1).clipped_axes, 5);
     return status;
   };
-  EXPECT_EQ(expect({}, Trouble::empty, "samples").bound, 1.0);
+  EXPECT_EQ(expect({}, ErrorCode::empty, "samples").bound, 1.0);
 
   std::vector<ImuSample> run = tumbling_run(30);
   run[20].angular_velocity_rad_s.z() = std::nan("");
-  EXPECT_TRUE(std::isnan(expect(run, Trouble::non_finite, "angular_velocity_rad_s").value));
+  EXPECT_TRUE(std::isnan(expect(run, ErrorCode::non_finite, "angular_velocity_rad_s").value));
 
   run = tumbling_run(30);
   run[20].specific_force_m_s2.x() = -INFINITY;
-  EXPECT_EQ(expect(run, Trouble::non_finite, "specific_force_m_s2").value, -INFINITY);
+  EXPECT_EQ(expect(run, ErrorCode::non_finite, "specific_force_m_s2").value, -INFINITY);
 
   run = tumbling_run(30);
   run[7].time_ns = run[6].time_ns;
-  EXPECT_EQ(expect(run, Trouble::time_order, "time_ns").value, 6e7);
+  EXPECT_EQ(expect(run, ErrorCode::time_order, "time_ns").value, 6e7);
 
   run = tumbling_run(30);
   run[7].time_ns = run[4].time_ns;
-  const Status falling = expect(run, Trouble::time_order, "time_ns");
+  const Status falling = expect(run, ErrorCode::time_order, "time_ns");
   EXPECT_EQ(falling.value, 4e7);
   EXPECT_EQ(falling.bound, 6e7);
 
   run = tumbling_run(30);
   for (std::size_t k = 9; k < run.size(); ++k) run[k].time_ns += 1'500'000'000;
-  const Status gap = expect(run, Trouble::gap, "time_s since the last sample");
+  const Status gap = expect(run, ErrorCode::gap, "time_s since the last sample");
   EXPECT_DOUBLE_EQ(gap.value, 1.51);
   EXPECT_EQ(gap.bound, 1.0);
 }
@@ -107,7 +107,7 @@ TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
     ImuSample broken = sample;
     broken.angular_velocity_rad_s.x() = std::nan("");
     const Saave::State before = state;
-    EXPECT_EQ(saave.step(broken, state, got).trouble, Trouble::non_finite);
+    EXPECT_EQ(saave.step(broken, state, got).error_code, ErrorCode::non_finite);
     EXPECT_EQ(state, before);
     ASSERT_TRUE(saave.step(sample, state, got).ok());
     ASSERT_TRUE(saave.step(sample, clean, want).ok());

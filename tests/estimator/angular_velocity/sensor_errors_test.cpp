@@ -154,8 +154,10 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
       }
       const arrow::StateVector want = (blocks[0].gradient - blocks[1].gradient) / (2.0 * kStep);
       EXPECT_LT((block.col(i) - want).norm(), 1e-3 * (1.0 + want.norm())) << i;
-      Eigen::Matrix<double, 9, 1> of_rig = (corners[0].gradient - corners[1].gradient).head<9>() / (2.0 * kStep);
-      EXPECT_LT((border.col(i).head<9>() - of_rig).norm(), 1e-3 * (1.0 + of_rig.norm())) << i;
+      Eigen::Matrix<double, 9, 1> calibration_by_errors =
+          (corners[0].gradient - corners[1].gradient).head<9>() / (2.0 * kStep);
+      EXPECT_LT((border.col(i).head<9>() - calibration_by_errors).norm(), 1e-3 * (1.0 + calibration_by_errors.norm()))
+          << i;
     }
   }
 }

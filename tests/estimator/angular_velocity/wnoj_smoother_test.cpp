@@ -190,30 +190,30 @@ TEST(WnojSmoother, ShortRuns) {
 TEST(WnojSmoother, BadInputGivesAStatusAndWritesNothing) {
   const WnojSmoother smoother({1e6});
   std::vector<Smoothed> out(3, Smoothed{Vector3d::Ones(), Vector3d::Ones(), Vector3d::Ones()});
-  const auto expect = [&](const std::vector<Measurement>& run, Trouble trouble, const std::string& field) {
+  const auto expect = [&](const std::vector<Measurement>& run, ErrorCode error_code, const std::string& field) {
     const Status status = smoother.smooth(run, out);
-    EXPECT_EQ(status.trouble, trouble) << status.message();
+    EXPECT_EQ(status.error_code, error_code) << status.message();
     EXPECT_EQ(status.field, field);
     EXPECT_EQ(out.size(), 3u);
     EXPECT_EQ(out.at(2).rate_rad_s, Vector3d::Ones());
     return status;
   };
-  expect({}, Trouble::empty, "measurements");
+  expect({}, ErrorCode::empty, "measurements");
   std::vector<Measurement> run = constant_run(5, kMeasured);
   run[3].time_ns = run[2].time_ns;
-  EXPECT_EQ(expect(run, Trouble::time_order, "time_ns").bound, 2e7);
+  EXPECT_EQ(expect(run, ErrorCode::time_order, "time_ns").bound, 2e7);
   run[3].time_ns = run[1].time_ns;
-  EXPECT_EQ(expect(run, Trouble::time_order, "time_ns").value, 1e7);
+  EXPECT_EQ(expect(run, ErrorCode::time_order, "time_ns").value, 1e7);
   run = constant_run(5, kMeasured);
   run[4].rate_rad_s.y() = std::nan("");
-  EXPECT_TRUE(std::isnan(expect(run, Trouble::non_finite, "rate_rad_s").value));
+  EXPECT_TRUE(std::isnan(expect(run, ErrorCode::non_finite, "rate_rad_s").value));
   run = constant_run(5, kMeasured);
   run[0].variance_rad2_s2.x() = std::numeric_limits<double>::infinity();
-  expect(run, Trouble::non_finite, "variance_rad2_s2");
+  expect(run, ErrorCode::non_finite, "variance_rad2_s2");
   run[0].variance_rad2_s2.x() = 0.0;
-  expect(run, Trouble::out_of_range, "variance_rad2_s2");
+  expect(run, ErrorCode::out_of_range, "variance_rad2_s2");
   run[0].variance_rad2_s2.x() = -1.0;
-  EXPECT_EQ(expect(run, Trouble::out_of_range, "variance_rad2_s2").value, -1.0);
+  EXPECT_EQ(expect(run, ErrorCode::out_of_range, "variance_rad2_s2").value, -1.0);
 }
 
 TEST(WnojSmoother, RefusesADensityOutsideOfItsBound) {

@@ -25,10 +25,10 @@ TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
   CoarseAlignment alignment;
   alignment.begin(0.25, 4.0);
   for (int node = 0; node < 50; ++node) alignment.add(wrong * Eigen::Vector3d(0.012, -0.008, 0.04 * kUp_m_s2), 0.04);
-  alignment.grown_rad2 += 0.01;
+  alignment.tilt_variance_growth_rad2 += 0.01;
   EXPECT_NEAR(alignment.time_s, 2.0, 1e-9);
   EXPECT_NEAR(tilted_rad(alignment.levelling() * wrong), std::hypot(0.6, 0.4) / (2.0 * kUp_m_s2), 1e-3);
-  EXPECT_NEAR(alignment.off_rad(), std::numbers::pi, 0.2);
+  EXPECT_NEAR(alignment.mean_force_tilt_rad(), std::numbers::pi, 0.2);
   EXPECT_NEAR(alignment.variance_rad2(0.75, kUp_m_s2), 1.0 / std::pow(2.0 * kUp_m_s2, 2) + 0.01, 1e-12);
   EXPECT_NEAR(alignment.tilt_rad2(), 4.01, 1e-12);
   CoarseAlignment none;

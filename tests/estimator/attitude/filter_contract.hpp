@@ -62,11 +62,11 @@ void expect_split_runs_equal(const Filter& filter) {
 
 template <typename Filter>
 void expect_refused(const Filter& filter, const typename Filter::State& state, const ImuSample& sample,
-                    Trouble trouble) {
+                    ErrorCode error_code) {
   typename Filter::State after = state;
   const Status status = filter.step(sample, after);
-  EXPECT_EQ(status.trouble, trouble) << status.message() << ", expected " << to_string(trouble);
-  EXPECT_TRUE(after == state) << "the state changed on " << to_string(trouble);
+  EXPECT_EQ(status.error_code, error_code) << status.message() << ", expected " << to_string(error_code);
+  EXPECT_TRUE(after == state) << "the state changed on " << to_string(error_code);
 }
 
 /// Each kind of bad input gives its Status and leaves the state as it was; a good sample afterwards is accepted.
@@ -80,33 +80,33 @@ void expect_bad_input_refused(const Filter& filter) {
   for (int axis = 0; axis < 3; ++axis) {
     ImuSample bad = good;
     bad.angular_velocity_rad_s[axis] = kNan;
-    expect_refused(filter, state, bad, Trouble::non_finite);
+    expect_refused(filter, state, bad, ErrorCode::non_finite);
     bad = good;
     bad.specific_force_m_s2[axis] = -kInfinity;
-    expect_refused(filter, state, bad, Trouble::non_finite);
+    expect_refused(filter, state, bad, ErrorCode::non_finite);
     bad = good;
     bad.angular_velocity_rad_s[axis] = 1e300;
-    expect_refused(filter, state, bad, Trouble::out_of_range);
+    expect_refused(filter, state, bad, ErrorCode::out_of_range);
   }
   ImuSample bad = good;
   bad.time_ns = state.last_time_ns;
-  expect_refused(filter, state, bad, Trouble::time_order);
+  expect_refused(filter, state, bad, ErrorCode::time_order);
   bad.time_ns = std::numeric_limits<TimeNs>::min();
-  expect_refused(filter, state, bad, Trouble::time_order);
+  expect_refused(filter, state, bad, ErrorCode::time_order);
   bad.time_ns = state.last_time_ns + 1'000'000'001;  // gap_max_s is 1 by default
-  expect_refused(filter, state, bad, Trouble::gap);
+  expect_refused(filter, state, bad, ErrorCode::gap);
   bad.time_ns = std::numeric_limits<TimeNs>::max();
-  expect_refused(filter, state, bad, Trouble::gap);
+  expect_refused(filter, state, bad, ErrorCode::gap);
 
   ImuSample first = samples[0];
   first.time_ns = std::numeric_limits<TimeNs>::min();
   typename Filter::State long_ago;
   EXPECT_TRUE(filter.step(first, long_ago).ok());
-  expect_refused(filter, long_ago, good, Trouble::gap);
+  expect_refused(filter, long_ago, good, ErrorCode::gap);
 
   ImuSample weightless = good;
   weightless.specific_force_m_s2.setZero();
-  expect_refused(filter, typename Filter::State{}, weightless, Trouble::degenerate);
+  expect_refused(filter, typename Filter::State{}, weightless, ErrorCode::degenerate);
 
   typename Filter::State after = state;
   EXPECT_TRUE(filter.step(weightless, after).ok()) << "free fall must integrate the gyro alone";

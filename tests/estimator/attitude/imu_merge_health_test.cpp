@@ -154,7 +154,7 @@ TEST(ImuMergeHealth, ForcesThatAllRepeatThemselvesWhileTheBodyTurnsAreFrozen) {
     EXPECT_NEAR(seconds(out.state.units[k].frozen_since_ns), 1.996, 0.01) << k;
   }
   const Status status = ImuMerge(unit_params()).verdict(out.state);
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_NEAR(status.value, 4.0, 0.05);
   EXPECT_TRUE(ImuMerge(unit_params()).verdict(merge_harmed(250, 5.0, 1.0, nothing).state).ok());
 }
@@ -186,15 +186,15 @@ TEST(ImuMergeHealth, AFrozenUnitThatMovesAgainIsBack) {
     now[0].specific_force_m_s2 = last.specific_force_m_s2;
   });
   expect_only(out, kCount, kCount);
-  EXPECT_GT(out.state.units[0].left_out, 400);
+  EXPECT_GT(out.state.units[0].excluded_windows, 400);
 }
 
 TEST(ImuMergeHealth, AUnitThatDiedIsAbsent) {
   const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [](double t, UnitReadings& now) {
     if (t > 2.0) now[2].specific_force_m_s2.y() = std::numeric_limits<double>::quiet_NaN();
   });
-  EXPECT_GT(out.state.units[2].absent, 900);
-  EXPECT_NEAR(seconds(out.state.units[2].absent_since_ns), 2.004, 0.005);
+  EXPECT_GT(out.state.units[2].missing_samples, 900);
+  EXPECT_NEAR(seconds(out.state.units[2].missing_since_ns), 2.004, 0.005);
   EXPECT_LT(out.worst_rate_rad_s, 0.02);
   EXPECT_LT(out.worst_force_m_s2, 0.5);
 }
@@ -250,14 +250,14 @@ TEST(ImuMergeHealth, TheArmsTellAFlippedAxisOfAllGyros) {
 }
 
 TEST(ImuMergeHealth, TheArmsTellTheSignOfTheAccelerometers) {
-  const auto share = [](const HarmedMerge& out) { return ImuMerge::arm_share(out.state).value_or(0.0); };
+  const auto share = [](const HarmedMerge& out) { return ImuMerge::lever_arm_agreement(out.state).value_or(0.0); };
   EXPECT_NEAR(share(merge_harmed(250, 5.0, 1.0, nothing)), 1.0, 0.05);
   EXPECT_NEAR(share(merge_harmed(1000, 5.0, 1.0, nothing)), 1.0, 0.05);
   const HarmedMerge flipped = merge_harmed(250, 5.0, 1.0, [](double, UnitReadings& now) {
     for (ImuSample& sample : now) sample.specific_force_m_s2 *= -1.0;
   });
   EXPECT_NEAR(share(flipped), -1.0, 0.05);
-  EXPECT_FALSE(ImuMerge::arm_share(merge_harmed(250, 0.0, 1.0, nothing).state).has_value());
+  EXPECT_FALSE(ImuMerge::lever_arm_agreement(merge_harmed(250, 0.0, 1.0, nothing).state).has_value());
 }
 
 }  // namespace

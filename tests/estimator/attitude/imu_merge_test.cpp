@@ -127,8 +127,8 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
     EXPECT_LT(merged->angular_velocity_rad_s.norm(), 1e-9) << k;
     EXPECT_NEAR(merged->specific_force_m_s2.norm(), kGravity_m_s2, 1e-9) << k;
   }
-  EXPECT_EQ(state.units[1].left_out, 25);
-  EXPECT_EQ(state.units[0].left_out, 0);
+  EXPECT_EQ(state.units[1].excluded_windows, 25);
+  EXPECT_EQ(state.units[0].excluded_windows, 0);
 }
 
 /// What the mean of all units should read, at their mean position.
@@ -185,8 +185,8 @@ TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
     EXPECT_NEAR(merged->specific_force_m_s2.x(), impact ? 50.0 : 0.0, 1e-6) << k;
     EXPECT_EQ(merged->device_clip_flags, 0) << k;
   }
-  EXPECT_EQ(state.units[1].left_out, 10);  // for 40 ms, as impacts come in rows
-  EXPECT_EQ(state.units[0].left_out, 0);
+  EXPECT_EQ(state.units[1].excluded_windows, 10);  // for 40 ms, as impacts come in rows
+  EXPECT_EQ(state.units[0].excluded_windows, 0);
 }
 
 TEST(ImuMerge, RefusesBadInput) {
@@ -201,7 +201,7 @@ TEST(ImuMerge, RefusesBadInput) {
   ImuMerge::State state;
   std::optional<ImuSample> merged;
   const std::array<ImuSample, 2> two{};
-  EXPECT_EQ(merge.step(two, state, merged).trouble, Trouble::too_few);
+  EXPECT_EQ(merge.step(two, state, merged).error_code, ErrorCode::too_few);
   EXPECT_EQ(state.samples, 0);
 }
 

@@ -114,7 +114,7 @@ TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
   const ImuPlausibility plausibility({});
   const AxisLabels swapped = {{1, 0, 2}, {1.0, 1.0, 1.0}, false};
   const ImuPlausibility::State state = state_of(swayed(0.15), swapped);
-  EXPECT_LT(plausibility.unexplained_share(state), 0.2) << "the slope alone would let it pass";
+  EXPECT_LT(plausibility.unexplained_rotation_ratio(state), 0.2) << "the slope alone would let it pass";
   EXPECT_FALSE(plausibility.verdict(state).ok());
   EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.15), {})).ok());
   // of a straight way both namings say the same, and neither is called wrong
@@ -137,7 +137,7 @@ TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
     plausibility.step(sample, state);
   }
   EXPECT_TRUE(plausibility.verdict(state).ok());
-  EXPECT_NEAR(plausibility.force_share(state), 1.0, 0.01);
+  EXPECT_NEAR(plausibility.force_ratio(state), 1.0, 0.01);
   EXPECT_THROW(ImuPlausibility({.gravity_m_s2 = 0.0}), InvalidParams);
 }
 
@@ -160,7 +160,7 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   const ImuPlausibility plausibility({});
   const Status thrown = plausibility.verdict(of_a_throw(12.0, 0.1));  // 14 m/s^2
   EXPECT_TRUE(thrown.ok()) << thrown.message();
-  EXPECT_EQ(plausibility.unexplained_share(of_a_throw(12.0, 0.1)), 0.0);
+  EXPECT_EQ(plausibility.unexplained_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
   // nothing tells a steady force of gravity's own size from gravity
   EXPECT_FALSE(plausibility.verdict(of_a_throw(10.0, 0.0980665)).ok());
 }
@@ -200,7 +200,7 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
   const ImuPlausibility plausibility({});
   const ImuPlausibility::State good = of_a_pendulum(1.0);
   EXPECT_TRUE(plausibility.verdict(good).ok()) << plausibility.verdict(good).message();
-  EXPECT_LT(plausibility.force_rotated_share(good), 0.8) << "it does swing";
+  EXPECT_LT(plausibility.force_rotation_ratio(good), 0.8) << "it does swing";
   EXPECT_NEAR(plausibility.rotation_slope(good), 1.0, 0.1);
   for (const double scale : {-1.0, 0.5, 2.0}) {
     const ImuPlausibility::State wrong = of_a_pendulum(scale);
@@ -313,7 +313,7 @@ TEST(ImuPlausibility, ATriadThatRepeatsItselfIsFrozen) {
     EXPECT_TRUE(plausibility.verdict(with_a_hold(gyro, 4.0, 0.5)).ok()) << "half a second was lost";
     EXPECT_TRUE(plausibility.verdict(with_a_hold(gyro, 4.0, 1.5, 1.0)).ok()) << "so it does at the start";
     const ImuPlausibility::State frozen = with_a_hold(gyro, 4.0, 4.0);
-    EXPECT_EQ(plausibility.verdict(frozen).trouble, Trouble::out_of_range);
+    EXPECT_EQ(plausibility.verdict(frozen).error_code, ErrorCode::out_of_range);
     EXPECT_NEAR(plausibility.frozen_s(frozen), 4.0, 0.05);
     EXPECT_FALSE(plausibility.verdict(with_a_hold(gyro, 3.0, 2.0)).ok()) << "and says so when it has come back";
   }

@@ -84,8 +84,8 @@ TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
   const PivotCheck check({});
   const PivotCheck::Found found = check.find(run.samples, run.rates);
   EXPECT_TRUE(check.verdict(found).ok()) << check.verdict(found).message();
-  EXPECT_EQ(found.counted, 20u) << "two series of segments of 2 s over 20 s, half a segment apart";
-  EXPECT_EQ(found.better, 0u);
+  EXPECT_EQ(found.compared_segments, 20u) << "two series of segments of 2 s over 20 s, half a segment apart";
+  EXPECT_EQ(found.better_segments, 0u);
   EXPECT_LT(found.evidence, 0.0);
   EXPECT_NEAR(found.scale, 1.0, 0.002);
 }
@@ -119,7 +119,7 @@ TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
     if (rate.time_ns % 900'000'000 == 0) rate.source = RateSource::bounded_only;
   });
   const PivotCheck check({});
-  EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u) << "no segment of a second is left";
+  EXPECT_EQ(check.find(run.samples, run.rates).compared_segments, 0u) << "no segment of a second is left";
   EXPECT_EQ(says(run), "");
 }
 
@@ -127,7 +127,7 @@ TEST(PivotCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
   const PivotReadings run =
       about_a_pivot({.shaken_m_s2 = 40.0}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; });
   const PivotCheck check({});
-  EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u);
+  EXPECT_EQ(check.find(run.samples, run.rates).compared_segments, 0u);
   EXPECT_EQ(says(run), "");
 }
 

@@ -8,24 +8,24 @@
 #include <algorithm>
 #include <vector>
 
-#include "estimator/attitude/carried_motion.hpp"
+#include "estimator/attitude/hand_held_motion.hpp"
 
 namespace tumble {
 namespace {
 
-using testing::CarriedMotion;
-using testing::CarriedRecording;
+using testing::HandHeldMotion;
+using testing::HandHeldRecording;
 
 constexpr double kGyroRail_rad_s = 7.0;
 
-RegimeSmoother::Params params_of(const CarriedMotion& motion) {
+RegimeSmoother::Params params_of(const HandHeldMotion& motion) {
   RegimeSmoother::Params params;
   params.rate.model.nominal.lever_arm_m = motion.lever_arm_m;
   return params;
 }
 
 /// Median error where the gyro clips.
-double clipped_error(const CarriedRecording& recording, const std::vector<RateState>& rates) {
+double clipped_error(const HandHeldRecording& recording, const std::vector<RateState>& rates) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (recording.signs[k].gyro[0] == 0) continue;
@@ -37,28 +37,28 @@ double clipped_error(const CarriedRecording& recording, const std::vector<RateSt
 }
 
 TEST(RegimeSmoother, ATwirlIsTheHands) {
-  const CarriedMotion motion;
-  const CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
+  const HandHeldMotion motion;
+  const HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   std::vector<RateState> alone, joined;
   RateReport of_flight;
   RegimeSmoother::Report report;
   ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
   ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
   ASSERT_EQ(joined.size(), recording.samples.size());
-  EXPECT_TRUE(report.judged && report.carried_asked);
-  EXPECT_GT(report.carried_clipped_max, 0.9);
-  EXPECT_NEAR(report.shares.flight + report.shares.contact + report.shares.carried, 1.0, 1e-9);
+  EXPECT_TRUE(report.judged && report.hand_held_smoother_ran);
+  EXPECT_GT(report.hand_held_probability_max, 0.9);
+  EXPECT_NEAR(report.probabilities.flight + report.probabilities.contact + report.probabilities.hand_held, 1.0, 1e-9);
   EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
 }
 
 // A force is said four times; taken for that of each sample's own time the hidden segments look like flight, and are
 // off by 11 rad/s.
 TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
-  CarriedMotion motion;
+  HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
   motion.hand_m = 0.15;
-  CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
+  HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   constexpr std::size_t kPeriod = 4;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
     const double taken_s = 0.01 * static_cast<double>(k - k % kPeriod);
@@ -67,7 +67,7 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   std::vector<RateState> joined;
   RegimeSmoother::Report report;
   ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
-  EXPECT_GT(report.carried_clipped_max, 0.7);
+  EXPECT_GT(report.hand_held_probability_max, 0.7);
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
@@ -75,10 +75,10 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
 // the first tenth of a second, where its rate is not known yet, says nothing of the rest, which would be off by 10
 // rad/s.
 TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
-  CarriedMotion motion;
+  HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
-  const CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
+  const HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   std::vector<RateState> alone, joined;
   RateReport of_flight;
   RegimeSmoother::Report report;
@@ -89,8 +89,8 @@ TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
 }
 
 TEST(RegimeSmoother, ASpinInFlightIsNot) {
-  const CarriedMotion motion;
-  CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
+  const HandHeldMotion motion;
+  HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same turning, and nobody who holds the body
     const double t = 0.01 * (static_cast<double>(k) + 0.5);
     const Eigen::Vector3d w = motion.rate(t);
@@ -103,7 +103,7 @@ TEST(RegimeSmoother, ASpinInFlightIsNot) {
   ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
   ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
   EXPECT_TRUE(report.judged);
-  EXPECT_FALSE(report.carried_asked);
+  EXPECT_FALSE(report.hand_held_smoother_ran);
   ASSERT_EQ(joined.size(), alone.size());
   for (std::size_t k = 0; k < joined.size(); ++k) {
     ASSERT_EQ(joined[k].w_WI_I_rad_s, alone[k].w_WI_I_rad_s);
@@ -116,11 +116,11 @@ TEST(RegimeSmoother, RefusesWhatItsPartsRefuse) {
   params.carried_min = 1.5;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
   params = params_of({});
-  params.carried.expert.node_s = 0.0;
+  params.hand_held.expert.node_s = 0.0;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
   std::vector<RateState> rates(3);
   RegimeSmoother::Report report;
-  EXPECT_EQ(RegimeSmoother(params_of({})).estimate({}, rates, report).trouble, Trouble::empty);
+  EXPECT_EQ(RegimeSmoother(params_of({})).estimate({}, rates, report).error_code, ErrorCode::empty);
   EXPECT_TRUE(rates.empty());
 }
 

@@ -10,20 +10,20 @@
 #include <optional>
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
-#include "estimator/attitude/carried_errors.hpp"
-#include "estimator/attitude/carried_motion.hpp"
+#include "estimator/attitude/hand_held_errors.hpp"
+#include "estimator/attitude/hand_held_motion.hpp"
 
 namespace tumble {
 namespace {
 
-using testing::CarriedMotion;
-using testing::CarriedRecording;
 using testing::clipped_errors;
+using testing::HandHeldMotion;
+using testing::HandHeldRecording;
 using testing::quantile;
 
 struct Joined {
   std::vector<RateState> rates;
-  std::vector<double> carried;  ///< share, after each sample given out
+  std::vector<double> hand_held;  ///< share, after each sample given out
   RegimeStream::State state;
 };
 
@@ -36,7 +36,7 @@ struct Middle {
 
 RegimeStream::Params at_its_hand() {
   RegimeStream::Params params;
-  params.rate.model.nominal.lever_arm_m = CarriedMotion().lever_arm_m;
+  params.rate.model.nominal.lever_arm_m = HandHeldMotion().lever_arm_m;
   return params;
 }
 
@@ -55,7 +55,7 @@ Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& 
     EXPECT_TRUE(stream.push(samples[k], out.state, rate).ok());
     if (!rate) continue;
     out.rates.push_back(*rate);
-    out.carried.push_back(out.state.shares.carried);
+    out.hand_held.push_back(out.state.probabilities.hand_held);
   }
   stream.flush(out.state, out.rates);
   EXPECT_EQ(from.reported + out.rates.size(), samples.size());
@@ -66,10 +66,10 @@ Joined joined(const std::vector<ImuSample>& samples, const RegimeStream::Params&
   return go_on(samples, params, {0, RegimeStream(params).start(), 0}, middle);
 }
 
-/// The twirl of CarriedMotion taken up slowly: its own time runs at 0.3 for four seconds, then ever faster to 1 within
+/// The twirl of HandHeldMotion taken up slowly: its own time runs at 0.3 for four seconds, then ever faster to 1 within
 /// two. Flags instead of a rail that has to be found first.
 struct SlowlyBegun {
-  CarriedMotion motion;
+  HandHeldMotion motion;
   double speed(double t) const { return 0.3 + 0.7 * std::clamp(0.5 * (t - 4.0), 0.0, 1.0); }
   double time(double t) const {
     const double ramp = std::clamp(t - 4.0, 0.0, 2.0);
@@ -80,8 +80,8 @@ struct SlowlyBegun {
   Eigen::Vector3d turning(double t, const Eigen::Vector3d& arm) const {
     return angular_acceleration(t).cross(arm) + rate(t).cross(rate(t).cross(arm));
   }
-  CarriedRecording record(double hz, double duration_s, double rail_rad_s) const {
-    CarriedRecording out;
+  HandHeldRecording record(double hz, double duration_s, double rail_rad_s) const {
+    HandHeldRecording out;
     for (int k = 1; k <= static_cast<int>(hz * duration_s); ++k) {
       const double end = k / hz, t = end - 0.5 / hz;
       ImuSample sample;
@@ -106,13 +106,13 @@ struct SlowlyBegun {
 };
 
 TEST(RegimeStream, AHandIsKnownAndBelieved) {
-  const CarriedRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
+  const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
   const std::vector<ImuSample>& samples = recording.samples;
   Middle middle;
   middle.samples = 733;
   const Joined whole = joined(samples, at_its_hand(), &middle);
-  EXPECT_GT(whole.state.sum.carried / static_cast<double>(whole.state.reported), 0.9);
-  EXPECT_GT(whole.state.joined, 300u);
+  EXPECT_GT(whole.state.sum.hand_held / static_cast<double>(whole.state.reported), 0.9);
+  EXPECT_GT(whole.state.combined_samples, 300u);
   const std::vector<double> errors = clipped_errors(recording, whole.rates, 2.0);
   std::printf("joined: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
   EXPECT_LT(quantile(errors, 0.5), 0.6);
@@ -145,14 +145,14 @@ TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
 /// The rig says that the IMU is 10 cm from the centre of mass: the lever arm's force could pass for gravity, if the
 /// angular acceleration were free to follow the force. The gyro reads it between the spins, and so the hand is known.
 TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
-  const CarriedRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
+  const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
   RegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = {-0.022, -0.085, 0.055};
   const Joined found = joined(recording.samples, params);
   double least = 1.0, within = 0.0, clipped = 0.0;
   for (std::size_t k = 0; k < found.rates.size(); ++k) {
     const bool late = seconds(found.rates[k].time_ns) > 5.0;
-    if (late && k < found.carried.size()) least = std::min(least, found.carried[k]);
+    if (late && k < found.hand_held.size()) least = std::min(least, found.hand_held[k]);
     if (!late || recording.signs[k].gyro[0] == 0) continue;
     clipped += 1.0;
     const double error = found.rates[k].w_WI_I_rad_s.x() - recording.rate_rad_s[k].x();
@@ -164,8 +164,8 @@ TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
 }
 
 /// As a log of 240 Hz says what an IMU reads at 100: each reading two or three times, up to a reading's time late.
-CarriedRecording said_again(const CarriedRecording& own, const SlowlyBegun& motion) {
-  CarriedRecording out;
+HandHeldRecording said_again(const HandHeldRecording& own, const SlowlyBegun& motion) {
+  HandHeldRecording out;
   for (std::size_t k = 0, from = 0; from + 1 < own.samples.size(); ++k) {
     const double t = static_cast<double>(k + 3) / 240.0;
     while (from + 1 < own.samples.size() && seconds(own.samples[from + 1].time_ns) <= t) ++from;
@@ -180,7 +180,7 @@ CarriedRecording said_again(const CarriedRecording& own, const SlowlyBegun& moti
 /// Without knowing of it the stream is off by 0.37 rad/s on the median, and 56 % lie within three deviations.
 TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   const SlowlyBegun motion;
-  const CarriedRecording recording = said_again(motion.record(100.0, 16.0, 7.3), motion);
+  const HandHeldRecording recording = said_again(motion.record(100.0, 16.0, 7.3), motion);
   RegimeStream::Params params = at_its_hand();
   params.rate.period_s = 1.0 / 240.0;
   const Joined found = joined(recording.samples, params);
@@ -202,10 +202,10 @@ TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
 /// It turns back once a second and is hardly read in between, so that it is one segment of clipped samples; that nobody
 /// knows who holds it at first, where its rate is not known yet, says nothing of the rest. Flight is off by 10 rad/s.
 TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
-  CarriedMotion motion;
+  HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
-  const CarriedRecording recording = record(motion, 100.0, 10.0, 7.0);
+  const HandHeldRecording recording = record(motion, 100.0, 10.0, 7.0);
   const Joined found = joined(recording.samples, at_its_hand());
   const std::vector<double> errors = clipped_errors(recording, found.rates, 2.0);
   std::printf("one segment: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
@@ -219,19 +219,19 @@ TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   for (std::size_t k = 1000; k < 1080; ++k)  // the lever arm's share alone
     samples[k].specific_force_m_s2 = motion.turning(0.01 * (static_cast<double>(k) + 0.5), motion.motion.lever_arm_m);
   RegimeStream::Params params;
-  params.rate.model.nominal.lever_arm_m = CarriedMotion().lever_arm_m;
+  params.rate.model.nominal.lever_arm_m = HandHeldMotion().lever_arm_m;
   const RegimeStream stream(params);
   RegimeStream::State state = stream.start();
   std::optional<RateState> rate;
-  std::vector<double> carried;
+  std::vector<double> hand_held;
   for (const ImuSample& sample : samples) {
     ASSERT_TRUE(stream.push(sample, state, rate).ok());
-    if (rate) carried.push_back(state.shares.carried);
+    if (rate) hand_held.push_back(state.probabilities.hand_held);
   }
-  std::printf("carried: before %.3f, thrown %.3f, after %.3f\n", carried[995], carried[1060], carried[1400]);
-  EXPECT_GT(carried[995], 0.9);
-  EXPECT_LT(carried[1060], 0.1);
-  EXPECT_GT(carried[1400], 0.9);
+  std::printf("carried: before %.3f, thrown %.3f, after %.3f\n", hand_held[995], hand_held[1060], hand_held[1400]);
+  EXPECT_GT(hand_held[995], 0.9);
+  EXPECT_LT(hand_held[1060], 0.1);
+  EXPECT_GT(hand_held[1400], 0.9);
 }
 
 /// Share of the hand after 0.3 s of a flight that clips, when `dropped` rigs count as dropped at its start.
@@ -251,7 +251,7 @@ double share_in_flight(std::uint64_t seed, double dropped) {
     if (state.reported == static_cast<std::size_t>(begin) && rate) state.resets += dropped;
     if (state.reported == static_cast<std::size_t>(begin) + 30) break;
   }
-  return state.shares.carried;
+  return state.probabilities.hand_held;
 }
 
 /// A hand that throws bends the rig, which is dropped in step after step: 20 times in a lag at most. That says nothing

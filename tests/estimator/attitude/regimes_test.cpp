@@ -21,7 +21,7 @@ const Vector3d kLever_m(-0.02, -0.085, 0.055);
 const Matrix3d kLeverCovariance_m2 = 1e-6 * Matrix3d::Identity();
 constexpr double kG = 9.80665;
 
-enum class Regime { flight, contact, carried };
+enum class Regime { flight, contact, hand_held };
 
 struct RegimeRecording {
   std::vector<ImuSample> samples;
@@ -42,7 +42,7 @@ struct RegimeRecording {
       const Vector3d up(0.2, std::sin(11.0 * t), std::cos(11.0 * t));
       const double z = noise(gen), y = noise(gen), x = noise(gen);
       const Vector3d random(x, y, z);
-      if (regime == Regime::carried) sample.specific_force_m_s2 = kG * up.normalized() + push_m_s2 * random;
+      if (regime == Regime::hand_held) sample.specific_force_m_s2 = kG * up.normalized() + push_m_s2 * random;
       if (regime == Regime::flight) sample.specific_force_m_s2 = turning + 0.05 * random;
       if (regime == Regime::contact) sample.specific_force_m_s2 = turning + push_m_s2 * random;
       RateState rate;
@@ -64,12 +64,12 @@ struct RegimeRecording {
 
   /// Share of the samples of `regime` that are found to be carried, those within 0.1 s of a change left out.
   double called_carried(Regime regime) const {
-    const std::vector<RegimeProbabilities> shares = found();
+    const std::vector<RegimeProbabilities> probabilities = found();
     double of = 0.0, called = 0.0;
     for (std::size_t k = 10; k + 10 < truth.size(); ++k) {
       if (truth[k] != regime || truth[k - 10] != regime || truth[k + 10] != regime) continue;
       of += 1.0;
-      called += shares[k].carried > 0.5 ? 1.0 : 0.0;
+      called += probabilities[k].hand_held > 0.5 ? 1.0 : 0.0;
     }
     EXPECT_GT(of, 5.0);
     return called / of;
@@ -80,14 +80,14 @@ struct RegimeRecording {
 };
 
 TEST(Regimes, EachAloneIsFound) {
-  for (const Regime regime : {Regime::flight, Regime::carried}) {
+  for (const Regime regime : {Regime::flight, Regime::hand_held}) {
     RegimeRecording motion;
     motion.go_on(regime, 3.0);
     std::size_t right = 0;
     double off = 0.0;
-    for (const RegimeProbabilities& shares : motion.found()) {
-      right += (regime == Regime::flight ? shares.flight : shares.carried) > 0.5;
-      off = std::max(off, std::abs(shares.flight + shares.contact + shares.carried - 1.0));
+    for (const RegimeProbabilities& probabilities : motion.found()) {
+      right += (regime == Regime::flight ? probabilities.flight : probabilities.hand_held) > 0.5;
+      off = std::max(off, std::abs(probabilities.flight + probabilities.contact + probabilities.hand_held - 1.0));
     }
     EXPECT_EQ(right, motion.samples.size());
     EXPECT_LT(off, 1e-12);
@@ -96,20 +96,20 @@ TEST(Regimes, EachAloneIsFound) {
 
 TEST(Regimes, ABodyThatIsThrownWhileCarriedIsFoundInFlight) {
   RegimeRecording motion;
-  motion.go_on(Regime::carried, 3.0);
+  motion.go_on(Regime::hand_held, 3.0);
   motion.go_on(Regime::flight, 0.6);
-  motion.go_on(Regime::carried, 3.0);
+  motion.go_on(Regime::hand_held, 3.0);
   EXPECT_EQ(motion.called_carried(Regime::flight), 0.0);
-  EXPECT_EQ(motion.called_carried(Regime::carried), 1.0);
+  EXPECT_EQ(motion.called_carried(Regime::hand_held), 1.0);
 }
 
 TEST(Regimes, ABodyThatIsCaughtInFlightIsFoundInTheHand) {
   RegimeRecording motion;
   motion.go_on(Regime::flight, 0.6);
-  motion.go_on(Regime::carried, 3.0);
+  motion.go_on(Regime::hand_held, 3.0);
   motion.go_on(Regime::flight, 0.6);
   EXPECT_EQ(motion.called_carried(Regime::flight), 0.0);
-  EXPECT_EQ(motion.called_carried(Regime::carried), 1.0);
+  EXPECT_EQ(motion.called_carried(Regime::hand_held), 1.0);
 }
 
 TEST(Regimes, ATumbleIsNoHand) {
@@ -121,8 +121,8 @@ TEST(Regimes, ATumbleIsNoHand) {
   // but for the first and the last moments, before which and after which there may have been anything
   EXPECT_EQ(motion.called_carried(Regime::flight), 0.0);
   double most = 0.0;
-  const std::vector<RegimeProbabilities> shares = motion.found();
-  for (std::size_t k = 30; k + 30 < shares.size(); ++k) most = std::max(most, shares[k].carried);
+  const std::vector<RegimeProbabilities> probabilities = motion.found();
+  for (std::size_t k = 30; k + 30 < probabilities.size(); ++k) most = std::max(most, probabilities[k].hand_held);
   EXPECT_LT(most, 1e-3);
 }
 
@@ -130,23 +130,23 @@ TEST(Regimes, AQuietMomentOnTheGroundBetweenFlightsIsNoHand) {
   // as gentle as a hand: only what is about it tells
   RegimeRecording motion;
   motion.go_on(Regime::flight, 0.5);
-  motion.go_on(Regime::carried, 0.3);
+  motion.go_on(Regime::hand_held, 0.3);
   motion.go_on(Regime::flight, 0.5);
-  EXPECT_EQ(motion.called_carried(Regime::carried), 0.0);
+  EXPECT_EQ(motion.called_carried(Regime::hand_held), 0.0);
 }
 
 TEST(Regimes, ARoughHandIsAHand) {
   RegimeRecording motion;
-  motion.go_on(Regime::carried, 4.0, 8.0);
-  EXPECT_EQ(motion.called_carried(Regime::carried), 1.0);
+  motion.go_on(Regime::hand_held, 4.0, 8.0);
+  EXPECT_EQ(motion.called_carried(Regime::hand_held), 1.0);
 }
 
 TEST(Regimes, ABodyThatDoesNotTurnSaysNothingOfWhoHoldsIt) {
   RegimeRecording motion;
-  motion.go_on(Regime::carried, 2.0, 0.0);
+  motion.go_on(Regime::hand_held, 2.0, 0.0);
   for (RateState& rate : motion.rates) rate.w_WI_I_rad_s *= 0.01;
   double most = 0.0;
-  for (const RegimeProbabilities& shares : motion.found()) most = std::max(most, shares.carried);
+  for (const RegimeProbabilities& probabilities : motion.found()) most = std::max(most, probabilities.hand_held);
   EXPECT_NEAR(most, 1.0 / 3.0, 0.01);
 }
 
@@ -156,10 +156,10 @@ TEST(Regimes, EitherHoldsBothAnswers) {
   second.covariance_rad2_s2 = 0.04 * Matrix3d::Identity();
   second.w_WI_I_rad_s = Vector3d(3.0, 0.0, 0.0);
   second.source = RateSource::bounded_only;
-  const RateState sure = either(first, second, 0.0);
+  const RateState sure = mix_rates(first, second, 0.0);
   EXPECT_EQ(sure.w_WI_I_rad_s, first.w_WI_I_rad_s);
   EXPECT_EQ(sure.covariance_rad2_s2, first.covariance_rad2_s2);
-  const RateState open = either(first, second, 0.6);
+  const RateState open = mix_rates(first, second, 0.6);
   EXPECT_EQ(open.w_WI_I_rad_s, second.w_WI_I_rad_s);
   EXPECT_EQ(open.source, RateSource::bounded_only);
   // 0.4 * 0.01 + 0.6 * 0.04 + 0.4 * 3^2, about the answer given
@@ -172,10 +172,10 @@ TEST(Regimes, RefusesWhatDoesNotBelongTogether) {
   motion.go_on(Regime::flight, 0.1);
   std::vector<RegimeProbabilities> out(3);
   const RegimeEvidence evidence({});
-  EXPECT_EQ(evidence.find({}, {}, kLever_m, kLeverCovariance_m2, out).trouble, Trouble::empty);
+  EXPECT_EQ(evidence.find({}, {}, kLever_m, kLeverCovariance_m2, out).error_code, ErrorCode::empty);
   motion.rates.pop_back();
-  EXPECT_EQ(evidence.find(motion.samples, motion.rates, kLever_m, kLeverCovariance_m2, out).trouble,
-            Trouble::out_of_range);
+  EXPECT_EQ(evidence.find(motion.samples, motion.rates, kLever_m, kLeverCovariance_m2, out).error_code,
+            ErrorCode::out_of_range);
   EXPECT_TRUE(out.empty());
   EXPECT_THROW(RegimeEvidence({.throws_hz = 0.0}), InvalidParams);
 }

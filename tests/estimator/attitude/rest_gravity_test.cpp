@@ -69,9 +69,9 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   const RestGravity::State good = after({}, kNone);
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
   EXPECT_EQ(good.spans, 1u);
-  EXPECT_LT(good.miss_rad, 0.04) << "a sample of the turn, at most";
-  EXPECT_LT(good.velocity_share, 0.04);
-  EXPECT_NEAR(gravity.size_share(good), 1.0, 1e-3);
+  EXPECT_LT(good.angle_error_rad, 0.04) << "a sample of the turn, at most";
+  EXPECT_LT(good.velocity_error_ratio, 0.04);
+  EXPECT_NEAR(gravity.magnitude_error_ratio(good), 1.0, 1e-3);
 }
 
 // BROAD 16: three minutes in a hand, in which a bias of 3 mrad/s turns gravity by half a radian
@@ -130,7 +130,7 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
   const RestGravity gravity({});
   // 5 % of 7.8 rad: 0.3 to 0.4 rad
   const RestGravity::State sure = after({}, kNone, 1.05), unsure = after({.rate_sigma_rad_s = 0.12}, kNone, 1.05);
-  EXPECT_GT(sure.miss_rad, 0.3);
+  EXPECT_GT(sure.angle_error_rad, 0.3);
   EXPECT_FALSE(gravity.verdict(sure).ok());
   EXPECT_TRUE(gravity.verdict(unsure).ok()) << gravity.verdict(unsure).message();
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 5.0}, kNone, 0.5)).ok()) << "not of rates that say nothing";
@@ -140,11 +140,11 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
 TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
   const RestGravity::State read = after({}, kNone);
   const RestGravity::State hidden = after({.source = RateSource::bounded_only}, kNone);
-  EXPECT_NEAR(hidden.miss_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);
-  EXPECT_NEAR(hidden.miss_sigma_rad / read.miss_sigma_rad, std::sqrt(3.0 / 0.1), 0.5);
+  EXPECT_NEAR(hidden.angle_error_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);
+  EXPECT_NEAR(hidden.angle_error_sigma_rad / read.angle_error_sigma_rad, std::sqrt(3.0 / 0.1), 0.5);
   // a rate that is 5 % off throughout, which it states
   const RestGravity gravity({});
-  EXPECT_GT(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05).miss_rad, 0.3);
+  EXPECT_GT(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05).angle_error_rad, 0.3);
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05)).ok());
   const Status status =
       gravity.verdict(after({.rate_sigma_rad_s = 0.025, .source = RateSource::bounded_only}, kNone, 1.05));
@@ -164,8 +164,8 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
     // gravity may be anywhere by what these rates state; of the span 3.0 s are turned, 0.4 s it stands already
     const Span unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
     const RestGravity::State wrong = after(unsure, kNone, scale);
-    EXPECT_LT(wrong.miss_rad, 0.1) << "by chance";
-    EXPECT_NEAR(wrong.velocity_share, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
+    EXPECT_LT(wrong.angle_error_rad, 0.1) << "by chance";
+    EXPECT_NEAR(wrong.velocity_error_ratio, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
     EXPECT_STREQ(gravity.verdict(wrong).field,
                  "velocity error after integration from one rest to the next (share of gravity times elapsed time)");
   }
@@ -187,8 +187,8 @@ TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
       if (k == at) rate.w_WI_I_rad_s.x() = 25.0;
       gravity.step(sample, rate, state);
     }
-    EXPECT_NEAR(state.miss_rad, 2.0 * std::sin(0.125), 1e-3) << at;
-    EXPECT_NEAR(state.velocity_share, state.miss_rad, 2e-3) << at;
+    EXPECT_NEAR(state.angle_error_rad, 2.0 * std::sin(0.125), 1e-3) << at;
+    EXPECT_NEAR(state.velocity_error_ratio, state.angle_error_rad, 2e-3) << at;
     EXPECT_TRUE(gravity.verdict(state).ok()) << gravity.verdict(state).message();
   }
 }
@@ -260,7 +260,7 @@ TEST(RestGravity, ReadingsThatAreNoneAndStampsOutOfOrderArePassedOver) {
     none.time_ns = 0;
     gravity.step(none, {}, state);
   }
-  EXPECT_NEAR(gravity.size_share(state), 1.0, 1e-9);
+  EXPECT_NEAR(gravity.magnitude_error_ratio(state), 1.0, 1e-9);
 }
 
 }  // namespace

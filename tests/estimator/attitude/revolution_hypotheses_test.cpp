@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "estimator/attitude/clipped_spin.hpp"
-#include "estimator/src/attitude/carried_problem.hpp"
+#include "estimator/src/attitude/hand_held_problem.hpp"
 #include "estimator/src/attitude/revolution_hypotheses.hpp"
-#include "tumble/attitude/carried_smoother.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
 
 namespace tumble {
 namespace {
@@ -23,11 +23,11 @@ constexpr double kHz = SpinReadings::kHz, kPi = std::numbers::pi;
 
 struct SpinEstimate {
   std::vector<RateState> rates;
-  CarriedSmoother::Report report;
+  HandHeldSmoother::Report report;
 };
 
-CarriedSmoother::Params smoother_params() {
-  CarriedSmoother::Params out;
+HandHeldSmoother::Params smoother_params() {
+  HandHeldSmoother::Params out;
   out.hand_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
   out.expert.jerk_inflation = 1.0;
@@ -39,13 +39,13 @@ SpinEstimate estimated_spin(const ClippedSpin& spin) {
   const SpinReadings readings(spin);
   SpinEstimate out;
   std::vector<AttitudeState> attitudes;
-  const Status status = CarriedSmoother(smoother_params())
+  const Status status = HandHeldSmoother(smoother_params())
                             .estimate(readings.samples, readings.clipped(), out.rates, attitudes, out.report);
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(out.rates.size(), readings.samples.size());
   const auto middle = static_cast<std::size_t>(kHz * (spin.from_s + 0.5 * spin.lasts_s));
   std::printf("asked %d, taken %d, open %d; in the middle %.2f of %.2f, deviation %.2f rad/s\n",
-              out.report.revolutions_asked, out.report.revolutions_taken, out.report.revolutions_open,
+              out.report.revolutions_tested, out.report.revolutions_corrected, out.report.revolutions_ambiguous,
               out.rates[middle].w_WI_I_rad_s.x(), spin.rate(spin.from_s + 0.5 * spin.lasts_s),
               std::sqrt(out.rates[middle].covariance_rad2_s2(0, 0)));
   return out;
@@ -61,9 +61,9 @@ TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
   ClippedSpin spin;
   spin.more_rad_s = 4.0;
   const SpinEstimate result = estimated_spin(spin);
-  EXPECT_EQ(result.report.revolutions_asked, 1);
-  EXPECT_EQ(result.report.revolutions_taken, 0);
-  EXPECT_EQ(result.report.revolutions_open, 1);
+  EXPECT_EQ(result.report.revolutions_tested, 1);
+  EXPECT_EQ(result.report.revolutions_corrected, 0);
+  EXPECT_EQ(result.report.revolutions_ambiguous, 1);
   const double q = std::pow(smoother_params().jerk_rad_s3_sqrts, 2.0), T = spin.lasts_s + 1.0 / kHz;
   const double theta = 0.5 * spin.more_rad_s * spin.lasts_s;
   double sum = 0.0, second = 0.0;
@@ -90,8 +90,8 @@ TEST(RevolutionHypotheses, WhatFollowsDecides) {
   const SpinEstimate result = estimated_spin(spin);
   const RateState state = middle(spin, result);
   const double error = std::abs(state.w_WI_I_rad_s.x() - spin.rate(spin.from_s + 0.5 * spin.lasts_s));
-  EXPECT_GE(result.report.revolutions_taken, 1);
-  EXPECT_EQ(result.report.revolutions_open, 1);
+  EXPECT_GE(result.report.revolutions_corrected, 1);
+  EXPECT_EQ(result.report.revolutions_ambiguous, 1);
   EXPECT_LT(error, 1.5);
   EXPECT_LT(error, 3.0 * std::sqrt(state.covariance_rad2_s2(0, 0)));
 }
@@ -103,31 +103,31 @@ TEST(RevolutionHypotheses, ASegmentThatIsKnownIsNotAsked) {
   spin.lasts_s = 0.6;
   spin.blind = false;
   const SpinEstimate result = estimated_spin(spin);
-  EXPECT_EQ(result.report.revolutions_asked, 0);
-  EXPECT_EQ(result.report.revolutions_taken, 0);
-  EXPECT_EQ(result.report.revolutions_open, 0);
+  EXPECT_EQ(result.report.revolutions_tested, 0);
+  EXPECT_EQ(result.report.revolutions_corrected, 0);
+  EXPECT_EQ(result.report.revolutions_ambiguous, 0);
   EXPECT_LT(std::sqrt(middle(spin, result).covariance_rad2_s2(0, 0)), 2.0);
 }
 
 /// The problem of such a spin, solved as far as the iterations go.
 struct Solved {
   SpinReadings readings;
-  carried::Collected collected;
-  carried::Problem problem;
-  CarriedSmoother::Report report;
+  hand_held::Collected collected;
+  hand_held::Problem problem;
+  HandHeldSmoother::Report report;
 
-  Solved(const ClippedSpin& spin, const CarriedSmoother::Params& params)
+  Solved(const ClippedSpin& spin, const HandHeldSmoother::Params& params)
       : readings(spin),
-        collected(carried::collect(params, readings.samples, readings.clipped())),
+        collected(hand_held::collect(params, readings.samples, readings.clipped())),
         problem(params, Eigen::Matrix3d::Identity(), collected, started(params)) {
     EXPECT_TRUE(problem.solve(report).ok());
     EXPECT_TRUE(problem.covariances(report).ok());
   }
 
  private:
-  std::vector<carried::Node> started(const CarriedSmoother::Params& params) const {
-    std::vector<carried::Node> nodes;
-    EXPECT_TRUE(carried::start_nodes(params, Eigen::Matrix3d::Identity(), collected, nodes).ok());
+  std::vector<hand_held::Node> started(const HandHeldSmoother::Params& params) const {
+    std::vector<hand_held::Node> nodes;
+    EXPECT_TRUE(hand_held::start_nodes(params, Eigen::Matrix3d::Identity(), collected, nodes).ok());
     return nodes;
   }
 };
@@ -138,17 +138,17 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   ClippedSpin spin;
   spin.more_rad_s = 7.5;
   Solved solved(spin, smoother_params());
-  const std::vector<carried::Node> before(solved.problem.nodes().begin(), solved.problem.nodes().end());
-  const CarriedSmoother::Report report = solved.report;
-  const auto fails = [](carried::Problem& problem, CarriedSmoother::Report& changed) {
+  const std::vector<hand_held::Node> before(solved.problem.nodes().begin(), solved.problem.nodes().end());
+  const HandHeldSmoother::Report report = solved.report;
+  const auto fails = [](hand_held::Problem& problem, HandHeldSmoother::Report& changed) {
     EXPECT_TRUE(problem.solve(changed).ok());
-    return Status{Trouble::diverged, "iteration of the smoother for hand-held motion", 1.0, 0.0};
+    return Status{ErrorCode::diverged, "iteration of the smoother for hand-held motion", 1.0, 0.0};
   };
-  carried::test_revolutions(solved.problem, solved.report, fails);
-  EXPECT_EQ(solved.report.revolutions_asked, 1);
-  EXPECT_EQ(solved.report.revolutions_taken, 0);
+  hand_held::test_revolutions(solved.problem, solved.report, fails);
+  EXPECT_EQ(solved.report.revolutions_tested, 1);
+  EXPECT_EQ(solved.report.revolutions_corrected, 0);
   EXPECT_EQ(solved.report.revolutions_failed, 1);
-  EXPECT_EQ(solved.report.revolutions_open, 1);
+  EXPECT_EQ(solved.report.revolutions_ambiguous, 1);
   EXPECT_EQ(solved.report.cost, report.cost);
   EXPECT_EQ(solved.report.constants.lever_arm_m, report.constants.lever_arm_m);
   ASSERT_EQ(solved.problem.nodes().size(), before.size());
@@ -158,17 +158,17 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   const auto middle = static_cast<std::size_t>((spin.from_s + 0.5 * spin.lasts_s) / solved.problem.node_s());
   const double error = before[middle].w_WI_I_rad_s.x() - spin.rate(spin.from_s + 0.5 * spin.lasts_s);
   EXPECT_GT(std::abs(error), 3.0);
-  EXPECT_LT(std::abs(error), 3.0 * std::sqrt(solved.problem.covariance(middle)(carried::kRate, carried::kRate)));
+  EXPECT_LT(std::abs(error), 3.0 * std::sqrt(solved.problem.covariance(middle)(hand_held::kRate, hand_held::kRate)));
 }
 
 /// More iterations lead to no larger cost once the hand's power stands still, however bad the start. Whole steps led
 /// from 99 to 2841, from 1717 to 8231 and from 261116 to 312785 here, within these iterations.
-TEST(CarriedDescent, DoesNotClimb) {
+TEST(HandHeldDescent, DoesNotClimb) {
   const ClippedSpin spins[] = {{.more_rad_s = 4.0, .duration_s = 7.5, .blind = false},
                                {.more_rad_s = 15.0, .duration_s = 7.5},
                                {.more_rad_s = 15.0, .lasts_s = 0.5, .duration_s = 7.5}};
   for (const ClippedSpin& spin : spins) {
-    CarriedSmoother::Params some = smoother_params();
+    HandHeldSmoother::Params some = smoother_params();
     double least = 1e300;
     for (int count = 10; count <= 15; ++count) {
       some.expert.iterations_max = count;

@@ -43,9 +43,11 @@ TEST(Level, NoseStraightUpOrDownIsFinite) {
 
 TEST(Level, RefusesNoForceAndNaN) {
   Eigen::Quaterniond q(0.5, 0.5, 0.5, 0.5);
-  EXPECT_EQ(level(Eigen::Vector3d(0, 9e-7, 0), q).trouble, Trouble::degenerate);
-  EXPECT_EQ(level(Eigen::Vector3d(0, std::numeric_limits<double>::quiet_NaN(), 9.8), q).trouble, Trouble::non_finite);
-  EXPECT_EQ(level(Eigen::Vector3d(std::numeric_limits<double>::infinity(), 0, 9.8), q).trouble, Trouble::non_finite);
+  EXPECT_EQ(level(Eigen::Vector3d(0, 9e-7, 0), q).error_code, ErrorCode::degenerate);
+  EXPECT_EQ(level(Eigen::Vector3d(0, std::numeric_limits<double>::quiet_NaN(), 9.8), q).error_code,
+            ErrorCode::non_finite);
+  EXPECT_EQ(level(Eigen::Vector3d(std::numeric_limits<double>::infinity(), 0, 9.8), q).error_code,
+            ErrorCode::non_finite);
   EXPECT_EQ(q.w(), 0.5) << "untouched on trouble";
 }
 

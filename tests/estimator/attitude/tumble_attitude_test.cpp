@@ -200,8 +200,8 @@ TEST(TumbleAttitude, RefusesACovarianceThatIsNone) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     covariance(1, 1) = bad;
-    EXPECT_EQ(filter.step({kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, covariance, state).trouble,
-              Trouble::out_of_range);
+    EXPECT_EQ(filter.step({kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, covariance, state).error_code,
+              ErrorCode::out_of_range);
     EXPECT_TRUE(state == before);
   }
 }

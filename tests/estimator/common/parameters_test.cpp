@@ -37,9 +37,9 @@ struct Outer {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", Rank::first});
+    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", FieldRank::basic});
     visit(p.least, {"least", "1", 0, 1e9, "a number of things"});
-    visit(p.on, on_off("on", "a switch"));
+    visit(p.on, switch_field("on", "a switch"));
     visit(p.kind, {"kind", "1", 0, 1, "a choice"});
     visit(p.arm_m, {"arm_m", "m", -1.0, 1.0, "an arm"});
     visit.group("left_", p.left);
@@ -47,10 +47,10 @@ struct Outer {
   }
 };
 
-/// The message of require_fields; empty when it accepts.
+/// The message of require_valid_fields; empty when it accepts.
 std::string complaint(const Outer& params) {
   try {
-    require_fields(params);
+    require_valid_fields(params);
   } catch (const InvalidParams& error) {
     return error.what();
   }
@@ -72,7 +72,7 @@ TEST(Fields, OutOfBoundsAreNamedWithTheirGroup) {
   params.right.share = 1.5;
   EXPECT_EQ(complaint(params), "right_share is 1.5; it must be within [0, 1]");
   const Status status = check_fields(params);
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(status.field, "share");
   EXPECT_EQ(status.value, 1.5);
   EXPECT_EQ(status.bound, 1.0);
@@ -126,11 +126,11 @@ TEST(Fields, AreVisitedByTheirWholeNamesAndSetThroughThem) {
 
 TEST(Fields, ANameIsAmongPatternsWholeOrByItsBeginning) {
   const std::vector<std::string> patterns = {"left_*", "tau_s"};
-  EXPECT_TRUE(is_among<std::string>("left_count", patterns));
-  EXPECT_TRUE(is_among<std::string>("tau_s", patterns));
-  EXPECT_FALSE(is_among<std::string>("tau_s_more", patterns));
-  EXPECT_FALSE(is_among<std::string>("right_left_count", patterns));
-  EXPECT_FALSE(is_among<std::string>("", patterns));
+  EXPECT_TRUE(matches_any<std::string>("left_count", patterns));
+  EXPECT_TRUE(matches_any<std::string>("tau_s", patterns));
+  EXPECT_FALSE(matches_any<std::string>("tau_s_more", patterns));
+  EXPECT_FALSE(matches_any<std::string>("right_left_count", patterns));
+  EXPECT_FALSE(matches_any<std::string>("", patterns));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ std::vector<TimeNs> jittered(std::vector<TimeNs> times_ns, double jitter_ns) {
 
 std::vector<TimeNs> times_of(std::vector<TimeNs> stamps_ns, const SampleClock::Params& params = {}) {
   double corrected_jitter_s = 0.0;
-  EXPECT_TRUE(to_sample_times(SampleClock(params), stamps_ns, corrected_jitter_s).ok());
+  EXPECT_TRUE(correct_stamps(SampleClock(params), stamps_ns, corrected_jitter_s).ok());
   return stamps_ns;
 }
 
@@ -106,7 +106,7 @@ TEST(SampleClock, TellsTheJitterAndMendsNoneThatItIsToldToLeave) {
   std::vector<TimeNs> stamps_ns = jittered(times_ns, 5e5);
   double corrected_jitter_s = 0.0;
   std::vector<TimeNs> mended_ns = stamps_ns;
-  ASSERT_TRUE(to_sample_times(SampleClock({}), mended_ns, corrected_jitter_s).ok());
+  ASSERT_TRUE(correct_stamps(SampleClock({}), mended_ns, corrected_jitter_s).ok());
   EXPECT_NEAR(corrected_jitter_s, 5e-4, 1e-4);
   EXPECT_NE(mended_ns, stamps_ns);
   EXPECT_EQ(times_of(stamps_ns, {.jitter_max = 0.0}), stamps_ns);
@@ -207,7 +207,7 @@ TEST(SampleClock, RefusesAStateThatNoStampsLeave) {
   other.time_ns += 20'000'000;
   EXPECT_STREQ(SampleClock::check_state(other).field, "stamps.time_ns");
   other = state;
-  other.sum_nn = 0.0;
+  other.weighted_number_squared_sum = 0.0;
   EXPECT_STREQ(SampleClock::check_state(other).field, "stamps.sum_nn");
   other = state;
   other.time_ns = *other.stamp_ns;
@@ -223,7 +223,7 @@ TEST(SampleClock, RefusesAStampThatIsNotLater) {
   const TimeNs last_ns = *state.stamp_ns, given_ns = time_ns;
   for (const TimeNs stamp_ns : {last_ns, last_ns - 1, TimeNs{0}}) {
     const Status status = clock.push(stamp_ns, state, time_ns);
-    EXPECT_EQ(status.trouble, Trouble::time_order);
+    EXPECT_EQ(status.error_code, ErrorCode::time_order);
     EXPECT_EQ(status.bound, double(last_ns));
   }
   EXPECT_EQ(time_ns, given_ns);

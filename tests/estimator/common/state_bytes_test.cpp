@@ -103,7 +103,7 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
   };
   // value 8 bytes, count 4, on 1, colour 1
   Status status = status_with(0, {0, 0, 0, 0, 0, 0, 0xf0, 0x7f});
-  EXPECT_EQ(status.trouble, Trouble::non_finite);
+  EXPECT_EQ(status.error_code, ErrorCode::non_finite);
   EXPECT_STREQ(status.field, "value");
   status = status_with(8, {11});
   EXPECT_EQ(status.message(), "out_of_range: count is 11, bound 10");
@@ -113,10 +113,10 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
   EXPECT_EQ(status.message(), "out_of_range: colour is 2, bound 1");
   // a length that no bytes stand for asks for no memory
   status = status_with(14 + 24 + 32, {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f});
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(status.field, "samples");
   status = status_with(14 + 24 + 32, {60});
-  EXPECT_EQ(status.trouble, Trouble::too_few);
+  EXPECT_EQ(status.error_code, ErrorCode::too_few);
 }
 
 TEST(StateBytes, AreMatchedNumberByNumber) {

@@ -21,22 +21,22 @@ TEST(Status, DefaultIsSuccess) {
 }
 
 TEST(Status, MessageNamesFieldValueAndBound) {
-  const Status status{Trouble::time_order, "time_ns", 5.0, 7.0};
+  const Status status{ErrorCode::time_order, "time_ns", 5.0, 7.0};
   EXPECT_FALSE(status.ok());
   EXPECT_EQ(status.message(), "time_order: time_ns is 5, bound 7");
 }
 
 TEST(Status, MessageKeepsEveryDigitAndPrintsNaN) {
-  EXPECT_EQ((Status{Trouble::gap, "dt_s", 0.1, 1e-7}).message(), "gap: dt_s is 0.1, bound 1e-07");
-  EXPECT_EQ((Status{Trouble::time_order, "time_ns", 1753351234567890.0, 0.0}).message(),
+  EXPECT_EQ((Status{ErrorCode::gap, "dt_s", 0.1, 1e-7}).message(), "gap: dt_s is 0.1, bound 1e-07");
+  EXPECT_EQ((Status{ErrorCode::time_order, "time_ns", 1753351234567890.0, 0.0}).message(),
             "time_order: time_ns is 1753351234567890, bound 0");
-  EXPECT_EQ((Status{Trouble::non_finite, "x", std::nan(""), 0.0}).message(), "non_finite: x is nan, bound 0");
+  EXPECT_EQ((Status{ErrorCode::non_finite, "x", std::nan(""), 0.0}).message(), "non_finite: x is nan, bound 0");
 }
 
 TEST(Status, EveryTroubleHasItsOwnName) {
   std::set<std::string> names;
-  for (int i = 0; i <= static_cast<int>(Trouble::diverged); ++i) names.insert(to_string(static_cast<Trouble>(i)));
-  EXPECT_EQ(names.size(), static_cast<std::size_t>(Trouble::diverged) + 1);
+  for (int i = 0; i <= static_cast<int>(ErrorCode::diverged); ++i) names.insert(to_string(static_cast<ErrorCode>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(ErrorCode::diverged) + 1);
   EXPECT_EQ(names.count("unknown"), 0u);
 }
 
@@ -57,7 +57,7 @@ TEST(CheckSample, NamesTheFieldThatIsNotFinite) {
   ImuSample sample;
   EXPECT_TRUE(check_sample(sample).ok());
   sample.specific_force_m_s2.z() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(check_sample(sample).trouble, Trouble::non_finite);
+  EXPECT_EQ(check_sample(sample).error_code, ErrorCode::non_finite);
   EXPECT_STREQ(check_sample(sample).field, "specific_force_m_s2");
   EXPECT_TRUE(std::isinf(check_sample(sample).value));
   sample.angular_velocity_rad_s.y() = std::nan("");
@@ -71,7 +71,7 @@ TEST(CheckSample, RefusesWhatNoSensorSays) {
   sample.specific_force_m_s2.x() = -kReadingMax;
   EXPECT_TRUE(check_sample(sample).ok());
   sample.specific_force_m_s2.x() = std::nextafter(-kReadingMax, -2.0 * kReadingMax);
-  EXPECT_EQ(check_sample(sample).trouble, Trouble::out_of_range);
+  EXPECT_EQ(check_sample(sample).error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(check_sample(sample).field, "specific_force_m_s2");
   EXPECT_EQ(check_sample(sample).value, sample.specific_force_m_s2.x());
   EXPECT_EQ(check_sample(sample).bound, kReadingMax);
@@ -82,33 +82,33 @@ TEST(CheckSamples, TellsTheFirstTroubleOfASequence) {
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
   EXPECT_TRUE(check_samples(samples, 0.01).ok());
   EXPECT_TRUE(check_samples({}, 0.01).ok());
-  EXPECT_EQ(check_samples(samples, 0.009).trouble, Trouble::gap);
+  EXPECT_EQ(check_samples(samples, 0.009).error_code, ErrorCode::gap);
   samples[3].angular_velocity_rad_s.z() = std::nan("");
-  EXPECT_EQ(check_samples(samples, 0.01).trouble, Trouble::non_finite);
+  EXPECT_EQ(check_samples(samples, 0.01).error_code, ErrorCode::non_finite);
   samples[2].time_ns = samples[1].time_ns;  // comes before
   const Status stuck = check_samples(samples, 0.01);
-  EXPECT_EQ(stuck.trouble, Trouble::time_order);
+  EXPECT_EQ(stuck.error_code, ErrorCode::time_order);
   EXPECT_EQ(stuck.value, 10'000'000.0);
 }
 
 TEST(CheckFollows, RefusesEqualFallingAndDistantStamps) {
-  EXPECT_TRUE(check_follows(11, 10, 1.0).ok());
-  EXPECT_TRUE(check_follows(1000000010, 10, 1.0).ok());
-  const Status equal = check_follows(10, 10, 1.0), falling = check_follows(9, 10, 1.0);
-  EXPECT_EQ(equal.trouble, Trouble::time_order);
-  EXPECT_EQ(falling.trouble, Trouble::time_order);
+  EXPECT_TRUE(check_stamp_order(11, 10, 1.0).ok());
+  EXPECT_TRUE(check_stamp_order(1000000010, 10, 1.0).ok());
+  const Status equal = check_stamp_order(10, 10, 1.0), falling = check_stamp_order(9, 10, 1.0);
+  EXPECT_EQ(equal.error_code, ErrorCode::time_order);
+  EXPECT_EQ(falling.error_code, ErrorCode::time_order);
   EXPECT_EQ(falling.value, 9.0);
   EXPECT_EQ(falling.bound, 10.0);
-  const Status gap = check_follows(2000000010, 10, 1.0);
-  EXPECT_EQ(gap.trouble, Trouble::gap);
+  const Status gap = check_stamp_order(2000000010, 10, 1.0);
+  EXPECT_EQ(gap.error_code, ErrorCode::gap);
   EXPECT_DOUBLE_EQ(gap.value, 2.0);
   EXPECT_EQ(gap.bound, 1.0);
   // stamps whose difference does not fit into one
   constexpr TimeNs kFirst = std::numeric_limits<TimeNs>::min(), kLast = std::numeric_limits<TimeNs>::max();
-  EXPECT_EQ(check_follows(0, kFirst, 1.0).trouble, Trouble::gap);
-  EXPECT_DOUBLE_EQ(check_follows(kLast, kFirst, 1.0).value, 18446744073.709551615);
-  EXPECT_EQ(check_follows(kFirst, kLast, 1.0).trouble, Trouble::time_order);
-  EXPECT_TRUE(check_follows(kFirst + 1, kFirst, 1.0).ok());
+  EXPECT_EQ(check_stamp_order(0, kFirst, 1.0).error_code, ErrorCode::gap);
+  EXPECT_DOUBLE_EQ(check_stamp_order(kLast, kFirst, 1.0).value, 18446744073.709551615);
+  EXPECT_EQ(check_stamp_order(kFirst, kLast, 1.0).error_code, ErrorCode::time_order);
+  EXPECT_TRUE(check_stamp_order(kFirst + 1, kFirst, 1.0).ok());
 }
 
 }  // namespace

@@ -33,9 +33,9 @@ TEST(StatedCalibration, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
 TEST(StatedCalibration, SaysWhereItWasGivenWrong) {
   EXPECT_TRUE(kGiven.verdict(turned(0.049)).ok());
   const Status wrong = kGiven.verdict(turned(0.051));
-  EXPECT_EQ(wrong.trouble, Trouble::out_of_range);
+  EXPECT_EQ(wrong.error_code, ErrorCode::out_of_range);
   EXPECT_NEAR(wrong.value, 5.1, 1e-9);
-  EXPECT_EQ(wrong.bound, StatedCalibration::kMaxDeviations);
+  EXPECT_EQ(wrong.bound, StatedCalibration::kDistanceMax_sigmas);
 }
 
 TEST(StatedCalibration, WhatIsExactMayNotMove) {

@@ -68,14 +68,14 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
                                             static_cast<float>(test::uniform(4 * i + 2)) - 0.5f,
                                             static_cast<float>(test::uniform(4 * i + 3)) - 0.5f);
     }
-    std::vector<Eigen::Vector3f> levers;
-    compute_lever_arm_vectors(trajectory, points, levers);
-    ASSERT_EQ(levers.size(), points.size());
+    std::vector<Eigen::Vector3f> lever_arm_vectors;
+    compute_lever_arm_vectors(trajectory, points, lever_arm_vectors);
+    ASSERT_EQ(lever_arm_vectors.size(), points.size());
     std::size_t hint = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
+      const SweepTrajectory::PreintegratedMotion now = trajectory.at(points[i].t_s, hint);
       const Eigen::Vector3d lever = now.preintegrated_position_m + now.q_WI * points[i].x_I_m.cast<double>();
-      ASSERT_EQ(levers[i], lever.cast<float>()) << "spin " << spin_rad_s << ", point " << i;
+      ASSERT_EQ(lever_arm_vectors[i], lever.cast<float>()) << "spin " << spin_rad_s << ", point " << i;
     }
   }
 }
@@ -124,14 +124,14 @@ TEST(SweepTrajectory, SaysWhatItLacks) {
   const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(test::Motion{}, 0.2));
   SweepTrajectory trajectory;
   MotionState start;
-  EXPECT_EQ(trajectory.build(start, {}, 100, test::kRoomGravity_m_s2).trouble, Trouble::too_few);
-  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).trouble, Trouble::too_few);
-  EXPECT_EQ(trajectory.build(start, samples, -1, test::kRoomGravity_m_s2).trouble, Trouble::time_order);
+  EXPECT_EQ(trajectory.build(start, {}, 100, test::kRoomGravity_m_s2).error_code, ErrorCode::too_few);
+  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).error_code, ErrorCode::too_few);
+  EXPECT_EQ(trajectory.build(start, samples, -1, test::kRoomGravity_m_s2).error_code, ErrorCode::time_order);
   start.time_ns = -1;
-  EXPECT_EQ(trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2).trouble, Trouble::gap);
+  EXPECT_EQ(trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2).error_code, ErrorCode::gap);
   start.time_ns = samples.front().from_ns - 500'000'000;
   const Status gap = trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2);
-  EXPECT_EQ(gap.trouble, Trouble::gap);
+  EXPECT_EQ(gap.error_code, ErrorCode::gap);
   EXPECT_DOUBLE_EQ(gap.value, 0.5) << "seconds, as of every gap";
   EXPECT_EQ(gap.bound, 0.0);
 }

@@ -94,12 +94,12 @@ TEST(FlightArc, IsWhatAnAccelerometerOffTheCentreReads) {
 TEST(FlightArc, RefusesWhatItCannotFly) {
   std::vector<MotionSample> samples;
   FlyingBody body;
-  EXPECT_EQ(flight_arc(body, {0, 0, 1}, 10, 10, 1, samples).trouble, Trouble::time_order);
-  EXPECT_EQ(flight_arc(body, {0, 0, 1}, 0, 10, 0, samples).trouble, Trouble::time_order);
-  EXPECT_EQ(flight_arc(body, {0, 0, std::numeric_limits<double>::quiet_NaN()}, 0, 10, 1, samples).trouble,
-            Trouble::non_finite);
+  EXPECT_EQ(flight_arc(body, {0, 0, 1}, 10, 10, 1, samples).error_code, ErrorCode::time_order);
+  EXPECT_EQ(flight_arc(body, {0, 0, 1}, 0, 10, 0, samples).error_code, ErrorCode::time_order);
+  EXPECT_EQ(flight_arc(body, {0, 0, std::numeric_limits<double>::quiet_NaN()}, 0, 10, 1, samples).error_code,
+            ErrorCode::non_finite);
   body.inertia_I_kg_m2.setZero();
-  EXPECT_EQ(flight_arc(body, {0, 0, 1}, 0, 10, 1, samples).trouble, Trouble::degenerate);
+  EXPECT_EQ(flight_arc(body, {0, 0, 1}, 0, 10, 1, samples).error_code, ErrorCode::degenerate);
   EXPECT_TRUE(samples.empty());
 }
 

@@ -30,7 +30,7 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
     // the map of a sensor at rest is rings; it fills once the spin begins
     EXPECT_NE(reports[i].verdict, SweepVerdict::rejected) << "sweep " << i;
     registered += reports[i].verdict == SweepVerdict::registered;
-    EXPECT_GT(reports[i].inlier_share, i < 4 ? 0.15 : 0.35) << "sweep " << i;
+    EXPECT_GT(reports[i].inlier_ratio, i < 4 ? 0.15 : 0.35) << "sweep " << i;
     ASSERT_EQ(reports[i].trajectory.size(), static_cast<std::size_t>(kSamplesPerSweep));
     EXPECT_EQ(reports[i].trajectory.back().time_ns, static_cast<TimeNs>(i + 1) * test::kSweep_ns);
     EXPECT_LT(error_of(reports[i].pose).m, 0.05) << "sweep " << i;
@@ -121,10 +121,10 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
                                          test::kRoomNoise_m);
     Odometry::SweepReport report;
     ASSERT_TRUE(add_sweep(odometry, i, points, report).ok());
-    EXPECT_NE(report.verdict, SweepVerdict::registered) << "sweep " << i << " conditioning " << report.conditioning;
-    if (report.verdict != SweepVerdict::degenerate || report.conditioning == 0.0) continue;
+    EXPECT_NE(report.verdict, SweepVerdict::registered) << "sweep " << i << " conditioning " << report.eigenvalue_ratio;
+    if (report.verdict != SweepVerdict::degenerate || report.eigenvalue_ratio == 0.0) continue;
     ++degenerate;
-    const auto& d = report.weakest_direction;
+    const auto& d = report.least_constrained_direction;
     EXPECT_GT(std::hypot(d[0], d[1], d[5]), 0.95) << d.transpose();
   }
   EXPECT_GT(degenerate, 3);  // at rest its rings give no plane at all
@@ -161,7 +161,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
     ASSERT_TRUE(add_sweep(odometry, sweep, plane(sweep == 0 ? -1.5f : -1.495f), report).ok());
   }
   EXPECT_EQ(report.verdict, SweepVerdict::degenerate);
-  EXPECT_EQ(report.conditioning, 0.0);
+  EXPECT_EQ(report.eigenvalue_ratio, 0.0);
   EXPECT_GT(report.iterations, 0);
   EXPECT_NEAR(report.pose.p_WA_m.z(), -0.005, 0.002);
   EXPECT_GT(report.innovation, 0.0);

@@ -31,7 +31,7 @@ TEST(Localisation, IsWhatTheDeviationSaysHoweverManySweepsWereHeld) {
   rejected.verdict = SweepVerdict::rejected;
   EXPECT_TRUE(after(rejected).ok());
   const Status lost = after(sweep(1.1, 0.0));
-  EXPECT_EQ(lost.trouble, Trouble::out_of_range) << "though it was found again";
+  EXPECT_EQ(lost.error_code, ErrorCode::out_of_range) << "though it was found again";
   EXPECT_NE(std::string(lost.field).find("deviation"), std::string::npos);
 }
 
@@ -70,17 +70,17 @@ TEST(Localisation, APresentFindingEnds) {
     localisation.add(report);
   };
   for (int k = 0; k < 100; ++k) add(0.1, 0.3, 30.0);
-  EXPECT_TRUE(localisation.present().ok()) << "the drift of a long path is no tracking failure";
+  EXPECT_TRUE(localisation.current_verdict().ok()) << "the drift of a long path is no tracking failure";
   add(1.1, 0.3);
-  EXPECT_FALSE(localisation.present().ok());
+  EXPECT_FALSE(localisation.current_verdict().ok());
   add(0.1, 0.3);
-  EXPECT_TRUE(localisation.present().ok());
+  EXPECT_TRUE(localisation.current_verdict().ok());
   add(0.1, 3.0);
-  EXPECT_TRUE(localisation.present().ok());
+  EXPECT_TRUE(localisation.current_verdict().ok());
   add(0.1, 3.0);
-  EXPECT_FALSE(localisation.present().ok());
+  EXPECT_FALSE(localisation.current_verdict().ok());
   for (int k = 0; k < int(10.0 * Localisation::kMemory_s) + 2; ++k) add(0.1, 0.3);
-  EXPECT_TRUE(localisation.present().ok());
+  EXPECT_TRUE(localisation.current_verdict().ok());
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(LoneReturns, OfATumbleInDustFewStayAndFewGoTooMany) {
     std::vector<SweepPoint> points = selected(given);
     lone.drop(kNoise, points);
     std::set<std::pair<std::uint16_t, float>> left;
-    for (const SweepPoint& point : points) left.insert({point.ring, point.sweep_t_s});
+    for (const SweepPoint& point : points) left.insert({point.ring, point.sweep_time_s});
     for (std::size_t k = 0; k < given.size(); ++k) {
       const bool stays = left.contains({given[k].ring, static_cast<float>(seconds(given[k].offset_ns))});
       if (moved_m[k] > kNoticeable_m) ++dust, dust_left += stays;
@@ -142,7 +142,7 @@ TEST(LoneReturns, KeepDustOutOfTheMap) {
     test::feed_imu(odometry, sweep);
     const auto points = dusty(test::room_tumble().sweeps[static_cast<std::size_t>(sweep)], sweep, nullptr);
     ASSERT_TRUE(test::add_sweep(odometry, sweep, points, report).ok());
-    alone += report.lone_points;
+    alone += report.isolated_points;
   }
   EXPECT_LT(test::error_of(report.pose).m, 0.05);
   EXPECT_GT(alone, 10'000u);

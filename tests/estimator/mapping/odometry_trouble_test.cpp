@@ -28,25 +28,27 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   const std::vector<LidarPoint>& points = test::room_tumble().sweeps[3];
 
   // IMU samples do not reach the end; nothing changes
-  EXPECT_EQ(add_sweep(odometry, 3, points, report).trouble, Trouble::too_few);
+  EXPECT_EQ(add_sweep(odometry, 3, points, report).error_code, ErrorCode::too_few);
   feed_imu(odometry, 3);
   // times
-  EXPECT_EQ(odometry.add_sweep(2 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).trouble, Trouble::time_order);
-  EXPECT_EQ(odometry.add_sweep(4 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).trouble, Trouble::time_order);
-  EXPECT_EQ(odometry.add_sweep(3 * test::kSweep_ns, 3 * test::kSweep_ns + 50'000'000, points, report).trouble,
-            Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_sweep(2 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,
+            ErrorCode::time_order);
+  EXPECT_EQ(odometry.add_sweep(4 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,
+            ErrorCode::time_order);
+  EXPECT_EQ(odometry.add_sweep(3 * test::kSweep_ns, 3 * test::kSweep_ns + 50'000'000, points, report).error_code,
+            ErrorCode::out_of_range);
   EXPECT_EQ(report.verdict, SweepVerdict::rejected);
   const ImuSample& old = test::room_tumble().imu[5];
-  EXPECT_EQ(odometry.add_imu(old, test::believe(old)).trouble, Trouble::time_order);
+  EXPECT_EQ(odometry.add_imu(old, test::believe(old)).error_code, ErrorCode::time_order);
   ImuSample next = test::room_tumble().imu[40];
   RateState other = test::believe(next);
   other.time_ns += 1;
-  EXPECT_EQ(odometry.add_imu(next, other).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_imu(next, other).error_code, ErrorCode::out_of_range);
   other = test::believe(next);
   other.w_WI_I_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(odometry.add_imu(next, other).trouble, Trouble::non_finite);
+  EXPECT_EQ(odometry.add_imu(next, other).error_code, ErrorCode::non_finite);
   next.specific_force_m_s2.y() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(odometry.add_imu(next, test::believe(test::room_tumble().imu[40])).trouble, Trouble::non_finite);
+  EXPECT_EQ(odometry.add_imu(next, test::believe(test::room_tumble().imu[40])).error_code, ErrorCode::non_finite);
 
   // after all of this the sweep registers as if nothing had been
   ASSERT_TRUE(add_sweep(odometry, 3, points, report).ok());
@@ -57,7 +59,7 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
 
 struct BadSweep {
   const char* name;
-  Trouble trouble;
+  ErrorCode error_code;
   std::vector<LidarPoint> (*make)(std::vector<LidarPoint>);
 };
 void PrintTo(const BadSweep& bad, std::ostream* out) {
@@ -74,7 +76,7 @@ TEST_P(UselessSweep, KeepsTheInertialPriorAndSaysSo) {
     Odometry::SweepReport report;
     const Status status =
         add_sweep(odometry, i, GetParam().make(test::room_tumble().sweeps[static_cast<std::size_t>(i)]), report);
-    EXPECT_EQ(status.trouble, GetParam().trouble) << status.message();
+    EXPECT_EQ(status.error_code, GetParam().error_code) << status.message();
     EXPECT_EQ(report.verdict, SweepVerdict::rejected);
     EXPECT_EQ(report.map_points_added, 0u);
     EXPECT_EQ(report.pose.time_ns, (i + 1) * test::kSweep_ns);
@@ -110,11 +112,11 @@ std::vector<LidarPoint> a_handful(std::vector<LidarPoint> points) {
   return points;
 }
 INSTANTIATE_TEST_SUITE_P(Sweeps, UselessSweep,
-                         testing::Values(BadSweep{"empty", Trouble::empty, nothing},
-                                         BadSweep{"nan", Trouble::non_finite, all_nan},
-                                         BadSweep{"equal_offsets", Trouble::degenerate, equal_offsets},
-                                         BadSweep{"covered", Trouble::too_few, covered},
-                                         BadSweep{"a_handful", Trouble::none, a_handful}),
+                         testing::Values(BadSweep{"empty", ErrorCode::empty, nothing},
+                                         BadSweep{"nan", ErrorCode::non_finite, all_nan},
+                                         BadSweep{"equal_offsets", ErrorCode::degenerate, equal_offsets},
+                                         BadSweep{"covered", ErrorCode::too_few, covered},
+                                         BadSweep{"a_handful", ErrorCode::none, a_handful}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(LidarInertialOdometry, TreatsNanReturnsAsMisses) {
@@ -135,15 +137,15 @@ TEST(LidarInertialOdometry, TreatsNanReturnsAsMisses) {
 TEST(LidarInertialOdometry, RefusesAVelocityThatSaysNothing) {
   Odometry odometry(rig_params());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(odometry.add_velocity({nan, 0.0, 0.0}, 0.01).trouble, Trouble::non_finite);
-  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, nan).trouble, Trouble::non_finite);
-  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, 0.0).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({nan, 0.0, 0.0}, 0.01).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, nan).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, 0.0).error_code, ErrorCode::out_of_range);
 }
 
 TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
   Odometry odometry(rig_params());
   Odometry::SweepReport report;
-  EXPECT_EQ(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).trouble, Trouble::too_few);
+  EXPECT_EQ(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).error_code, ErrorCode::too_few);
   EXPECT_EQ(report.verdict, SweepVerdict::rejected);
   EXPECT_TRUE(odometry.map().empty());
 }
@@ -169,7 +171,7 @@ TEST(LidarInertialOdometry, BadParamsAreToldAsAValueToo) {
     Odometry::Params params;
     change(params);
     const Status status = check_odometry_params(params);
-    EXPECT_EQ(status.trouble, Trouble::out_of_range) << status.field;
+    EXPECT_EQ(status.error_code, ErrorCode::out_of_range) << status.field;
     EXPECT_THROW(Odometry{params}, InvalidParams) << status.field;
     return std::string(status.field);
   };

@@ -73,7 +73,7 @@ int run_until_localised(RoomRig& rig, int last = kLocalised) {
 TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
   RoomRig rig(true_params(), second_motion());
   ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
-  EXPECT_EQ(rig.odometry.localised().trouble, Trouble::degenerate);
+  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
   const int sweeps = run_until_localised(rig);
   ASSERT_TRUE(rig.odometry.localised().ok()) << rig.odometry.localised().message();
   EXPECT_FALSE(rig.report.in_prior_map);  // the poses of the accepting sweep are still in the local frame
@@ -115,7 +115,7 @@ TEST(PriorMap, AWrongGivenPoseIsNotAccepted) {
   map.T_MI->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
   ASSERT_TRUE(rig.odometry.use_map(map).ok());
   run_until_localised(rig);
-  EXPECT_EQ(rig.odometry.localised().trouble, Trouble::degenerate);
+  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
 }
 
 TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
@@ -126,7 +126,7 @@ TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
   RoomRig rig(true_params(), second_motion(), other);
   ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
   run_until_localised(rig, 25);
-  EXPECT_EQ(rig.odometry.localised().trouble, Trouble::degenerate);
+  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
   EXPECT_FALSE(rig.report.in_prior_map);
   EXPECT_LT(rig.error_m(), 0.06);  // in the local frame
 }
@@ -137,7 +137,7 @@ TEST(PriorMap, TwoEqualPlacesAreAmbiguous) {
   RoomRig rig(true_params(), second_motion(), Room::box());
   ASSERT_TRUE(rig.odometry.use_map({.points = moved(mapped.odometry.map(), T_MW())}).ok());
   run_until_localised(rig, 25);
-  EXPECT_EQ(rig.odometry.localised().trouble, Trouble::degenerate);
+  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
 }
 
 TEST(PriorMap, AFrozenMapStaysEqualAndAnExtendedMapGrows) {
@@ -187,7 +187,7 @@ TEST(PriorMap, PointsWithoutNormalsSuffice) {
   for (const MapPoint& point : map_of_pillars()) positions.push_back(point.position_W_m);
   positions.push_back(Eigen::Vector3f::Constant(std::nanf("")));
   RoomRig rig(true_params(), second_motion());
-  ASSERT_TRUE(rig.odometry.use_map({.points = with_normals(positions)}).ok());
+  ASSERT_TRUE(rig.odometry.use_map({.points = to_map_points(positions)}).ok());
   const int sweeps = run_until_localised(rig);
   ASSERT_TRUE(rig.odometry.localised().ok());
   rig.run(sweeps, sweeps + 2);
@@ -196,19 +196,19 @@ TEST(PriorMap, PointsWithoutNormalsSuffice) {
 
 TEST(PriorMap, UnusableMapsAreRefused) {
   RoomRig rig(true_params());
-  EXPECT_EQ(rig.odometry.use_map({}).trouble, Trouble::too_few);
+  EXPECT_EQ(rig.odometry.use_map({}).error_code, ErrorCode::too_few);
   PriorMap map{.points = map_of_pillars()};
   map.points[5].normal_W *= 2.0f;
-  EXPECT_EQ(rig.odometry.use_map(map).trouble, Trouble::out_of_range);
+  EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::out_of_range);
   map.points[5] = {Eigen::Vector3f::Constant(std::nanf("")), Eigen::Vector3f::UnitZ(), 0.1f};
-  EXPECT_EQ(rig.odometry.use_map(map).trouble, Trouble::non_finite);
+  EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::non_finite);
   map.points = map_of_pillars();
   map.sigma_m = -1.0;
-  EXPECT_EQ(rig.odometry.use_map(map).trouble, Trouble::out_of_range);
+  EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::out_of_range);
   EXPECT_FALSE(rig.odometry.has_prior_map());
   EXPECT_TRUE(rig.odometry.localised().ok());
   rig.run(0, 1);
-  EXPECT_EQ(rig.odometry.use_map({.points = map_of_pillars()}).trouble, Trouble::time_order);
+  EXPECT_EQ(rig.odometry.use_map({.points = map_of_pillars()}).error_code, ErrorCode::time_order);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 namespace u = unknowns;
 using Matrix = Registration::Matrix;
 
-constexpr int kUnknowns = Registration::kUnknowns, kMotion = Registration::kMotion;
+constexpr int kUnknowns = Registration::kUnknowns, kMotionSize = Registration::kMotionSize;
 constexpr TimeNs kStart_ns = 3'000'000'000, kEnd_ns = 3'100'000'000;
 
 /// A tenth of a second of turning and pushing, half of it with a clipped axis.
@@ -62,10 +62,10 @@ struct Case {
     prediction.prior.mean.calibration.gravity_W_m_s2 = {0.1, -0.2, -9.8};
     boundary.state_estimate.weight = spread(scale, 0.3);
     boundary.state_estimate.error = spread(0.5 * scale, 1.9);
-    within = spread(scale, 4.0).topLeftCorner<kMotion, kMotion>();
+    within = spread(scale, 4.0).topLeftCorner<kMotionSize, kMotionSize>();
     prediction.by_last += 0.2 * spread(1.0, 2.2);
     prediction.noise = spread(scale, 5.1);
-    prediction.noise.topLeftCorner<kMotion, kMotion>() += within;
+    prediction.noise.topLeftCorner<kMotionSize, kMotionSize>() += within;
   }
   Case(const Case&) = delete;
   Case& operator=(const Case&) = delete;
@@ -77,7 +77,7 @@ using Read = std::function<Eigen::VectorXd(const Registration::Vector& start, co
 MotionState moved(const Case& c, TimeNs time_ns, const Registration::Vector& start, const Eigen::VectorXd& noise) {
   const double share = double(time_ns - kStart_ns) / double(kEnd_ns - kStart_ns);
   Registration::Vector off = start;
-  off.head<kMotion>() += share * noise;
+  off.head<kMotionSize>() += share * noise;
   Registration::Estimate at = c.prediction.prior.mean;
   at.add(off);
   SweepTrajectory trajectory;
@@ -111,19 +111,19 @@ struct Joint {
 };
 
 Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
-  const int all = 2 * kUnknowns + kMotion;
+  const int all = 2 * kUnknowns + kMotionSize;
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(all, all), errors;
   Matrix before = c.prediction.noise;
-  before.topLeftCorner<kMotion, kMotion>() -= c.within;
+  before.topLeftCorner<kMotionSize, kMotionSize>() -= c.within;
   prior.block(kUnknowns, kUnknowns, kUnknowns, kUnknowns) = before;
-  prior.bottomRightCorner(kMotion, kMotion) = c.within;
+  prior.bottomRightCorner(kMotionSize, kMotionSize) = c.within;
   errors = prior;
   prior.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.weight;
   errors.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.error;
   const auto read = [&](const Eigen::VectorXd& joint) {
     const Registration::Vector start =
         c.prediction.by_last * joint.head(kUnknowns) + joint.segment(kUnknowns, kUnknowns);
-    return off(start, joint.tail(kMotion));
+    return off(start, joint.tail(kMotionSize));
   };
   const Eigen::VectorXd at = Eigen::VectorXd::Zero(all);
   const Eigen::VectorXd residual = -read(at);
@@ -143,7 +143,7 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   out.of_x = Eigen::MatrixXd::Zero(kUnknowns, all);
   out.of_x.leftCols(kUnknowns) = c.prediction.by_last;
   out.of_x.middleCols(kUnknowns, kUnknowns).setIdentity();
-  out.of_x.topRightCorner(kMotion, kMotion).setIdentity();
+  out.of_x.topRightCorner(kMotionSize, kMotionSize).setIdentity();
   return out;
 }
 
@@ -272,9 +272,9 @@ TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
 TEST(OdometerReading, IsCheckedByItself) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.1}).ok());
-  EXPECT_EQ(check_reading(VelocityReading{0, {nan, 0.0, 0.0}, 0.1}).trouble, Trouble::non_finite);
-  EXPECT_EQ(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, nan}).trouble, Trouble::non_finite);
-  EXPECT_EQ(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.0}).trouble, Trouble::out_of_range);
+  EXPECT_EQ(check_reading(VelocityReading{0, {nan, 0.0, 0.0}, 0.1}).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, nan}).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.0}).error_code, ErrorCode::out_of_range);
   MotionReading good{0, 1, Eigen::Isometry3d::Identity(), Eigen::Matrix<double, 6, 6>::Identity()};
   EXPECT_TRUE(check_reading(good).ok());
   const auto refusal = [&](const auto& change) {
@@ -282,9 +282,9 @@ TEST(OdometerReading, IsCheckedByItself) {
     change(reading);
     return check_reading(reading);
   };
-  EXPECT_EQ(refusal([](MotionReading& r) { r.to_ns = 0; }).trouble, Trouble::time_order);
-  EXPECT_EQ(refusal([&](MotionReading& r) { r.T_from_to.translation().y() = nan; }).trouble, Trouble::non_finite);
-  EXPECT_EQ(refusal([&](MotionReading& r) { r.covariance(0, 4) = nan; }).trouble, Trouble::non_finite);
+  EXPECT_EQ(refusal([](MotionReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
+  EXPECT_EQ(refusal([&](MotionReading& r) { r.T_from_to.translation().y() = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(refusal([&](MotionReading& r) { r.covariance(0, 4) = nan; }).error_code, ErrorCode::non_finite);
   EXPECT_STREQ(refusal([](MotionReading& r) { r.T_from_to.linear() *= 1.001; }).field, "T_from_to");
   EXPECT_STREQ(refusal([](MotionReading& r) { r.T_from_to.linear() *= -1.0; }).field, "T_from_to");
   EXPECT_STREQ(refusal([](MotionReading& r) { r.covariance(2, 2) = 0.0; }).field, "covariance");

@@ -103,16 +103,16 @@ TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {
   for (int k = 20; k < 50; ++k) {
     // a gyro that drifts: the inertial prior alone ends 0.15 rad and half a metre or more away
     rig.feed_imu(k, {0.03, -0.03, 0.03});
-    EXPECT_EQ(rig.sweep(k, {}).trouble, Trouble::empty);
+    EXPECT_EQ(rig.sweep(k, {}).error_code, ErrorCode::empty);
     ASSERT_EQ(rig.report.verdict, SweepVerdict::rejected);
-    EXPECT_EQ(rig.report.lost_sweeps, k - 19);
+    EXPECT_EQ(rig.report.consecutive_rejected_sweeps, k - 19);
   }
   EXPECT_GT(rig.error_m(), 0.3);  // lost indeed
   EXPECT_GT(std::sqrt(rig.report.pose.covariance(0, 0)), 10.0 * sigma_before);
   EXPECT_LT(rig.error_m(), 5.0 * std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace()));
   rig.run(50, 56);
   EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
-  EXPECT_EQ(rig.report.lost_sweeps, 0);
+  EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   EXPECT_LT(rig.error_m(), 0.06);
 }
 
@@ -194,13 +194,13 @@ void see_the_other_side(Rig& rig, SweepVerdict expected) {
   rig.feed_imu(8);
   ASSERT_TRUE(rig.sweep(8, on_side(rig, 8, -kFar_m, 1.5)).ok());
   EXPECT_EQ(rig.report.verdict, expected);
-  EXPECT_EQ(rig.report.conditioning, 0.0);  // not aligned
+  EXPECT_EQ(rig.report.eigenvalue_ratio, 0.0);  // not aligned
   EXPECT_GT(rig.report.map_points_added, 1000u);
   EXPECT_EQ(rig.odometry.map().size(), before + rig.report.map_points_added);
   rig.feed_imu(9);
   ASSERT_TRUE(rig.sweep(9, on_side(rig, 9, -kFar_m, 1.5)).ok());
   EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);  // with what the sweep before drew
-  EXPECT_EQ(rig.report.lost_sweeps, 0);
+  EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   EXPECT_LT(rig.error_m(), 0.03);  // measured: 4 mm
 }
 
@@ -221,12 +221,12 @@ TEST(Recovery, SaysAndSurvivesAGapOfASecondInTheImuAlone) {
   rig.run(0, 20);
   const double sigma_before = std::sqrt(rig.report.pose.covariance(0, 0));
   for (int k = 20; k < 30; ++k) {
-    EXPECT_EQ(rig.sweep(k, rig.points(k)).trouble, Trouble::too_few);
+    EXPECT_EQ(rig.sweep(k, rig.points(k)).error_code, ErrorCode::too_few);
     EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
     EXPECT_TRUE(rig.report.trajectory.empty());  // no pose is made up
   }
   rig.feed_imu(30);
-  ASSERT_TRUE(rig.sweep(30, {}).trouble == Trouble::empty);  // the gap is bridged, by nothing but the prior
+  ASSERT_TRUE(rig.sweep(30, {}).error_code == ErrorCode::empty);  // the gap is bridged, by nothing but the prior
   EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_GT(std::sqrt(rig.report.pose.covariance(0, 0)), 10.0 * sigma_before);
   rig.run(31, 39);

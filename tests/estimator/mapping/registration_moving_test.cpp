@@ -42,7 +42,7 @@ class MovingSweep : public testing::Test {
     // one deficit over the sweep: its knots hang together
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
-        prior.covariance.block<3, 3>(Registration::kDeficit + 3 * a, Registration::kDeficit + 3 * b) =
+        prior.covariance.block<3, 3>(Registration::kDeficitStart + 3 * a, Registration::kDeficitStart + 3 * b) =
             deficit_sigma * deficit_sigma * std::pow(0.9, std::abs(a - b)) * Eigen::Matrix3d::Identity();
       }
     }
@@ -84,7 +84,8 @@ TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
     for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
       variance +=
-          result_.covariance(Registration::kDeficit + 3 * a + axis, Registration::kDeficit + 3 * b + axis) / 9.0;
+          result_.covariance(Registration::kDeficitStart + 3 * a + axis, Registration::kDeficitStart + 3 * b + axis) /
+          9.0;
     }
   }
   EXPECT_LT(std::sqrt(variance), 0.5);

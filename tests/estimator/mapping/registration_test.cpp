@@ -60,7 +60,7 @@ TEST(Registration, DerivativesMatchDifferences) {
   SweepUnknowns::Deficit deficit;
   deficit << 0.4, 0.9, -0.3, 0.0, 0.0, 0.0, -0.2, 0.1, 0.5;
   SweepPoint measured;
-  measured.x_L_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
+  measured.point_L_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
   measured.t_s = 0.073f;
   SweepCalibration nominal;
   nominal.T_IL.linear() = so3::exp({0.2, -0.1, -1.4}).toRotationMatrix();
@@ -74,16 +74,16 @@ TEST(Registration, DerivativesMatchDifferences) {
     moved.q_WI = so3::exp(d.segment<3>(3)) * moved.q_WI;
     moved.v_WI_m_s += d.segment<3>(6);
     SweepCalibration calibration = nominal;
-    calibration.add(d.tail<SweepCalibration::kErrors>());
+    calibration.add(d.tail<SweepCalibration::kErrorCount>());
     // in doubles: the floats of a SweepPoint would hide steps this small
-    const Eigen::Vector3d x_I = calibration.T_IL * measured.x_L_m.cast<double>();
+    const Eigen::Vector3d x_I = calibration.T_IL * measured.point_L_m.cast<double>();
     SweepTrajectory trajectory;
     const SweepUnknowns::Deficit moved_deficit =
-        deficit + d.segment<9>(Registration::kDeficit).reshaped(3, SweepTrajectory::kKnots);
+        deficit + d.segment<9>(Registration::kDeficitStart).reshaped(3, SweepTrajectory::kKnots);
     EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, moved_deficit).ok());
     std::size_t hint = 0;
     const double t = static_cast<double>(measured.t_s) + calibration.time_offset_s;
-    const SweepTrajectory::Instant now = trajectory.at(t, hint);
+    const SweepTrajectory::PreintegratedMotion now = trajectory.at(t, hint);
     SweepPoint point = measured;
     point.x_I_m = x_I.cast<float>();
     Registration::residual(trajectory, calibration, point, plane, hint, derivative);
@@ -99,7 +99,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     const double numeric = (residual(step, unused) - residual(-step, unused)) / (2.0 * h);
     // floats of the point and the plane over the lever: 1e-6 of it. Deficit: its effect within a sample is taken to
     // first order, 1 %
-    const bool of_deficit = i >= Registration::kDeficit && i < Registration::kCalibration;
+    const bool of_deficit = i >= Registration::kDeficitStart && i < Registration::kCalibrationStart;
     const double tolerance = (of_deficit ? 0.01 : 1e-5) * std::abs(numeric) + 1e-5;
     EXPECT_NEAR(analytic[i], numeric, tolerance) << "unknown " << i;
     // negative control: the same comparison refuses a derivative that is a twentieth off
@@ -189,12 +189,12 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
   const double along = 1.0 / corridor.covariance(0, 0) - 1.0 / (0.5 * 0.5);
   EXPECT_GT(along, 500.0);
   EXPECT_NEAR(corridor.normal_noise_information(0, 0) / along, 1.0, 0.2);
-  EXPECT_GT(corridor.weakest_sigma_m, 0.1);
+  EXPECT_GT(corridor.least_constrained_sigma_m, 0.1);
   const Registration::Result corner = align(test::Room::corner(), prior, {}, kNoise_m);
   ASSERT_EQ(corner.verdict, RegistrationVerdict::converged);
   // and where surfaces hold all six, next to none: 610 of 33 800
   EXPECT_LT(corner.normal_noise_information(0, 0) * corner.covariance(0, 0), 0.05);
-  EXPECT_LT(corner.weakest_sigma_m, 0.05);
+  EXPECT_LT(corner.least_constrained_sigma_m, 0.05);
 }
 
 /// The lidar's place alone is seen: an IMU that is turned, with the mounting turned back, is seen by no surface, and
@@ -203,10 +203,10 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
 TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
   constexpr double kNoise_m = 0.02;
   Registration::Prior prior = loose_prior(0.5, 0.05);
-  prior.covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>()
+  prior.covariance.bottomRightCorner<SweepCalibration::kErrorCount, SweepCalibration::kErrorCount>()
       .topLeftCorner<6, 6>()
       .setIdentity();
-  prior.covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>() *= 0.01 * 0.01;
+  prior.covariance.bottomRightCorner<SweepCalibration::kErrorCount, SweepCalibration::kErrorCount>() *= 0.01 * 0.01;
   const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
   ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
   const Registration::Matrix& B = corridor.normal_noise_information;
@@ -218,7 +218,7 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
     unseen.segment<3>(0) = R * turned.cross(lever_m);
     unseen.segment<3>(3) = -(R * turned);
     const double of_motion = unseen.dot(B * unseen);
-    unseen.segment<3>(Registration::kCalibration) = turned;
+    unseen.segment<3>(Registration::kCalibrationStart) = turned;
     EXPECT_GT(of_motion, 100.0) << axis;
     // the attitude in a sweep at rest is not one to the last digit
     EXPECT_LT(std::abs(unseen.dot(B * unseen)), 1e-3 * of_motion) << axis;

@@ -42,7 +42,7 @@ void find_again(RoomRig& rig, double shift_m) {
   ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);
   for (int k = kCovered; k < kSeesAgain; ++k) {
     rig.feed_imu(k, {0.02, -0.02, 0.02});
-    ASSERT_EQ(rig.sweep(k, {}).trouble, Trouble::empty);
+    ASSERT_EQ(rig.sweep(k, {}).error_code, ErrorCode::empty);
   }
   rig.feed_imu(kSeesAgain);
   ASSERT_TRUE(rig.sweep(kSeesAgain, seen_from_elsewhere(rig, kSeesAgain, shift_m)).ok());
@@ -54,7 +54,7 @@ TEST(Relocalised, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_NE(rig.report.verdict, SweepVerdict::rejected);
-  EXPECT_TRUE(rig.report.unconfirmed);
+  EXPECT_TRUE(rig.report.relocalisation_unconfirmed);
   EXPECT_GT(rig.error_m(), 0.5);
   const std::size_t drawn = rig.report.map_points_added, with_it = rig.odometry.map().size();
   ASSERT_GT(drawn, 0u);
@@ -62,33 +62,34 @@ TEST(Relocalised, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
   rig.feed_imu(kSeesAgain + 1);
   ASSERT_TRUE(rig.sweep(kSeesAgain + 1, of_no_room(rig, kSeesAgain + 1)).ok());
   EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
-  EXPECT_EQ(rig.report.lost_sweeps, kSeesAgain + 1 - kCovered + 1);  // those before it, it, and this one
-  EXPECT_FALSE(rig.report.unconfirmed);
+  EXPECT_EQ(rig.report.consecutive_rejected_sweeps,
+            kSeesAgain + 1 - kCovered + 1);  // those before it, it, and this one
+  EXPECT_FALSE(rig.report.relocalisation_unconfirmed);
   EXPECT_EQ(rig.odometry.map().size(), with_it - drawn + rig.report.map_points_added);
   const double sigma_m = std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace());
   EXPECT_LT(rig.error_m(), 3.0 * sigma_m);  // as one who is lost says it
 
   rig.run(kSeesAgain + 2, kSeesAgain + 8);
   EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
-  EXPECT_FALSE(rig.report.unconfirmed);
+  EXPECT_FALSE(rig.report.relocalisation_unconfirmed);
   EXPECT_LT(rig.error_m(), 0.06);
 }
 
 TEST(Relocalised, OnePlaceThatTwoSweepsBearOutStands) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
-  ASSERT_TRUE(rig.report.unconfirmed);
-  for (const bool unconfirmed : {true, false}) {
-    const int k = unconfirmed ? kSeesAgain + 1 : kSeesAgain + 2;
+  ASSERT_TRUE(rig.report.relocalisation_unconfirmed);
+  for (const bool relocalisation_unconfirmed : {true, false}) {
+    const int k = relocalisation_unconfirmed ? kSeesAgain + 1 : kSeesAgain + 2;
     rig.feed_imu(k);
     ASSERT_TRUE(rig.sweep(k, seen_from_elsewhere(rig, k, kElsewhere_m)).ok());
-    EXPECT_EQ(rig.report.unconfirmed, unconfirmed);
-    EXPECT_EQ(rig.report.lost_sweeps, 0);
+    EXPECT_EQ(rig.report.relocalisation_unconfirmed, relocalisation_unconfirmed);
+    EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   }
   // what was borne out by what the sensor saw is not taken back by one sweep
   rig.feed_imu(kSeesAgain + 3);
   ASSERT_TRUE(rig.sweep(kSeesAgain + 3, of_no_room(rig, kSeesAgain + 3)).ok());
-  EXPECT_EQ(rig.report.lost_sweeps, 1);
+  EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 1);
   EXPECT_GT(rig.error_m(), 0.5);
 }
 
@@ -96,10 +97,10 @@ TEST(Relocalised, WhereInertiaHasItItIsBelievedAtOnce) {
   RoomRig rig(true_params());
   rig.run(0, kCovered);
   rig.feed_imu(kCovered);
-  ASSERT_EQ(rig.sweep(kCovered, {}).trouble, Trouble::empty);
+  ASSERT_EQ(rig.sweep(kCovered, {}).error_code, ErrorCode::empty);
   rig.run(kCovered + 1, kCovered + 2);
   EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
-  EXPECT_FALSE(rig.report.unconfirmed);
+  EXPECT_FALSE(rig.report.relocalisation_unconfirmed);
   EXPECT_LT(rig.error_m(), 0.05);
 }
 
@@ -113,7 +114,7 @@ std::vector<std::byte> bytes(const LidarInertialOdometry& odometry) {
 TEST(Relocalised, GoesOnFromASavedStateWithTheSameBits) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
-  ASSERT_TRUE(rig.report.unconfirmed);
+  ASSERT_TRUE(rig.report.relocalisation_unconfirmed);
   const std::vector<std::byte> saved = bytes(rig.odometry);
   RoomRig again(true_params());
   StateReader reader(saved);
@@ -163,7 +164,7 @@ void load(const std::vector<std::byte>& saved, LidarInertialOdometry& into) {
 TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
-  ASSERT_TRUE(rig.report.unconfirmed);
+  ASSERT_TRUE(rig.report.relocalisation_unconfirmed);
   OpenState state(rig.odometry);
   ASSERT_TRUE(state.saved() == bytes(rig.odometry));
   ASSERT_TRUE(state.members->other.has_value());
@@ -171,12 +172,12 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   const std::vector<std::byte> alone = state.saved();
   RoomRig agrees(true_params());
   load(alone, agrees.odometry);
-  for (const bool unconfirmed : {true, false}) {
-    const int k = unconfirmed ? kSeesAgain + 1 : kSeesAgain + 2;
+  for (const bool relocalisation_unconfirmed : {true, false}) {
+    const int k = relocalisation_unconfirmed ? kSeesAgain + 1 : kSeesAgain + 2;
     agrees.feed_imu(k);
     ASSERT_TRUE(agrees.sweep(k, seen_from_elsewhere(agrees, k, kElsewhere_m)).ok());
-    EXPECT_EQ(agrees.report.unconfirmed, unconfirmed);
-    EXPECT_EQ(agrees.report.lost_sweeps, 0);
+    EXPECT_EQ(agrees.report.relocalisation_unconfirmed, relocalisation_unconfirmed);
+    EXPECT_EQ(agrees.report.consecutive_rejected_sweeps, 0);
   }
   // nothing to go back to: what is there stands, and the sweep alone is lost
   RoomRig contradicts(true_params());
@@ -185,8 +186,8 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   contradicts.feed_imu(kSeesAgain + 1);
   ASSERT_TRUE(contradicts.sweep(kSeesAgain + 1, of_no_room(contradicts, kSeesAgain + 1)).ok());
   EXPECT_EQ(contradicts.report.verdict, SweepVerdict::rejected);
-  EXPECT_EQ(contradicts.report.lost_sweeps, 1);
-  EXPECT_FALSE(contradicts.report.unconfirmed);
+  EXPECT_EQ(contradicts.report.consecutive_rejected_sweeps, 1);
+  EXPECT_FALSE(contradicts.report.relocalisation_unconfirmed);
   EXPECT_EQ(contradicts.odometry.map().size(), with_it);
 }
 
@@ -208,7 +209,7 @@ void expect_loads_again(const LidarInertialOdometry& odometry) {
 TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
-  ASSERT_TRUE(rig.report.unconfirmed);
+  ASSERT_TRUE(rig.report.relocalisation_unconfirmed);
   const std::vector<std::byte> suspect = bytes(rig.odometry);
   const std::size_t with_it = rig.odometry.map().size();
   const std::uint32_t inserted_from = OpenState(rig.odometry).members->other->inserted_from;
@@ -218,7 +219,7 @@ TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   load(suspect, agrees.odometry);
   agrees.feed_imu(kSeesAgain + 1);
   ASSERT_TRUE(agrees.sweep(kSeesAgain + 1, seen_from_elsewhere(agrees, kSeesAgain + 1, kElsewhere_m)).ok());
-  ASSERT_TRUE(agrees.report.unconfirmed);
+  ASSERT_TRUE(agrees.report.relocalisation_unconfirmed);
   EXPECT_GE(agrees.odometry.map().size(), with_it);
   expect_loads_again(agrees.odometry);
 
@@ -231,7 +232,7 @@ TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   for (int k = kSeesAgain + 2; k < kSeesAgain + 10; ++k) {
     ASSERT_NO_FATAL_FAILURE(expect_loads_again(contradicts.odometry));
     contradicts.feed_imu(k);
-    ASSERT_EQ(contradicts.sweep(k, {}).trouble, Trouble::empty);
+    ASSERT_EQ(contradicts.sweep(k, {}).error_code, ErrorCode::empty);
   }
   const OpenState last(contradicts.odometry);
   EXPECT_TRUE(last.members->other.has_value());

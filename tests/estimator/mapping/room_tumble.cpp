@@ -81,7 +81,7 @@ bool same(const Odometry::SweepReport& a, const Odometry::SweepReport& b) {
       return false;
     }
   }
-  return a.inlier_share == b.inlier_share && a.conditioning == b.conditioning &&
+  return a.inlier_ratio == b.inlier_ratio && a.eigenvalue_ratio == b.eigenvalue_ratio &&
          a.map_points_added == b.map_points_added;
 }
 

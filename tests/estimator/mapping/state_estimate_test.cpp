@@ -163,7 +163,7 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
         (displaced(T_WI, params.T_IL, step) - displaced(T_WI, params.T_IL, -step)) / (2.0 * kStep);
     by_mounting.col(k).head<6>() = by.head<6>();
     by_mounting.col(k).tail<3>() = by.tail<3>();
-    by_mounting(Registration::kCalibration + k, k) = 1.0;
+    by_mounting(Registration::kCalibrationStart + k, k) = 1.0;
   }
   Eigen::Matrix<double, 6, 1> variance;
   variance << Eigen::Vector3d::Constant(4e-4), Eigen::Vector3d::Constant(1e-4);

@@ -54,7 +54,7 @@ TEST(SweepScale, IsThatOfTheRanges) {
     EXPECT_GT(found.changes, 20u);
     EXPECT_NEAR(found.scale, scale, 5.0 * found.sigma + 0.01) << scale;
     EXPECT_LT(found.sigma, 0.01);
-    EXPECT_EQ(found.is_off(), scale != 1.0) << found.scale << " +- " << found.sigma;
+    EXPECT_EQ(found.is_inconsistent(), scale != 1.0) << found.scale << " +- " << found.sigma;
   }
 }
 
@@ -62,7 +62,7 @@ TEST(SweepScale, IsThatOfTheRanges) {
 TEST(SweepScale, IsToldWhileSweepsCome) {
   for (const double scale : {0.9, 1.0, 1.1}) {
     const Flight flight = hops(scale, 0.005);
-    SweepScaleWatch watch(kGravity, 200);
+    SweepScaleEstimator watch(kGravity, 200);
     std::size_t next = 0;
     for (const SweepReport& sweep : flight.sweeps) {
       for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
@@ -79,7 +79,7 @@ TEST(SweepScale, IsToldWhileSweepsCome) {
 
 TEST(SweepScale, ALidarThatIsSilentForTooLongIsNotCompared) {
   const Flight flight = hops(1.1, 0.005);
-  SweepScaleWatch watch(kGravity, 50);
+  SweepScaleEstimator watch(kGravity, 50);
   std::size_t next = 0;
   for (const SweepReport& sweep : flight.sweeps) {
     for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
@@ -101,14 +101,14 @@ TEST(SweepScale, NothingIsComparedOverAGapOfTheImu) {
   const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
   EXPECT_GT(found.changes, 5u);
   EXPECT_LT(found.changes, all - 10);
-  EXPECT_FALSE(found.is_off()) << found.scale << " +- " << found.sigma;
+  EXPECT_FALSE(found.is_inconsistent()) << found.scale << " +- " << found.sigma;
 }
 
 TEST(SweepScale, NothingIsSaidWhereNothingTells) {
   const Flight flight = hops(1.1, 0.005);
-  EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_off());
-  EXPECT_FALSE(find_sweep_scale(flight.samples, {}, kGravity).is_off());
-  EXPECT_FALSE(find_sweep_scale({}, flight.sweeps, kGravity).is_off());
+  EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_inconsistent());
+  EXPECT_FALSE(find_sweep_scale(flight.samples, {}, kGravity).is_inconsistent());
+  EXPECT_FALSE(find_sweep_scale({}, flight.sweeps, kGravity).is_inconsistent());
   Flight lost = flight;
   for (auto& sweep : lost.sweeps) sweep.verdict = SweepVerdict::rejected;
   EXPECT_EQ(find_sweep_scale(lost.samples, lost.sweeps, kGravity).changes, 0u);
@@ -125,12 +125,12 @@ TEST(SweepScale, PlacesAsUncertainAsTheScaleAreNotTakenForOne) {
   const Flight flight = hops(1.03, 0.2);
   const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
   EXPECT_GT(found.sigma, 0.01);
-  EXPECT_FALSE(found.is_off()) << found.scale << " +- " << found.sigma;
+  EXPECT_FALSE(found.is_inconsistent()) << found.scale << " +- " << found.sigma;
 }
 
 TEST(SweepScale, AFindingEndsAMinuteAfterItsCause) {
   const Flight flight = hops(1.1, 0.005);
-  SweepScaleWatch watch(kGravity, 200);
+  SweepScaleEstimator watch(kGravity, 200);
   std::size_t next = 0;
   for (const SweepReport& sweep : flight.sweeps) {
     for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)

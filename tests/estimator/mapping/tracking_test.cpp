@@ -50,9 +50,9 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
       {Lost{5, 29}, failed, degenerate, "tracking 30"},  // given up
       {Lost{2, 0}, not_tried, first, "tracking 0"},
       {Lost{3, 2}, found, registered, "tracking 0"},
-      {Lost{3, 2}, unconfirmed, registered, "found after 3 2, agree 0"},
-      {Lost{3, 2}, unconfirmed, degenerate, "found after 3 2, agree 0"},
-      {Tracking{1}, unconfirmed, registered, "tracking 0"},
+      {Lost{3, 2}, relocalisation_unconfirmed, registered, "found after 3 2, agree 0"},
+      {Lost{3, 2}, relocalisation_unconfirmed, degenerate, "found after 3 2, agree 0"},
+      {Tracking{1}, relocalisation_unconfirmed, registered, "tracking 0"},
       {Relocalised{3, 2, 0}, found, degenerate, "found after 3 2, agree 1"},
       {Relocalised{3, 2, 1}, found, registered, "tracking 0"},
   };
@@ -62,7 +62,7 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
 }
 
 TEST(Tracking, APlaceFoundAgainIsContradictedByAllButOneThatFits) {
-  for (const Placement placement : {not_tried, failed, unconfirmed}) {
+  for (const Placement placement : {not_tried, failed, relocalisation_unconfirmed}) {
     EXPECT_TRUE(contradicts(Relocalised{3, 2, 1}, placement));
     EXPECT_FALSE(contradicts(Tracking{}, placement));
     EXPECT_FALSE(contradicts(Lost{}, placement));
@@ -78,41 +78,41 @@ TEST(Tracking, AnswersOfItsStates) {
   EXPECT_FALSE(is_lost(Relocalised{4}));
   EXPECT_TRUE(is_unconfirmed(Relocalised{4}));
   EXPECT_FALSE(is_unconfirmed(Lost{4}));
-  EXPECT_EQ(lost_sweeps(Lost{4, 2}), 4);
-  EXPECT_EQ(lost_sweeps(Relocalised{4}), 0);
+  EXPECT_EQ(consecutive_rejected_sweeps(Lost{4, 2}), 4);
+  EXPECT_EQ(consecutive_rejected_sweeps(Relocalised{4}), 0);
   EXPECT_EQ(failed_searches(Lost{4, 2}), 2);
   EXPECT_EQ(failed_searches(Relocalised{4}), 0);
 }
 
-struct Tried {
+struct DelayGrid {
   Attempt attempt;
   Placed placed;
 };
 
-Tried aligned(double weakest_sigma_m) {
-  Tried out;
-  out.placed.alignment.emplace().weakest_sigma_m = weakest_sigma_m;
+DelayGrid aligned(double least_constrained_sigma_m) {
+  DelayGrid out;
+  out.placed.alignment.emplace().least_constrained_sigma_m = least_constrained_sigma_m;
   return out;
 }
 
-Tried failed_with(bool too_few) {
-  Tried out;
+DelayGrid failed_with(bool too_few) {
+  DelayGrid out;
   out.attempt.too_few_matches = too_few;
   return out;
 }
 
 Placed judged(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-              bool trusted, Tried tried) {
+              bool trusted, DelayGrid tried) {
   judge(params, before, points, trusted, tried.attempt, tried.placed);
   return tried.placed;
 }
 
 TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   LidarInertialOdometry::Params params;
-  params.expert.matching.least = 100;
+  params.expert.matching.matches_min = 100;
   params.expert.tracking.lost_sweeps_max = 30;
   params.expert.matching.degenerate_sigma_m = 0.15;
-  const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, Tried tried) {
+  const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, DelayGrid tried) {
     return judged(params, before, points, trusted, std::move(tried)).verdict;
   };
   EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.15)), registered);
@@ -132,8 +132,8 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
 }
 
 /// A place that a search found, of whose hundred matches so many fit.
-Tried aligned_of(std::size_t inliers, bool expected) {
-  Tried out = aligned(0.1);
+DelayGrid aligned_of(std::size_t inliers, bool expected) {
+  DelayGrid out = aligned(0.1);
   out.placed.alignment->matches = 100;
   out.placed.alignment->inliers = inliers;
   out.placed.expected = expected;
@@ -146,11 +146,11 @@ TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
     return judged(params, before, 500, false, aligned_of(inliers, expected)).placement;
   };
   EXPECT_EQ(placement(Lost{}, 90, true), found);
-  EXPECT_EQ(placement(Lost{}, 89, true), unconfirmed);
-  EXPECT_EQ(placement(Lost{}, 100, false), unconfirmed);
+  EXPECT_EQ(placement(Lost{}, 89, true), relocalisation_unconfirmed);
+  EXPECT_EQ(placement(Lost{}, 100, false), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Relocalised{}, 90, false),
             found);  // what a velocity that is off asks for goes on for some sweeps
-  EXPECT_EQ(placement(Relocalised{}, 89, true), unconfirmed);
+  EXPECT_EQ(placement(Relocalised{}, 89, true), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Tracking{}, 50, false), found);
 }
 

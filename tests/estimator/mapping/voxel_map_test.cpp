@@ -177,7 +177,7 @@ TEST(PlaneFit, RefusesALineABlobAndAHandful) {
     if (i < 4) few.insert({r.x(), r.y(), 0.0f}, 0.02f, 0);
   }
   EXPECT_EQ(fit_plane(line, all_of(line, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::collinear);
-  EXPECT_EQ(fit_plane(blob, all_of(blob, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::rough);
+  EXPECT_EQ(fit_plane(blob, all_of(blob, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::too_thick);
   EXPECT_EQ(fit_plane(few, all_of(few, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::too_few);
 }
 

@@ -56,7 +56,7 @@ struct Drive {
                                   test::kHalfColumns);
       }
       const Status status = odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report);
-      ASSERT_EQ(status.trouble, covered ? Trouble::empty : Trouble::none) << status.message();
+      ASSERT_EQ(status.error_code, covered ? ErrorCode::empty : ErrorCode::none) << status.message();
       reports.push_back(report);
     }
   }
@@ -128,7 +128,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
 TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   Drive run(given());
   PoseState pose;
-  EXPECT_EQ(run.odometry.predict({}, {}, pose).trouble, Trouble::empty);
+  EXPECT_EQ(run.odometry.predict({}, {}, pose).error_code, ErrorCode::empty);
   run.sweeps(0, 12);
   std::vector<ImuSample> ahead;
   std::vector<RateState> rates;
@@ -154,7 +154,7 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   // one that comes twice is refused, and the odometry has not heard of any
   std::swap(ahead[0], ahead[1]);
   std::swap(rates[0], rates[1]);
-  EXPECT_EQ(run.odometry.predict(ahead, rates, pose).trouble, Trouble::time_order);
+  EXPECT_EQ(run.odometry.predict(ahead, rates, pose).error_code, ErrorCode::time_order);
   run.sweeps(12, 13);
   Drive other(given());
   other.sweeps(0, 13);
@@ -166,10 +166,10 @@ TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
   params.expert.window_sweeps = 3;
   Drive run(params);
   PoseState pose;
-  EXPECT_EQ(run.odometry.pose_at(0, pose).trouble, Trouble::empty);
+  EXPECT_EQ(run.odometry.pose_at(0, pose).error_code, ErrorCode::empty);
   run.sweeps(0, 12);
-  EXPECT_EQ(run.odometry.pose_at(9 * test::kSweep_ns - 1, pose).trouble, Trouble::out_of_range);
-  EXPECT_EQ(run.odometry.pose_at(12 * test::kSweep_ns + 1, pose).trouble, Trouble::out_of_range);
+  EXPECT_EQ(run.odometry.pose_at(9 * test::kSweep_ns - 1, pose).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(run.odometry.pose_at(12 * test::kSweep_ns + 1, pose).error_code, ErrorCode::out_of_range);
   const auto open = run.odometry.window_trajectories();
   for (const auto& sweep : open) {
     ASSERT_TRUE(run.odometry.pose_at(sweep[4].time_ns, pose).ok());

@@ -52,7 +52,7 @@ TEST(SavedMap, EveryTruncationIsRefused) {
   const std::vector<std::byte> bytes = save_map(some_points());
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     std::vector<MapPoint> points = some_points();
-    ASSERT_EQ(load_map(std::span(bytes).first(length), points).trouble, Trouble::too_few) << length;
+    ASSERT_EQ(load_map(std::span(bytes).first(length), points).error_code, ErrorCode::too_few) << length;
     ASSERT_TRUE(same(points, some_points())) << length;
   }
 }
@@ -77,12 +77,12 @@ TEST(SavedMap, ImpossibleValuesAreRefused) {
     return load_map(save_map(points), loaded);
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(refused([&](MapPoint& point) { point.position_W_m.y() = nan; }).trouble, Trouble::non_finite);
-  EXPECT_EQ(refused([&](MapPoint& point) { point.normal_W.x() = nan; }).trouble, Trouble::non_finite);
-  EXPECT_EQ(refused([&](MapPoint& point) { point.sigma_m = nan; }).trouble, Trouble::non_finite);
-  EXPECT_EQ(refused([](MapPoint& point) { point.sigma_m = -0.1f; }).trouble, Trouble::out_of_range);
-  EXPECT_EQ(refused([](MapPoint& point) { point.normal_W = {0.0f, 0.5f, 0.0f}; }).trouble, Trouble::out_of_range);
-  EXPECT_EQ(refused([](MapPoint& point) { point.position_W_m.x() = 1e6f; }).trouble, Trouble::out_of_range);
+  EXPECT_EQ(refused([&](MapPoint& point) { point.position_W_m.y() = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(refused([&](MapPoint& point) { point.normal_W.x() = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(refused([&](MapPoint& point) { point.sigma_m = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(refused([](MapPoint& point) { point.sigma_m = -0.1f; }).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(refused([](MapPoint& point) { point.normal_W = {0.0f, 0.5f, 0.0f}; }).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(refused([](MapPoint& point) { point.position_W_m.x() = 1e6f; }).error_code, ErrorCode::out_of_range);
 }
 
 }  // namespace

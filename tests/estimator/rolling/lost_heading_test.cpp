@@ -72,7 +72,7 @@ TEST(LostHeading, TheContactTellsNothingOfATurnOfTheWholeRun) {
   nominal.q_WI = so3::exp({0.3, -0.7, 1.1});
   nominal.v_WI_m_s = {0.7, -0.3, 0.02};
   nominal.slope = {0.1, -0.05};
-  RollingSums sums;
+  RollingIntegrals sums;
   sums.node_s = 0.02;
   rolling::Contact c = rolling::contact(params, nominal, {2.0, -4.0, 1.0}, sums);
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };

@@ -98,11 +98,11 @@ Result filtered(const RollingTruth& truth, const Contact& contact, const Rolling
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     const Status status = filter.step(truth.samples[k], *state);
     EXPECT_TRUE(status.ok()) << k << ": " << status.message();
-    const bool slips = contact(seconds(truth.samples[k].time_ns)).norm() > 0.05;
+    const bool may_slip = contact(seconds(truth.samples[k].time_ns)).norm() > 0.05;
     const bool found = state->mode != RollingMode::grip;
-    if (slips && hit == 0 && !found) result.delay_s += 0.004;
-    hit += slips && found;
-    missed += slips && !found;
+    if (may_slip && hit == 0 && !found) result.delay_s += 0.004;
+    hit += may_slip && found;
+    missed += may_slip && !found;
     wrong += found && truth.gripping[k];
   }
   if (hit + missed > 0) result.recall = static_cast<double>(hit) / (hit + missed);
@@ -324,17 +324,17 @@ TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
   const auto state = std::make_unique<RollingFilter::State>();
   ImuSample falling = truth.samples[0];
   falling.specific_force_m_s2.setZero();
-  EXPECT_EQ(filter.step(falling, *state).trouble, Trouble::degenerate);
+  EXPECT_EQ(filter.step(falling, *state).error_code, ErrorCode::degenerate);
   EXPECT_FALSE(state->started);
   for (std::size_t k = 0; k < 600; ++k) ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
   const auto before = std::make_unique<RollingFilter::State>(*state);
   ImuSample bad = truth.samples[600];
   bad.angular_velocity_rad_s.z() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(filter.step(bad, *state).trouble, Trouble::non_finite);
-  EXPECT_EQ(filter.step(truth.samples[599], *state).trouble, Trouble::time_order);
+  EXPECT_EQ(filter.step(bad, *state).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(filter.step(truth.samples[599], *state).error_code, ErrorCode::time_order);
   ImuSample late = truth.samples[640];
   late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // gap_max_s is 1 by default
-  EXPECT_EQ(filter.step(late, *state).trouble, Trouble::gap);
+  EXPECT_EQ(filter.step(late, *state).error_code, ErrorCode::gap);
   EXPECT_TRUE(*state == *before);
   EXPECT_TRUE(filter.step(truth.samples[600], *state).ok());
 }

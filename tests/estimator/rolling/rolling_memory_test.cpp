@@ -79,7 +79,7 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   const double nodes = two.nodes - one.nodes;
   ASSERT_NEAR(nodes, 3000.0, 2.0);
   // five samples of 64 bytes and a step of 152, in vectors that double; measured 557
-  EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::Step)) + 16.0);
+  EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::NodeModes)) + 16.0);
   // two filters in each segment, a mode and a variance for each node; measured 288
   EXPECT_LT((two.at_the_end - one.at_the_end) / nodes, 320.0);
   EXPECT_GT(sizeof(rolling::NodeRecord), 10'000u) << "the bound says nothing any more";

@@ -24,7 +24,7 @@ Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_
   params.expert.rails.recovered_rate_sigma_rad_s = 0.1;
   RollingNominal nominal;
   nominal.last_rate_I_rad_s = rate_rad_s;
-  RollingSums sums;
+  RollingIntegrals sums;
   ImuAverage reading;
   reading.add({0, rate_rad_s, force_m_s2, flags}, kRepeated_s);
   integrate(params, reading, nominal, sums, known);
@@ -67,7 +67,7 @@ TEST(RollingRails, AnIgnoredForceHasNoBias) {
   const Eigen::Vector3d rate(0.0, 0.0, 5.0), force(0.0, 0.0, 9.8);
   const auto by_bias = [&](std::uint8_t flags) {
     RollingNominal nominal;
-    RollingSums sums;
+    RollingIntegrals sums;
     ImuAverage reading;
     reading.add({0, rate, force, flags}, kRepeated_s);
     integrate(RollingParams{}, reading, nominal, sums);

@@ -161,7 +161,7 @@ TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
     status = filter.step(sample, *state);
     if (!status.ok()) break;
   }
-  EXPECT_EQ(status.trouble, Trouble::gap);
+  EXPECT_EQ(status.error_code, ErrorCode::gap);
   EXPECT_GT(status.value, 1.0);  // seconds
 }
 

@@ -71,7 +71,7 @@ TEST(RollingSmoother, MendsThePathInsideAnEvent) {
     if (truth.gripping[k]) continue;
     live = std::max(live, (state->p_WG_m - truth.p_WG_m[k]).norm());
     smoothed = std::max(smoothed, (whole[k].p_WG_m - truth.p_WG_m[k]).norm());
-    in_event += slips(whole[k].mode);
+    in_event += may_slip(whole[k].mode);
   }
   EXPECT_LT(smoothed, live);
   EXPECT_LT(smoothed, 0.01);
@@ -244,7 +244,7 @@ TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
     state->samples.back().time_ns += 1000;
   }
   const Status status = smoother.check_state(*state);
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(status.field, "rolling.samples");
 }
 
@@ -262,10 +262,10 @@ TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {
   std::vector<RollingEstimate> out;
   for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());
   const auto before = std::make_unique<RollingSmoother::State>(*state);
-  EXPECT_EQ(smoother.step(truth.samples[5], *state, out).trouble, Trouble::time_order);
+  EXPECT_EQ(smoother.step(truth.samples[5], *state, out).error_code, ErrorCode::time_order);
   ImuSample nan = truth.samples[10];
   nan.specific_force_m_s2.x() = std::nan("");
-  EXPECT_EQ(smoother.step(nan, *state, out).trouble, Trouble::non_finite);
+  EXPECT_EQ(smoother.step(nan, *state, out).error_code, ErrorCode::non_finite);
   EXPECT_TRUE(*state == *before);
 }
 

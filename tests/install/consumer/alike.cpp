@@ -4,5 +4,5 @@
 #include <tumble/common/status.hpp>
 
 int main() {
-  std::puts(tumble::to_string(tumble::Trouble::none));
+  std::puts(tumble::to_string(tumble::ErrorCode::none));
 }

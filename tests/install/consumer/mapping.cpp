@@ -6,5 +6,5 @@ int main() {
   tumble::LidarInertialOdometry odometry{tumble::LidarInertialOdometry::Params{}};
   tumble::LidarInertialOdometry::SweepReport report;
   const tumble::Status status = odometry.add_sweep(0, 100'000'000, {}, report);
-  std::printf("%s\n", tumble::to_string(status.trouble));
+  std::printf("%s\n", tumble::to_string(status.error_code));
 }

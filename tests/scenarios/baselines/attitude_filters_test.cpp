@@ -186,7 +186,7 @@ TEST(Vqf, OscillatingAccelerationAveragesOut) {
 
 /// The slope form of the low-pass against the printed biquad (direct form II transposed) on an irregular signal.
 TEST(LowPass, IsTheButterworthBiquad) {
-  const double tau = 0.5, dt = 0.004, warp = low_pass_warp(tau, dt);
+  const double tau = 0.5, dt = 0.004, warp = low_pass_prewarp(tau, dt);
   const double d = warp * warp + std::numbers::sqrt2 * warp + 1.0;
   const double b0 = warp * warp / d, b1 = 2.0 * b0, b2 = b0;
   const double a1 = 2.0 * (warp * warp - 1.0) / d, a2 = (1.0 - std::numbers::sqrt2 * warp + warp * warp) / d;
@@ -215,7 +215,7 @@ TEST(LowPass, ChangingPeriodLeavesASteadyValueAlone) {
   LowPass<1> filter;
   for (int k = 0; k < 2000; ++k) {
     const double dt = k % 3 == 0 ? 0.002 : 0.009;
-    filter.advance(Eigen::Matrix<double, 1, 1>(5.0), 0.5, dt, low_pass_warp(0.5, dt));
+    filter.advance(Eigen::Matrix<double, 1, 1>(5.0), 0.5, dt, low_pass_prewarp(0.5, dt));
     ASSERT_NEAR(filter.value[0], 5.0, 1e-12);
   }
 }

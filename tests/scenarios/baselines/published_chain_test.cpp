@@ -93,16 +93,16 @@ TEST(PublishedChain, TellsASweepThatHoldsNothingToRegister) {
   const InARoom room = gentle(3);
   PublishedChain chain({}, room.samples, room.rates);
   PublishedChain::SweepReport report;
-  EXPECT_EQ(chain.add({0, test::kSweep_ns, {}}, report).trouble, Trouble::empty);
+  EXPECT_EQ(chain.add({0, test::kSweep_ns, {}}, report).error_code, ErrorCode::empty);
   EXPECT_FALSE(report.trajectory.empty()) << "the odometry goes on alone";
   std::vector<LidarPoint> points = room.sweeps[1];
   for (LidarPoint& point : points) point.offset_ns = 7;
-  EXPECT_EQ(chain.add({test::kSweep_ns, 2 * test::kSweep_ns, points}, report).trouble, Trouble::degenerate);
+  EXPECT_EQ(chain.add({test::kSweep_ns, 2 * test::kSweep_ns, points}, report).error_code, ErrorCode::degenerate);
   points = room.sweeps[2];
   for (LidarPoint& point : points) point.position_L_m *= 0.001f;
-  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).trouble, Trouble::too_few);
+  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::too_few);
   points.front().offset_ns = static_cast<std::uint32_t>(test::kSweep_ns + 1);
-  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).trouble, Trouble::out_of_range);
+  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::out_of_range);
   EXPECT_FALSE(chain.covers({3 * test::kSweep_ns, 9 * test::kSweep_ns, {}}));
 }
 
@@ -112,7 +112,7 @@ TEST(PublishedChain, LeavesOutTheRobotItself) {
   params.own_body_L = {Eigen::Vector3d::Constant(-100.0), Eigen::Vector3d::Constant(100.0)};
   PublishedChain chain(params, room.samples, room.rates);
   PublishedChain::SweepReport report;
-  EXPECT_EQ(chain.add({0, test::kSweep_ns, room.sweeps[0]}, report).trouble, Trouble::too_few);
+  EXPECT_EQ(chain.add({0, test::kSweep_ns, room.sweeps[0]}, report).error_code, ErrorCode::too_few);
   params.sweep_voxel_m = 0.0;
   EXPECT_THROW(PublishedChain(params, room.samples, room.rates), InvalidParams);
 }

@@ -128,8 +128,8 @@ TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
   EXPECT_GT(run({}), 0.3 * raw(swing));
   auxiliary_imus[1].specific_force_m_s2.pop_back();
   std::vector<RateState> out;
-  EXPECT_EQ(AccelerometerRate(AccelerometerRate::Params{}).estimate(samples, auxiliary_imus, out).trouble,
-            Trouble::too_few);
+  EXPECT_EQ(AccelerometerRate(AccelerometerRate::Params{}).estimate(samples, auxiliary_imus, out).error_code,
+            ErrorCode::too_few);
 }
 
 TEST(StandstillSmoother, SpreadsTheTiltBetweenTwoRests) {
@@ -149,9 +149,9 @@ TEST(PublishedFamilies, RefuseBadInput) {
   std::swap(falling[50].time_ns, falling[51].time_ns);
   std::vector<RateState> out(3);
   const auto refuses = [&](auto estimate) {
-    EXPECT_EQ(estimate(std::span<const ImuSample>{}).trouble, Trouble::empty);
-    EXPECT_EQ(estimate(std::span<const ImuSample>(spoilt)).trouble, Trouble::non_finite);
-    EXPECT_EQ(estimate(std::span<const ImuSample>(falling)).trouble, Trouble::time_order);
+    EXPECT_EQ(estimate(std::span<const ImuSample>{}).error_code, ErrorCode::empty);
+    EXPECT_EQ(estimate(std::span<const ImuSample>(spoilt)).error_code, ErrorCode::non_finite);
+    EXPECT_EQ(estimate(std::span<const ImuSample>(falling)).error_code, ErrorCode::time_order);
     EXPECT_EQ(out.size(), 3u);  // nothing is written
   };
   refuses([&](std::span<const ImuSample> s) { return ClippedBaseline(ClippedBaseline::Params{}).estimate(s, out); });
@@ -174,7 +174,7 @@ TEST(SubsampleSaturation, IsExactForAConstantSlope) {
       const double unclipped = reading + 0.5 * share * share * slope, neighbour = unclipped - slope;
       const SubsampleSaturation loss = subsample_saturation(reading, neighbour, kRail, 1e-6);
       ASSERT_TRUE(loss.saturated) << slope << " " << share;
-      EXPECT_NEAR(loss.lost_rad_s, 0.5 * share * share * slope, 1e-9) << slope << " " << share;
+      EXPECT_NEAR(loss.expected_deficit_rad_s, 0.5 * share * share * slope, 1e-9) << slope << " " << share;
       EXPECT_GT(loss.sigma_rad_s, 0.0);
     }
   }

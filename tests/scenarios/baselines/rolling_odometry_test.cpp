@@ -107,18 +107,18 @@ TEST(RollingOdometry, RefusesBadInputAndKeepsItsState) {
   ASSERT_TRUE(odometry.step(kSample_ns, {0, 1, 0}, kLevel, state).ok());
   const RollingOdometry::State before = state;
   const auto refused = [&](TimeNs t, const Eigen::Vector3d& w, const Eigen::Quaterniond& q) {
-    const Trouble trouble = odometry.step(t, w, q, state).trouble;
-    EXPECT_TRUE(state == before) << to_string(trouble);
-    return trouble;
+    const ErrorCode error_code = odometry.step(t, w, q, state).error_code;
+    EXPECT_TRUE(state == before) << to_string(error_code);
+    return error_code;
   };
-  EXPECT_EQ(refused(2 * kSample_ns, {kNan, 0, 0}, kLevel), Trouble::non_finite);
-  EXPECT_EQ(refused(2 * kSample_ns, {1e300, 1e300, 0}, kLevel), Trouble::out_of_range);
-  EXPECT_EQ(refused(2 * kSample_ns, {0, 1, 0}, Eigen::Quaterniond(kNan, 0, 0, 0)), Trouble::non_finite);
-  EXPECT_EQ(refused(2 * kSample_ns, {0, 1, 0}, Eigen::Quaterniond(0, 0, 0, 0)), Trouble::out_of_range);
-  EXPECT_EQ(refused(kSample_ns, {0, 1, 0}, kLevel), Trouble::time_order);
-  EXPECT_EQ(refused(std::numeric_limits<TimeNs>::min(), {0, 1, 0}, kLevel), Trouble::time_order);
-  EXPECT_EQ(refused(kSample_ns + 1'000'000'001, {0, 1, 0}, kLevel), Trouble::gap);
-  EXPECT_EQ(odometry.step(2 * kSample_ns, {0, 1, 0}, kLevel, state).trouble, Trouble::none);
+  EXPECT_EQ(refused(2 * kSample_ns, {kNan, 0, 0}, kLevel), ErrorCode::non_finite);
+  EXPECT_EQ(refused(2 * kSample_ns, {1e300, 1e300, 0}, kLevel), ErrorCode::out_of_range);
+  EXPECT_EQ(refused(2 * kSample_ns, {0, 1, 0}, Eigen::Quaterniond(kNan, 0, 0, 0)), ErrorCode::non_finite);
+  EXPECT_EQ(refused(2 * kSample_ns, {0, 1, 0}, Eigen::Quaterniond(0, 0, 0, 0)), ErrorCode::out_of_range);
+  EXPECT_EQ(refused(kSample_ns, {0, 1, 0}, kLevel), ErrorCode::time_order);
+  EXPECT_EQ(refused(std::numeric_limits<TimeNs>::min(), {0, 1, 0}, kLevel), ErrorCode::time_order);
+  EXPECT_EQ(refused(kSample_ns + 1'000'000'001, {0, 1, 0}, kLevel), ErrorCode::gap);
+  EXPECT_EQ(odometry.step(2 * kSample_ns, {0, 1, 0}, kLevel, state).error_code, ErrorCode::none);
 }
 
 TEST(RollingOdometry, RefusesBadParams) {

@@ -48,23 +48,23 @@ TYPED_TEST(Published, RefusesBadInputAndKeepsItsState) {
   const auto before = rolled(method, truth, 0, 700);
   const auto refused = [&](const ImuSample& sample, const Eigen::Quaterniond& q) {
     auto state = before;
-    const Trouble trouble = method.step(sample, q, state).trouble;
-    EXPECT_TRUE(state == before) << to_string(trouble);
-    return trouble;
+    const ErrorCode error_code = method.step(sample, q, state).error_code;
+    EXPECT_TRUE(state == before) << to_string(error_code);
+    return error_code;
   };
   const ImuSample good = truth.samples[700];
   const Eigen::Quaterniond q = truth.q_WI[700];
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   ImuSample bad = good;
   bad.specific_force_m_s2.y() = kNan;
-  EXPECT_EQ(refused(bad, q), Trouble::non_finite);
-  EXPECT_EQ(refused(good, Eigen::Quaterniond(1, kNan, 0, 0)), Trouble::non_finite);
-  EXPECT_EQ(refused(good, Eigen::Quaterniond(0.5, 0, 0, 0)), Trouble::out_of_range);
+  EXPECT_EQ(refused(bad, q), ErrorCode::non_finite);
+  EXPECT_EQ(refused(good, Eigen::Quaterniond(1, kNan, 0, 0)), ErrorCode::non_finite);
+  EXPECT_EQ(refused(good, Eigen::Quaterniond(0.5, 0, 0, 0)), ErrorCode::out_of_range);
   bad = good;
   bad.time_ns = before.last_time_ns;
-  EXPECT_EQ(refused(bad, q), Trouble::time_order);
+  EXPECT_EQ(refused(bad, q), ErrorCode::time_order);
   bad.time_ns = before.last_time_ns + 1'000'000'001;
-  EXPECT_EQ(refused(bad, q), Trouble::gap);
+  EXPECT_EQ(refused(bad, q), ErrorCode::gap);
 }
 
 TEST(DoubleIntegration, FollowsASphereThatRollsAndSlidesWhileNothingIsWrong) {

@@ -107,10 +107,11 @@ TEST(SlipObserver, RefusesBadInputAndParams) {
   SlipObserver::State state = before;
   ImuSample bad = truth.samples[300];
   bad.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(observer.step(bad, truth.q_WI[300], state).trouble, Trouble::non_finite);
-  EXPECT_EQ(observer.step(truth.samples[299], truth.q_WI[299], state).trouble, Trouble::time_order);
-  EXPECT_EQ(observer.step(truth.samples[600], truth.q_WI[600], state).trouble, Trouble::gap);
-  EXPECT_EQ(observer.step(truth.samples[300], Eigen::Quaterniond(2, 0, 0, 0), state).trouble, Trouble::out_of_range);
+  EXPECT_EQ(observer.step(bad, truth.q_WI[300], state).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(observer.step(truth.samples[299], truth.q_WI[299], state).error_code, ErrorCode::time_order);
+  EXPECT_EQ(observer.step(truth.samples[600], truth.q_WI[600], state).error_code, ErrorCode::gap);
+  EXPECT_EQ(observer.step(truth.samples[300], Eigen::Quaterniond(2, 0, 0, 0), state).error_code,
+            ErrorCode::out_of_range);
   EXPECT_TRUE(state == before);
   EXPECT_THROW(SlipObserver({.radius_m = -1.0}), InvalidParams);
   EXPECT_THROW(SlipObserver({.timeout_s = 0.0}), InvalidParams);

@@ -62,7 +62,7 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   const std::vector<Eigen::Vector3d> read = record.gyro_rad_s;
   for (std::size_t k = 40; k < 90; ++k) record.gyro_rad_s[k].y() = -3e5;
   const Status gyro = bridge::imu_samples(record, samples);
-  EXPECT_EQ(gyro.trouble, Trouble::out_of_range);
+  EXPECT_EQ(gyro.error_code, ErrorCode::out_of_range);
   EXPECT_EQ(gyro.value, 3e5);
   EXPECT_EQ(gyro.bound, 2.0 * record.stated_gyro_range_rad_s);
   EXPECT_TRUE(samples.empty());
@@ -190,18 +190,18 @@ TEST(Bridge, TroubleIsNamedAndLeavesNothing) {
       for (std::size_t k = 7; k < r.time_ns.size(); k += 10) spoil(r, k);
     });
   };
-  EXPECT_EQ(every_10([](sim::ImuRecord& r, std::size_t k) { r.gyro_rad_s[k].y() = kNaN; }).trouble,
-            Trouble::non_finite);
-  EXPECT_EQ(every_10([](sim::ImuRecord& r, std::size_t k) { r.accel_m_s2[k].z() = kNaN; }).trouble,
-            Trouble::non_finite);
-  EXPECT_EQ(every_10([](sim::ImuRecord& r, std::size_t k) { r.time_ns[k] = r.time_ns[k - 1]; }).trouble,
-            Trouble::time_order);
+  EXPECT_EQ(every_10([](sim::ImuRecord& r, std::size_t k) { r.gyro_rad_s[k].y() = kNaN; }).error_code,
+            ErrorCode::non_finite);
+  EXPECT_EQ(every_10([](sim::ImuRecord& r, std::size_t k) { r.accel_m_s2[k].z() = kNaN; }).error_code,
+            ErrorCode::non_finite);
+  EXPECT_EQ(every_10([](sim::ImuRecord& r, std::size_t k) { r.time_ns[k] = r.time_ns[k - 1]; }).error_code,
+            ErrorCode::time_order);
   EXPECT_EQ(status_of([](sim::ImuRecord& r) {
               for (std::size_t k = 7; k < r.time_ns.size(); ++k) r.time_ns[k] += 1000000001;
-            }).trouble,
-            Trouble::gap);
+            }).error_code,
+            ErrorCode::gap);
   sim::Sensors none;
-  EXPECT_EQ(bridge::primary_imu_samples(none, samples).trouble, Trouble::empty);
+  EXPECT_EQ(bridge::primary_imu_samples(none, samples).error_code, ErrorCode::empty);
   sim::ImuRecord short_record = good.sensors.imus.front();
   short_record.gyro_rad_s.pop_back();
   EXPECT_THROW(bridge::imu_samples(short_record, samples), BadInput);

@@ -64,7 +64,7 @@ TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
     EXPECT_EQ(name, method.info.name);
     EXPECT_EQ(back.frame, estimate.frame);
     EXPECT_EQ(back.health, estimate.health);
-    EXPECT_EQ(back.doubts, estimate.doubts);
+    EXPECT_EQ(back.findings, estimate.findings);
     EXPECT_EQ(back.parameters, estimate.parameters);
     EXPECT_EQ(back.map.size(), estimate.map.size());
     const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
@@ -82,11 +82,11 @@ TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
 
 TEST_F(EstimateFile, AStatusThatIsNotOkComesBack) {
   Estimate failed;
-  failed.status = {Trouble::gap, "imu.time_ns", 2.0, 1.0};
+  failed.status = {ErrorCode::gap, "imu.time_ns", 2.0, 1.0};
   write_estimate(folder_, "raw", Kind::rate, failed);
   Kind kind;
   std::string method;
-  EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).status.trouble, Trouble::gap);
+  EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).status.error_code, ErrorCode::gap);
 }
 
 TEST_F(EstimateFile, WhatAProgramSaidStandsBesideItAndGoesWithIt) {

@@ -112,7 +112,7 @@ TEST_F(ExternalMethod, AHangIsEndedWithAllItHasStarted) {
   const auto pid = folder_ / "pid";
   const auto [why, what] =
       no_answer(describe("rate", "sleep 600 & echo $! > " + pid.string() + "; wait # {output}", "time_limit_s: 0.5\n"));
-  EXPECT_EQ(why, NoAnswer::Why::out_of_time);
+  EXPECT_EQ(why, NoAnswer::Why::timed_out);
   pid_t child = 0;
   std::ifstream(pid) >> child;
   ASSERT_GT(child, 0);

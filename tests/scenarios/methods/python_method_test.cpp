@@ -144,7 +144,7 @@ TEST_F(PythonMethod, WhatItRaisesIsTheMessageWithPlace) {
 
 TEST_F(PythonMethod, ACrashAHangAndALackOfMemoryAreNoAnswer) {
   EXPECT_THAT(no_answer(function("rate", "os.kill(os.getpid(), 11)")).second, HasSubstr("signal 11"));
-  EXPECT_EQ(no_answer(function("rate", "time.sleep(600)", "time_limit_s: 1\n")).first, NoAnswer::Why::out_of_time);
+  EXPECT_EQ(no_answer(function("rate", "time.sleep(600)", "time_limit_s: 1\n")).first, NoAnswer::Why::timed_out);
   const auto [why, what] = no_answer(function("rate", "return np.ones(10**9)", "memory_limit_mib: 1024\n"));
   EXPECT_EQ(why, NoAnswer::Why::crashed);
   EXPECT_THAT(what, HasSubstr("Unable to allocate"));

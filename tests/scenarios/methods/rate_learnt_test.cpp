@@ -12,7 +12,7 @@
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/doubts.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
@@ -33,7 +33,7 @@ sim::Values defaults() {
 // the synthetic rig never flies: runs that learn nothing must not make the next ones know less than nothing
 TEST(RateLearnt, RunsThatLearnNothingDoNotWearOutThePrior) {
   const sim::Recording recording = testing::synthetic_rig();
-  std::optional<LearntRig> rig, next;
+  std::optional<CalibratedRig> rig, next;
   ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
   ASSERT_TRUE(rig);
   ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &*rig, &next).status.ok());
@@ -46,8 +46,8 @@ TEST(RateLearnt, RunsThatLearnNothingDoNotWearOutThePrior) {
 
 TEST(RateLearnt, TheNextRunStartsFromWhatItIsGiven) {
   const sim::Recording recording = testing::synthetic_rig();
-  LearntRig given;
-  std::optional<LearntRig> found;
+  CalibratedRig given;
+  std::optional<CalibratedRig> found;
   given.calibration.constants.lever_arm_m = {0.4, 0.1, -0.2};
   given.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
   ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &given, &found).status.ok());
@@ -71,7 +71,7 @@ TEST(RateLearnt, AFailedRunLeavesWhatWasLearnt) {
   sim::Recording recording = testing::synthetic_rig();
   for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s)
     rate.x() = std::numeric_limits<double>::quiet_NaN();
-  std::optional<LearntRig> rig = LearntRig();
+  std::optional<CalibratedRig> rig = CalibratedRig();
   rig->calibration.constants.lever_arm_m = {1.0, 2.0, 3.0};
   EXPECT_FALSE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
   EXPECT_EQ(rig->calibration.constants.lever_arm_m, Eigen::Vector3d(1.0, 2.0, 3.0));
@@ -79,14 +79,14 @@ TEST(RateLearnt, AFailedRunLeavesWhatWasLearnt) {
 
 TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
   const sim::Recording recording = testing::synthetic_rig();
-  LearntRig rig;
+  CalibratedRig rig;
   rig.calibration.constants.lever_arm_m = {0.4, 0.1, -0.2};
   rig.calibration.constants.gyro_bias_rad_s = {0.01, -0.02, 0.005};
   rig.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
   for (const char* const name : {"rate/tumble", "rate/tumble_lag"}) {
     const Method& method = *find_methods(name).front();
-    Learning learning{rig, {}, {}};
-    const Estimate informed = learning_method(method, learning).run(recording.sensors, {}, {});
+    RigCalibrationUse learning{rig, {}, {}};
+    const Estimate informed = calibrating_method(method, learning).run(recording.sensors, {}, {});
     const Estimate fresh = method.run(recording.sensors, {}, {});
     ASSERT_TRUE(informed.status.ok()) << name;
     ASSERT_EQ(informed.rates.size(), fresh.rates.size());
@@ -98,7 +98,7 @@ TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
     // in the middle of the first rest the rate is the reading less the bias: that of the other run is forgotten
     EXPECT_LT(informed.rates[150].w_WI_I_rad_s.norm(), 1e-3) << name;
     const bool held = informed.health.at("calibration_at_prior") > 0.5, batch = std::string(name) == "rate/tumble";
-    const bool doubted = has_doubt({Doubt::About::learnt_rig}, informed);
+    const bool doubted = has_finding({HealthFinding::About::learnt_rig}, informed);
     EXPECT_EQ((batch ? learning.of_batch : learning.of_stream).has_value(), !held && !doubted) << name;
     EXPECT_FALSE((batch ? learning.of_stream : learning.of_batch).has_value()) << name;
   }
@@ -120,22 +120,23 @@ sim::Sensors hill_of_one_rig(std::uint64_t seed) {
 // the estimator is sure of what it was given, and takes what contradicts it for contact
 TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
   const Method& batch = *find_methods("rate/tumble").front();
-  Learning first;
-  learning_method(batch, first).run(hill_of_one_rig(96100), {}, {});
+  RigCalibrationUse first;
+  calibrating_method(batch, first).run(hill_of_one_rig(96100), {}, {});
   ASSERT_TRUE(first.of_batch);
   for (std::uint64_t seed = 96101; seed <= 96108; ++seed) {
-    Learning right{first.of_batch, {}, {}};
-    const Estimate estimate = learning_method(batch, right).run(hill_of_one_rig(seed), {}, {});
-    EXPECT_FALSE(has_doubt({Doubt::About::learnt_rig}, estimate)) << seed << ' ' << estimate.doubts.front().value;
+    RigCalibrationUse right{first.of_batch, {}, {}};
+    const Estimate estimate = calibrating_method(batch, right).run(hill_of_one_rig(seed), {}, {});
+    EXPECT_FALSE(has_finding({HealthFinding::About::learnt_rig}, estimate))
+        << seed << ' ' << estimate.findings.front().value;
     EXPECT_EQ(estimate.health.at("learnt_rig_contradicted"), 0.0);
   }
   const sim::Sensors sensors = hill_of_one_rig(96101);
   for (const char* const name : {"rate/tumble", "rate/tumble_lag"}) {
     for (const int shape : {0, 2, 4}) {
-      Learning other{first.of_batch, {}, {}};
+      RigCalibrationUse other{first.of_batch, {}, {}};
       other.given->calibration.constants.inertia[shape] += 0.3;
-      const Estimate estimate = learning_method(*find_methods(name).front(), other).run(sensors, {}, {});
-      EXPECT_TRUE(has_doubt({Doubt::About::learnt_rig}, estimate)) << name << ' ' << shape;
+      const Estimate estimate = calibrating_method(*find_methods(name).front(), other).run(sensors, {}, {});
+      EXPECT_TRUE(has_finding({HealthFinding::About::learnt_rig}, estimate)) << name << ' ' << shape;
       EXPECT_GT(estimate.health.at("learnt_rig_contradicted"), 2.0);
       EXPECT_EQ(other.found(), nullptr) << "the file stays as it is";
     }
@@ -169,14 +170,14 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   plane.samples = {40, 40};
   plane.log_odds = 100.0;
   plane.covariance.diagonal() << 1e-6, 1e-6, 1e-7, 1e-7;
-  LearntRig before = known_before(nullptr, assumed_model());
+  CalibratedRig before = known_before(nullptr, assumed_model());
   before.gyro_planes_rad_s[1] = {-7.2, 7.4};
   before.gyro_planes_rad_s[2] = {-7.1, 7.5};
   SaturationLevels rails;
   EXPECT_FALSE(with_rails(before, rails).has_value());
   rails.planes.element[0] = plane;
   rails.planes.element[1] = before.planes().element[1];  // as a run gives it back that did not meet it
-  const std::optional<LearntRig> after = with_rails(before, rails);
+  const std::optional<CalibratedRig> after = with_rails(before, rails);
   ASSERT_TRUE(after);
   EXPECT_EQ(after->gyro_planes_rad_s[0][1], 7.3);
   EXPECT_EQ(after->rail[0], 7.3);
@@ -196,9 +197,9 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
     sim::Situation situation = without_lidars(draw(data, hill, 40001));
     situation.sensors.front().values.set("accel_delay_s", delay_s);
     const sim::Recording recording = sim::simulate(sim::BuiltSituation(sim::resolve(situation), data.models()));
-    Learning first, second;
+    RigCalibrationUse first, second;
     const Method& stream = *find_methods("rate/tumble_lag").front();
-    ASSERT_TRUE(learning_method(stream, first).run(recording.sensors, {}, {}).status.ok());
+    ASSERT_TRUE(calibrating_method(stream, first).run(recording.sensors, {}, {}).status.ok());
     const bool late = delay_s > 0.0;
     ASSERT_EQ(first.of_stream && first.of_stream->device_errors.has_value(), late);
     if (!late) continue;
@@ -207,7 +208,7 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
     EXPECT_NEAR(errors.errors.accel_delay_s, delay_s, 3.0 * sigma_s);
     EXPECT_LT(sigma_s, 2e-3);
     second.given = *first.found();
-    const Estimate next = learning_method(stream, second).run(recording.sensors, {}, {});
+    const Estimate next = calibrating_method(stream, second).run(recording.sensors, {}, {});
     ASSERT_TRUE(next.status.ok());
     EXPECT_EQ(next.health.at("accel_delay_s"), errors.errors.accel_delay_s);
   }
@@ -219,10 +220,10 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
 TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
   const DataRoot data{test::source_dir()};
   sim::Recording recording = simulate_draw(data, load_scenario(data, "twirl"), 99560, 1, Lidars::left_out).recording;
-  std::optional<LearntRig> rig;
+  std::optional<CalibratedRig> rig;
   for (const char* const name : {"rate/tumble_lag", "rate/tumble"}) {
-    Learning learning;
-    const Estimate whole = learning_method(*find_methods(name).front(), learning).run(recording.sensors, {}, {});
+    RigCalibrationUse learning;
+    const Estimate whole = calibrating_method(*find_methods(name).front(), learning).run(recording.sensors, {}, {});
     ASSERT_TRUE(whole.status.ok()) << name;
     EXPECT_EQ(whole.health.at("calibration_at_prior"), 1.0) << name;
     ASSERT_NE(learning.found(), nullptr) << name;
@@ -271,14 +272,14 @@ TEST(RateLearnt, EachMethodTellsTheRailsThatItFound) {
 }
 
 TEST(RateLearnt, TheBatchOverridesTheStreamAndOtherMethodsAreRefused) {
-  Learning learning;
+  RigCalibrationUse learning;
   EXPECT_EQ(learning.found(), nullptr);
-  learning.of_stream = LearntRig{};
+  learning.of_stream = CalibratedRig{};
   EXPECT_EQ(learning.found(), &*learning.of_stream);
-  learning.of_batch = LearntRig{};
+  learning.of_batch = CalibratedRig{};
   EXPECT_EQ(learning.found(), &*learning.of_batch);
-  EXPECT_THROW(learning_method(*find_methods("rate/saave").front(), learning), BadInput);
-  EXPECT_THROW(learning_method(*find_methods("attitude/tumble").front(), learning), BadInput);
+  EXPECT_THROW(calibrating_method(*find_methods("rate/saave").front(), learning), BadInput);
+  EXPECT_THROW(calibrating_method(*find_methods("attitude/tumble").front(), learning), BadInput);
 }
 
 }  // namespace

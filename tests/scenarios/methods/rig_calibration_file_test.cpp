@@ -17,8 +17,8 @@ namespace {
 
 class RigCalibrationFile : public testing::TemporaryFolder {
  protected:
-  static LearntRig example() {
-    LearntRig rig;
+  static CalibratedRig example() {
+    CalibratedRig rig;
     rig.calibration.constants.lever_arm_m = {-0.0213, -0.0851, 1.0 / 3.0};
     rig.calibration.constants.gyro_bias_rad_s = {1e-3, -2e-17, 0.1};
     rig.calibration.constants.inertia << 0.1, -0.2, 0.3, 1e-9, 0.0;
@@ -46,14 +46,14 @@ class RigCalibrationFile : public testing::TemporaryFolder {
   }
 
   std::string complaint(const std::string& from, const std::string& to) const {
-    write_learnt_rig(path(), example());
+    write_rig_calibration(path(), example());
     std::string spoilt = text();
     const std::size_t at = spoilt.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     if (at != std::string::npos) spoilt.replace(at, from.size(), to);
     std::ofstream(path()) << spoilt;
     try {
-      read_learnt_rig(path());
+      read_rig_calibration(path());
     } catch (const BadInput& error) {
       return error.what();
     }
@@ -62,8 +62,8 @@ class RigCalibrationFile : public testing::TemporaryFolder {
 };
 
 TEST_F(RigCalibrationFile, ComesBackTheSameToTheBit) {
-  write_learnt_rig(path(), example());
-  const LearntRig back = read_learnt_rig(path());
+  write_rig_calibration(path(), example());
+  const CalibratedRig back = read_rig_calibration(path());
   EXPECT_TRUE(back.calibration.constants == example().calibration.constants);
   EXPECT_EQ(back.calibration.covariance, example().calibration.covariance);
   EXPECT_EQ(back.rail, example().rail);
@@ -110,7 +110,7 @@ TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
   plane.covariance.diagonal() << 4e-6, 4e-6, 2e-6, 2e-6;
   RailPlanes planes;
   planes.element[0] = plane;
-  LearntRig told, untold;
+  CalibratedRig told, untold;
   told.keep(planes);
   EXPECT_EQ(told.gyro_planes_rad_s[0][1].value_or(0.0), 10.2);
   EXPECT_FALSE(told.gyro_planes_rad_s[0][0].has_value());
@@ -139,7 +139,7 @@ TEST_F(RigCalibrationFile, SlopesOfUnsurePlanesAreDoubted) {
   plane.covariance.diagonal() << 1e-8, 2.5e-7, 1e-6, 1e-6;
   RailPlanes planes;
   planes.element[0] = plane;
-  LearntRig unsure = example(), sure = example();
+  CalibratedRig unsure = example(), sure = example();
   unsure.keep(planes);
   EXPECT_FALSE(unsure.planes().element[0].has_value());
   const Eigen::Index at = RigConstants::kElements;
@@ -152,8 +152,8 @@ TEST_F(RigCalibrationFile, SlopesOfUnsurePlanesAreDoubted) {
 }
 
 TEST_F(RigCalibrationFile, MissingFilesAndFoldersAreBadInput) {
-  EXPECT_THROW(read_learnt_rig(folder_ / "nothing.json"), BadInput);
-  EXPECT_THROW(write_learnt_rig(folder_ / "no" / "folder.json", example()), BadInput);
+  EXPECT_THROW(read_rig_calibration(folder_ / "nothing.json"), BadInput);
+  EXPECT_THROW(write_rig_calibration(folder_ / "no" / "folder.json", example()), BadInput);
 }
 
 TEST_F(RigCalibrationFile, TheNextRunStartsFromIt) {

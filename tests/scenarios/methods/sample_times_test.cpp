@@ -74,7 +74,7 @@ TEST(SampleTimes, StampsThatGoBackStayForTheBridgeToRefuse) {
   sim::Recording recording = stamped_by_a_host(testing::synthetic_rig());
   std::vector<std::int64_t>& stamps_ns = recording.sensors.imus.front().time_ns;
   for (std::size_t k = 1; k < stamps_ns.size(); k += 10) std::swap(stamps_ns[k - 1], stamps_ns[k]);
-  EXPECT_EQ(run("rate/tumble", recording).status.trouble, Trouble::time_order);
+  EXPECT_EQ(run("rate/tumble", recording).status.error_code, ErrorCode::time_order);
 }
 
 // Readings and truth are of the samples' own times, whatever their stamps.

@@ -198,7 +198,7 @@ TEST(SlamMethods, SayThatTheyNeedAnImu) {
     if (method.info.kind != Kind::slam || method.info.name == "constant_velocity") continue;
     if (!method.info.applies_to({"rig"})) continue;
     const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
-    EXPECT_EQ(estimate.status.trouble, Trouble::empty) << method.info.name;
+    EXPECT_EQ(estimate.status.error_code, ErrorCode::empty) << method.info.name;
     EXPECT_EQ(std::string(estimate.status.field), "imus") << method.info.name;
     ++tried;
   }

@@ -178,7 +178,7 @@ TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
   sensors.imus[0] = frozen_z(sensors.imus[0]);
   MergedImus merged;
   const Status status = merge_imus(sensors, merged);
-  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_NE(std::string(status.field).find("gyro z"), std::string::npos) << status.message();
   EXPECT_EQ(merged.faults.size(), 3U);
 }
@@ -190,7 +190,8 @@ TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
   for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(clips, slow), merged).ok());
-  for (const Doubt& doubt : merged.faults) EXPECT_EQ(doubt.unit.find_first_of("xyz"), std::string::npos) << doubt.unit;
+  for (const HealthFinding& doubt : merged.faults)
+    EXPECT_EQ(doubt.unit.find_first_of("xyz"), std::string::npos) << doubt.unit;
 }
 
 TEST(SphereImus, ReadingsOfOneUnitBeyondItsRangeAreLeftOutAndCounted) {

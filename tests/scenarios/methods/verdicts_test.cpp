@@ -107,12 +107,12 @@ TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
-  EXPECT_TRUE(good.doubts.empty());
+  EXPECT_TRUE(good.findings.empty());
   EXPECT_FALSE(good.health.contains("imu_other_axes_share"));
   const Estimate flipped = run_wrong(draw, "position/tumble", "gyro_x_flipped");
-  EXPECT_TRUE(has_doubt({Doubt::About::readings}, flipped));
+  EXPECT_TRUE(has_finding({HealthFinding::About::readings}, flipped));
   EXPECT_NEAR(flipped.health.at("imu_other_axes_share"), 1.0, 0.3);
-  EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.error_code, ErrorCode::out_of_range);
 }
 
 // Its units' places make the forces differ by 6 to 9 % less than they should; of the gyros gravity says that they are
@@ -122,8 +122,9 @@ TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
   EXPECT_GT(std::abs(good.health.at("imu_arm_share") - 1.0), 0.06);
-  EXPECT_TRUE(good.doubts.empty());
-  EXPECT_TRUE(has_doubt({Doubt::About::readings}, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
+  EXPECT_TRUE(good.findings.empty());
+  EXPECT_TRUE(
+      has_finding({HealthFinding::About::readings}, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
 }
 
 TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
@@ -146,7 +147,7 @@ TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   for (const char* method : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
     Outcome outcome;
     const Estimate estimate = run_method(*find_methods(method).at(0), draw, outcome);
-    EXPECT_EQ(estimate.status.trouble, Trouble::out_of_range) << method;
+    EXPECT_EQ(estimate.status.error_code, ErrorCode::out_of_range) << method;
     EXPECT_NE(std::string(estimate.status.field).find("period"), std::string::npos) << method;
   }
 }
@@ -168,7 +169,7 @@ TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
 }
 
 struct SaidOfRates {
-  bool implausible = false, z_frozen = false, other_sense = false;
+  bool implausible = false, z_frozen = false, mislabelled_axes = false;
   double turned_sigma_rad_s = 0.0;  ///< mean where it turns
 };
 
@@ -194,11 +195,11 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const SaidOfRates good = rates_of(draw, "none");
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
-  EXPECT_FALSE(good.other_sense);
+  EXPECT_FALSE(good.mislabelled_axes);
   // the mirrored world: gravity turns as it should, and only flight tells
   const SaidOfRates mirrored = rates_of(draw, "accel_flipped");
   EXPECT_TRUE(mirrored.implausible);
-  EXPECT_TRUE(mirrored.other_sense);
+  EXPECT_TRUE(mirrored.mislabelled_axes);
   const SaidOfRates flipped = rates_of(draw, "gyro_flipped");
   EXPECT_TRUE(flipped.implausible);
   EXPECT_GT(flipped.turned_sigma_rad_s, 2.0) << "and does not state to know them";
@@ -212,18 +213,18 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
 TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
-  EXPECT_FALSE(rates_of(draw, "none").other_sense);
+  EXPECT_FALSE(rates_of(draw, "none").mislabelled_axes);
   for (const char* wrong : {"accel_flipped", "accel_z_flipped", "accel_x_y_swapped", "gyro_x_flipped"})
-    EXPECT_TRUE(rates_of(draw, wrong).other_sense) << wrong;
+    EXPECT_TRUE(rates_of(draw, wrong).mislabelled_axes) << wrong;
 }
 
 // An attitude behind a gap in a tumble: off by radians and sure of it before gaps were bridged (attitude.md (A17)).
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
-  EXPECT_FALSE(has_doubt({Doubt::About::attitude}, run_wrong(draw, "attitude/tumble", "none")));
+  EXPECT_FALSE(has_finding({HealthFinding::About::attitude}, run_wrong(draw, "attitude/tumble", "none")));
   const Estimate estimate = run_wrong(draw, "attitude/tumble", "imus_silent_300_ms");
-  EXPECT_TRUE(has_doubt({Doubt::About::attitude}, estimate));
+  EXPECT_TRUE(has_finding({HealthFinding::About::attitude}, estimate));
   const TruthTrack truth(draw.recording.truth, estimate.frame);
   double beyond = 0.0;
   for (const AttitudeState& attitude : estimate.attitudes) {
@@ -273,7 +274,8 @@ TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
     for (const RateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();
     for (const RateState& rate : before) least = std::min(least, rate.covariance_rad2_s2.diagonal().minCoeff());
     EXPECT_GT(least, 0.0);
-    return std::pair((trace(estimate.rates) - trace(before)) / squares, has_doubt({Doubt::About::rates}, estimate));
+    return std::pair((trace(estimate.rates) - trace(before)) / squares,
+                     has_finding({HealthFinding::About::rates}, estimate));
   };
   EXPECT_EQ(of("none"), std::pair(0.0, false));
   const auto [share, doubted] = of("gyro_flipped");

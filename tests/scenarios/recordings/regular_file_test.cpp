@@ -93,7 +93,7 @@ TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   EXPECT_EQ(complaint([&] { pose_format(pipe); }), said);
   EXPECT_FALSE(is_pose_table(pipe));
   EXPECT_EQ(complaint([&] { read_pose_table(pipe, false); }), said);
-  EXPECT_EQ(complaint([&] { read_learnt_rig(pipe); }), said);
+  EXPECT_EQ(complaint([&] { read_rig_calibration(pipe); }), said);
   Kind kind{};
   std::string method;
   std::filesystem::create_directory(folder_ / "estimate");

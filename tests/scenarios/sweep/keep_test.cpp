@@ -204,7 +204,7 @@ TEST_F(KeepTest, ADrawIsKeptWholeOrNotAtAll) {
     std::filesystem::create_directories(files.estimate(find_methods("rate/raw").front()->info));
     if (!missed.empty()) files.miss(missed);
     files.finish(draw, false);
-    return files.trouble();
+    return files.error_code();
   };
   EXPECT_EQ(finished("no space left on device"), "no space left on device");
   EXPECT_FALSE(std::filesystem::exists(keeping.folder));

@@ -196,7 +196,7 @@ TEST_F(RunIsolated, AnExceptionIsAFailure) {
 TEST_F(RunIsolated, AStatusThatIsNotOkIsAFailure) {
   const Outcome outcome = run([](const sim::Sensors&) {
     Estimate estimate;
-    estimate.status = {Trouble::gap, "imu.time_ns", 2.0, 1.0};
+    estimate.status = {ErrorCode::gap, "imu.time_ns", 2.0, 1.0};
     return estimate;
   });
   EXPECT_EQ(outcome.status, OutcomeStatus::failed);

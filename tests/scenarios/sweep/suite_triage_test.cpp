@@ -38,7 +38,7 @@ std::string clipping_tumble(const std::filesystem::path& folder) {
 std::vector<std::string> said(const std::vector<DrawTriage>& all) {
   std::vector<std::string> out;
   for (const DrawTriage& draw : all) {
-    out.push_back(std::to_string(draw.draw.seed) + draw.trouble);
+    out.push_back(std::to_string(draw.draw.seed) + draw.error_code);
     for (const TriageRow& row : draw.rows)
       out.push_back(row.input + (row.fails ? "+" : "-") + row.outcome.estimate_digest + row.doc);
   }
@@ -76,7 +76,7 @@ TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
   const std::vector<DrawTriage> all = triage_draws(tree_data(), draws, *find_methods("position/rolling").front(), {});
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(all[0].rows.empty());
-  EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not support the robot"));
+  EXPECT_THAT(all[0].error_code, ::testing::HasSubstr("does not support the robot"));
   EXPECT_THROW(triage_draws(tree_data(), std::vector<DrawName>{{"hil", 1}}, *find_methods("rate/raw").front(), {}),
                BadInput);
 }
@@ -100,9 +100,9 @@ TEST_F(SuiteTriage, AProcessThatDiesCostsTheRestOfItsDrawAlone) {
   const Method dies = disturbed(folder_, 3, [] { kill(getppid(), SIGKILL); });
   const std::vector<DrawTriage> all = triage_draws(tree_data(), draws, dies, {});
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("ended by signal 9"));
+  EXPECT_THAT(all[0].error_code, ::testing::HasSubstr("ended by signal 9"));
   EXPECT_EQ(all[0].rows.size(), 2u) << "what it had told stands";
-  EXPECT_EQ(all[1].trouble, "");
+  EXPECT_EQ(all[1].error_code, "");
   EXPECT_GT(all[1].rows.size(), 3u);
 }
 
@@ -113,7 +113,7 @@ TEST_F(SuiteTriage, AProcessThatHangsIsLate) {
   const std::vector<DrawTriage> all =
       triage_draws(tree_data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].trouble, "the draw did not end within its time limit");
+  EXPECT_EQ(all[0].error_code, "the draw did not end within its time limit");
 }
 
 TEST_F(SuiteTriage, MemoryIsLimited) {

@@ -41,7 +41,7 @@ TEST(Elements, UprightAreTheRailAloneBitForBit) {
   const Elements none, drawn({}, Stream(1, "test")), given(Matrix3d::Identity(), Vector3d::Zero());
   Stream stream(1, "signal");
   for (const Elements* each : {&none, &drawn, &given}) {
-    ASSERT_TRUE(each->upright());
+    ASSERT_TRUE(each->axis_aligned());
     for (const Rail::Params& kind :
          {Rail::Params{.level = kRail}, Rail::Params{.level = kRail, .axis_spread = 0.2, .event_spread = 0.1},
           Rail::Params{.level = kRail, .wrap = true},
@@ -59,7 +59,7 @@ TEST(Elements, UprightAreTheRailAloneBitForBit) {
 
 TEST(Elements, WithinTheirRailsTheyCannotBeSeen) {
   const Elements elements(tilted(), {0.05, -0.1, 0.02});
-  ASSERT_FALSE(elements.upright());
+  ASSERT_FALSE(elements.axis_aligned());
   Stream stream(1, "signal");
   for (int k = 0; k < 1000; ++k) {
     const Vector3d signal = any_signal(stream, 9.0);
@@ -164,12 +164,12 @@ TEST(Elements, AreDrawnAsStated) {
   EXPECT_EQ(one.axes(), again.axes());
   EXPECT_EQ(one.offset(), again.offset());
   EXPECT_NE(one.axes(), other.axes());
-  EXPECT_FALSE(Elements({.offset = 0.05}, Stream(1, "a")).upright());
+  EXPECT_FALSE(Elements({.offset = 0.05}, Stream(1, "a")).axis_aligned());
 }
 
 TEST(Elements, WhateverIsDrawnCanBeUndone) {
   // the worst of the allowed: every entry at three standard deviations, of the sign that hurts
-  const double most = 3.0 * Elements::kMostMisalignment;
+  const double most = 3.0 * Elements::kMisalignmentMax;
   Matrix3d worst = Matrix3d::Constant(most);
   worst.diagonal().setConstant(1.0 - most);
   const Elements elements(worst, Vector3d::Zero());

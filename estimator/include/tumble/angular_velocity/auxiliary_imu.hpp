@@ -30,7 +30,7 @@ struct AuxiliaryImu {
   double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
   double gyro_error_rad_s = 0.01;  ///< bias, and rate-independent errors of scale and mounting; [1e-9, 10]
   double accel_error_m_s2 = 0.07;  ///< difference of the accelerometer biases of the two IMUs; [1e-9, 10]
-  double share_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; [0, 1]
+  double scale_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; [0, 1]
   double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; [1e-9, 1]
   double clock_error_s = 1e-3;     ///< time error between the clocks of the two IMUs; [0, 0.1]
   SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips

@@ -15,10 +15,10 @@ namespace tumble {
 
 /// SaturationLevels contains the saturation levels of an IMU.
 struct SaturationLevels {
-  RailDetector::State upright_rails;            ///< levels found from equal readings, and stated ranges
+  RailDetector::State axis_aligned_rails;       ///< levels found from equal readings, and stated ranges
   RailPlanes planes;                            ///< saturation planes of the gyro's sensing elements, where observed
   RailPlanes accel_planes;                      ///< saturation planes of the accelerometer
-  bool upright = false;                         ///< the gyro clips after compensation, so other axes are unaffected
+  bool gyro_clips_after_compensation = false;   ///< the gyro clips after compensation, so other axes are unaffected
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after compensation
 
   /// Returns the saturation planes that are used to classify readings. If the device clips its output after
@@ -57,12 +57,12 @@ struct ConfirmedSaturation {
 
 /// Finds the clipped readings of a recording, for every estimator that processes whole recordings. ClippingFinder
 /// combines flags of the device, saturation levels from equal readings (RailDetector) and tilted saturation planes
-/// (RailPlaneFinder). RailWatch applies the rules of ClippingFinder to the window of RateStream.
+/// (RailPlaneFinder). StreamingClippingFinder applies the rules of ClippingFinder to the window of RateStream.
 class ClippingFinder {
  public:
   struct Params {
-    RailDetector::Params upright_rails = {};
-    RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of `upright_rails` applies
+    RailDetector::Params axis_aligned_rails = {};
+    RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of `axis_aligned_rails` applies
     /// Parameters of the search for saturation planes of the accelerometer.
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
     /// If `tilted` is false, clipping is detected only from flags and equal readings, as in the published methods.
@@ -71,12 +71,12 @@ class ClippingFinder {
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit.group("rails_", p.upright_rails);
+      visit.group("rails_", p.axis_aligned_rails);
       visit.group("planes_", p.planes);
       visit.group("accel_planes_", p.accel_planes);
       visit(
           p.tilted,
-          on_off(
+          switch_field(
               "tilted",
               "1: also search tilted saturation limits; 0: search only upright ones and use the device's clip flags"));
     }
@@ -93,13 +93,13 @@ class ClippingFinder {
   /// and in time order.
   Found find(std::span<const ImuSample> samples) const;
 
-  const RailDetector& upright_rails() const { return upright_rails_; }
+  const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
 
  private:
-  RailPlanes find_planes(std::span<const ImuSample> samples, Triad triad, const RailDetector::State& upright_rails,
-                         bool& upright) const;
+  RailPlanes find_planes(std::span<const ImuSample> samples, Triad triad, const RailDetector::State& axis_aligned_rails,
+                         bool& clips_after_compensation) const;
 
-  RailDetector upright_rails_;
+  RailDetector axis_aligned_rails_;
   // index 0: gyro, index 1: accelerometer; inner index 1: finder for readings that exceed the stated range
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;

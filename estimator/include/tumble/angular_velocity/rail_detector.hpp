@@ -14,9 +14,9 @@ namespace tumble {
 
 /// Clipping marks the clipped axes of a sample.
 struct Clipping {
-  std::uint8_t gyro = 0;          ///< bit j: axis j is saturated; the true value is at or beyond the reading
-  std::uint8_t accel = 0;         ///< bit j: axis j of the accelerometer is saturated
-  std::uint8_t missing_gyro = 0;  ///< bit j: the reading of axis j is unusable (overflow with flipped sign)
+  std::uint8_t gyro = 0;           ///< bit j: axis j is saturated; the true value is at or beyond the reading
+  std::uint8_t accel = 0;          ///< bit j: axis j of the accelerometer is saturated
+  std::uint8_t unusable_gyro = 0;  ///< bit j: the reading of axis j is unusable (overflow with flipped sign)
   bool operator==(const Clipping&) const = default;
 };
 
@@ -137,8 +137,8 @@ class RailDetector {
   /// Adds the rising edge of a plateau to `clipping`. The edge consists of the axes of `sample` that are near the
   /// saturation level before a clipped `next`. The largest distance of an edge from the saturation level is equal
   /// before and after a plateau.
-  void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
-                Clipping& clipping) const;
+  void add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
+                       Clipping& clipping) const;
 
   /// Returns the saturation level of channel c (0-5). The level comes from the plateau of the channel, else from the
   /// largest plateau on another axis of its triad, else from the stated range. A saturation level from another axis or

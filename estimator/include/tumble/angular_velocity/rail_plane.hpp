@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
+#include "tumble/common/detail/same_compiler_settings.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 
@@ -32,13 +32,13 @@ struct RailPlane {
   bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
   /// Returns the distance of a reading below the plane of `sign` (-1 or 1) [rad/s]. A negative distance means that the
   /// reading is beyond the plane.
-  double short_of(const Eigen::Vector3d& reading_rad_s, int sign) const {
+  double margin_rad_s(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
   /// Returns whether a reading is at or beyond the plane of `sign`. Returns false if no saturation with this sign was
   /// observed.
   bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
-    return seen(sign) && short_of(reading_rad_s, sign) <= tolerance_rad_s;
+    return seen(sign) && margin_rad_s(reading_rad_s, sign) <= tolerance_rad_s;
   }
   /// Returns whether some readings are so far beyond the plane that the plane cannot be a saturation level.
   bool contradicted_by(std::span<const Eigen::Vector3d> readings_rad_s) const;
@@ -65,7 +65,7 @@ struct SensingDirections {
 };
 /// Returns the directions along which the sensing elements of a triad (gyro or accelerometer) measure. A sensing
 /// element without a saturation plane has an axis-aligned direction with the standard deviation `unknown_sigma`.
-SensingDirections element_rows(const RailPlanes& planes, double unknown_sigma);
+SensingDirections sensing_directions(const RailPlanes& planes, double unknown_sigma);
 
 /// ElementClipping contains the state of each sensing element in a sample. The state is -1 if clipped at the negative
 /// saturation level, 1 if clipped at the positive saturation level, and 0 if unsaturated.

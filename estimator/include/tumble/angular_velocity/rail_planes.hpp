@@ -105,7 +105,7 @@ class RailPlaneFinder {
   const Params& params() const { return params_; }
 
  private:
-  RailPlanes with_known(const RailPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
+  RailPlanes merge_with_known_planes(const RailPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
   Params params_;
 };
 

@@ -56,19 +56,19 @@ struct RateModelParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the calibrated lever arm", Rank::first});
-    visit(p.gyro_bias_sigma_rad_s,
-          {"gyro_bias_sigma_rad_s", "rad/s", 1e-9, 10.0, "prior standard deviation of the gyro bias", Rank::first});
+          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the calibrated lever arm", FieldRank::basic});
+    visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 1e-9, 10.0,
+                                    "prior standard deviation of the gyro bias", FieldRank::basic});
     visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-9, 10.0,
-                                    "prior standard deviation of the accelerometer bias", Rank::first});
+                                    "prior standard deviation of the accelerometer bias", FieldRank::basic});
     visit(p.inertia_sigma,
           {"inertia_sigma", "1", 1e-9, 10.0,
            "prior standard deviation of the ratios of the moments of inertia, with equal moments as the mean",
-           Rank::first});
+           FieldRank::basic});
     visit(p.element_sigma, {"element_sigma", "1", 1e-9, 0.2,
                             "prior standard deviation of each slope of a gyro element's saturation plane: cross-axis "
                             "sensitivity before compensation",
-                            Rank::first});
+                            FieldRank::basic});
     visit(p.gyro_noise_density,
           {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0,
            "noise density of the gyro; a larger value gives gyro readings less weight; default: 0.03 deg/s/sqrt(Hz)"});

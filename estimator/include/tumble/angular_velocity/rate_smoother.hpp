@@ -45,11 +45,11 @@ struct RateSmootherParams {
     visit(p.recovered_sigma_rad_s,
           {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
            "a clipped axis with a smaller standard deviation is reported as recovered, otherwise as bounded",
-           Rank::first});
+           FieldRank::basic});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance is reported as an error",
-                                          Rank::first});
+                                          FieldRank::basic});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
                         "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);
@@ -156,7 +156,7 @@ class RateSmoother {
  private:
   Params params_;
   ClippingFinder rails_;
-  RestDetector rests_;
+  RestDetector rest_detector_;
 };
 
 }  // namespace tumble

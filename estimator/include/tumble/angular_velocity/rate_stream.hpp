@@ -9,12 +9,12 @@
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
-#include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/detail/flight_sign_check.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_params.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
@@ -31,12 +31,12 @@ namespace tumble {
 /// newest sample. A step costs O(window): the cost grows with the sample rate above 200 Hz, and with the square of the
 /// sample rate below 200 Hz. RateStream allocates no memory after the State is created.
 ///
-/// RailWatch detects saturation levels and planes from the readings. After each detection of a saturation level, the
-/// samples in the window are classified again. A clipped sample is therefore accepted as a measurement only if the
-/// sample left the window before the detection. With the calibration of an earlier run, the rate error of RateStream is
-/// 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate errors are within
-/// three standard deviations. With a calibration that is estimated during the tumble itself, the rate error is 1.6
-/// times that of RateSmoother, or 1.2 times with 0.5 s of lag. The measured error ratios are in
+/// StreamingClippingFinder detects saturation levels and planes from the readings. After each detection of a saturation
+/// level, the samples in the window are classified again. A clipped sample is therefore accepted as a measurement only
+/// if the sample left the window before the detection. With the calibration of an earlier run, the rate error of
+/// RateStream is 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate
+/// errors are within three standard deviations. With a calibration that is estimated during the tumble itself, the rate
+/// error is 1.6 times that of RateSmoother, or 1.2 times with 0.5 s of lag. The measured error ratios are in
 /// docs/maths/rate_stream.md. The errors of the samples of one flight are correlated. RateStream therefore increases
 /// the covariance of calibration and rates until enough flight samples are processed (`rig_inflation`). The limitations
 /// of RateSmoother also apply to RateStream.
@@ -69,8 +69,8 @@ class RateStream {
   void flush(const State& state, std::vector<RateState>& out) const;
 
   /// Reports whether the IMU's readings are currently plausible. Returns `out_of_range` with the name of a frozen axis
-  /// (FrozenAxes), or for an accelerometer with inverted sign (FlightSense). While a gyro axis is frozen, the standard
-  /// deviation of its rate is the largest rate read so far.
+  /// (FrozenAxes), or for an accelerometer with inverted sign (FlightSignCheck). While a gyro axis is frozen, the
+  /// standard deviation of its rate is the largest rate read so far.
   Status health(const State& state) const;
 
   /// Returns the estimated calibration.
@@ -93,49 +93,49 @@ class RateStream {
   void store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
   void reset_prior(State& state) const;
   void reset_rig(State& state) const;
-  double delay_reach_s() const { return StrokeSums::kMostSamples * params_.period_s; }
+  double delay_reach_s() const { return ImpactSums::kDelayMax_samples * params_.period_s; }
   std::ptrdiff_t force_shift(const State& state) const;
   void pair_force(std::size_t k, State& state) const;
   std::size_t pair_newest(State& state) const;
   void accumulate_impacts(State& state) const;
   TriadDelay guessed_delay(const State& state) const;
-  void seek_delay(State& state) const;
+  void update_delay(State& state) const;
   void apply_delay(double delay_s, bool found, State& state) const;
   void refine_delay(State& state) const;
   void consider_errors(const arrow::BorderVector& rig_step, State& state) const;
   Eigen::Matrix3d device_covariance(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
-  double jump_before(const Knot& oldest, const State& state) const;
+  double change_before_window(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
-  void classify_again(State& state) const;
-  void judge(bool all, State& state) const { judge_from(all ? 0 : state.window.size() - 1, state); }
-  void judge_from(std::size_t changed, State& state) const;
+  void reclassify_window(State& state) const;
+  void classify_samples(bool all, State& state) const { classify_from(all ? 0 : state.window.size() - 1, state); }
+  void classify_from(std::size_t changed, State& state) const;
   void mark_undetected_clipping(std::size_t k, State& state) const;
   void clear_suspects(State& state) const;
-  void mark_possible_rails(State& state) const;
+  void mark_possible_saturation(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
   static double run_slope(int axis, std::size_t first, std::size_t last, const State& state);
   void mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const;
-  static Eigen::Vector3d approach(const std::vector<Knot>& window);
-  static void store_entry(const Knot& leaving, const Knot& next, State& state);
+  static Eigen::Vector3d reading_growth(const std::vector<Knot>& window);
+  static void store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state);
   void add_rails(const State& state, arrow::Corner& corner) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
-  void weigh(State& state) const;
+  void compute_flight_weight(State& state) const;
   bool step(State& state) const;
   RigConstants::Matrix inflated(const State& state) const;
-  bool near_rails(std::size_t at, const State& state) const;
+  bool may_be_partly_saturated(std::size_t at, const State& state) const;
   bool in_long_flight(std::size_t at, const State& state) const;
-  double hidden_by_slopes(std::size_t at, int axis, const State& state) const;
+  double deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const;
   Eigen::Matrix3d suspect_covariance(std::size_t at, const State& state) const;
-  void move_later(std::size_t at, double late_s, const State& state, RateState& out) const;
-  RateState to_state(std::size_t at, const State& state) const;
+  void extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const;
+  RateState to_rate_state(std::size_t at, const State& state) const;
 
   Params params_;
-  RailWatch rails_;
-  RestDetector rests_;
+  StreamingClippingFinder rails_;
+  RestDetector rest_detector_;
   RepeatDetector repeat_detector_;
   FrozenAxes frozen_;
-  FlightSense sense_;
+  FlightSignCheck flight_sign_check_;
   RateModel model_;
   DeviceUncertainty device_;
   std::size_t capacity_;

@@ -11,7 +11,7 @@ namespace tumble {
 /// the order of the members.
 struct RigConstants {
   static constexpr int kSize = 20, kElements = 14;
-  static constexpr double kMost = 10.0;  ///< maximum magnitude of each number, in its unit
+  static constexpr double kMagnitudeMax = 10.0;  ///< maximum magnitude of each number, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
@@ -48,9 +48,9 @@ struct RigCalibration {
 };
 
 /// Returns `out_of_range` if a constant exceeds the limits of any plausible rig.
-Status check_rig(const RigConstants& rig);
-/// Checks a calibration like check_rig(), and also checks the covariance. Returns `degenerate` if the covariance is not
-/// positive definite, because a run cannot start from a singular covariance.
+Status check_rig_constants(const RigConstants& rig);
+/// Checks a calibration like check_rig_constants(), and also checks the covariance. Returns `degenerate` if the
+/// covariance is not positive definite, because a run cannot start from a singular covariance.
 Status check_calibration(const RigCalibration& calibration);
 
 }  // namespace tumble

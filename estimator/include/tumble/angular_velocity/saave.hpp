@@ -59,18 +59,18 @@ class Saave {
       visit(p.saturation_point_rad_s,
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
              "readings beyond this value count as clipped; choose a value slightly below the gyro's saturation limit",
-             Rank::first});
+             FieldRank::basic});
       visit(p.variance_measured_rad2_s2,
             {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
-      visit(
-          p.variance_estimated_rad2_s2,
-          {"variance_estimated_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
-           "variance of a recovered axis: 0.2741 as in the authors' code, 3.648 as printed in the paper", Rank::first});
+      visit(p.variance_estimated_rad2_s2,
+            {"variance_estimated_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
+             "variance of a recovered axis: 0.2741 as in the authors' code, 3.648 as printed in the paper",
+             FieldRank::basic});
       visit(p.variance_rejected_rad2_s2,
             {"variance_rejected_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of a clipped axis without an estimate"});
       visit(p.jerk_psd_rad2_s5,
             {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
-             "power spectral density of the smoother's white angular jerk (paper, sec. IV)", Rank::first});
+             "power spectral density of the smoother's white angular jerk (paper, sec. IV)", FieldRank::basic});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
                           "maximum time between two samples; a longer gap ends the run with an error"});
     }

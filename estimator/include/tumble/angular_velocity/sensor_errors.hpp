@@ -38,7 +38,7 @@ struct KnownSensorErrors {
 
 /// Throws InvalidParams if an error is above 0.2 or the covariance is invalid. A covariance with a negative eigenvalue
 /// is invalid, because the filter would treat the direction of the eigenvector as perfectly known.
-void require_known(const KnownSensorErrors& learnt);
+void require_known(const KnownSensorErrors& earlier_runs);
 
 /// SensorErrorPriors contains the prior standard deviations of sensor errors, for a device as in its data sheet and for
 /// an uncalibrated device. SensorErrorFit determines from the readings whether the data sheet applies. If the standard
@@ -84,13 +84,13 @@ struct SensorErrorPriors {
 
 /// Returns the prior standard deviations of all sensor errors. `share` is between 0 (data sheet) and 1 (uncalibrated
 /// device). All returned standard deviations are above 0.
-SensorErrors::Vector prior_deviations(const SensorErrorPriors& sizes, double share);
+SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 
 /// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded
-/// at `about`. `information` is the second derivative of the cost and `gradient` is its negative first derivative, with
-/// all other unknowns at their optimum.
+/// at `linearisation_point`. `information` is the second derivative of the cost and `gradient` is its negative first
+/// derivative, with all other unknowns at their optimum.
 struct SensorErrorEvidence {
-  SensorErrors about;
+  SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
@@ -114,13 +114,13 @@ struct SensorErrorFit {
 /// and sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood
 /// of the readings. The result has the mean and the covariance of the mixture of all models. If the readings fit the
 /// data sheet, unobservable sensor errors thereby keep the small uncertainty of the data sheet. Cost: O(1), about 30
-/// systems of 29 unknowns. `learnt` is the information from earlier runs of the device, from calibration_evidence(),
-/// used with full weight.
+/// systems of 29 unknowns. `earlier_runs` is the information from earlier runs of the device, from
+/// calibration_evidence(), used with full weight.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
-                                 const SensorErrorEvidence& learnt = {});
+                                 const SensorErrorEvidence& earlier_runs = {});
 
 /// Converts the sensor errors that one run estimated to measurement information for the next run. The function removes
 /// the prior of an uncalibrated device from the covariance, because the next run adds that prior again.
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorPriors& sizes);
+SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
 
 }  // namespace tumble

@@ -88,11 +88,11 @@ class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
   static constexpr int kAccelerationWindows = ImuMergeState::kAccelerationWindows;
-  static constexpr int kErrors = ImuMergeUnit::kErrors;
+  static constexpr int kErrorCount = ImuMergeUnit::kErrorCount;
 
   using Params = ImuMergeParams;
 
-  using Hold = ImuRepeat;
+  using Repetition = ImuRepeat;
   using Unit = ImuMergeUnit;
   using State = ImuMergeState;
 
@@ -101,7 +101,7 @@ class ImuMerge {
   /// Returns the ratio of the measured force differences between units to the differences expected from rotation and
   /// positions. The ratio is 1 if forces and rotation agree, and -1 if the sign of the accelerometers is inverted. The
   /// result is empty until the body has rotated enough.
-  static std::optional<double> arm_share(const State& state);
+  static std::optional<double> lever_arm_agreement(const State& state);
 
   /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. While all units are
   /// frozen, step() merges their readings unchanged. Returns `ok` if at least one unit is not frozen.
@@ -119,28 +119,28 @@ class ImuMerge {
  private:
   using Vectors = std::array<Eigen::Vector3d, kImus>;
 
-  using Flags = std::array<bool, kImus>;
+  using UnitMask = std::array<bool, kImus>;
 
   using Readings = std::array<ImuSample, kImus>;  ///< means over a window; flags of the axes that were saturated in it
 
-  void gather(std::span<const ImuSample> samples, double dt_s, State& state) const;
+  void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;
   ImuSample merge(State& state) const;
-  Flags choose(const Readings& readings, const Flags& present, const Vectors& rates, const Vectors& forces, double h,
-               State& state) const;
-  ImuSample mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
+  UnitMask select_units(const Readings& readings, const UnitMask& present, const Vectors& rates, const Vectors& forces,
+                        double h, State& state) const;
+  ImuSample mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
                          const State& state) const;
-  std::uint8_t flags_of(const Readings& readings, const Flags& which) const;
-  void close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
+  std::uint8_t combined_flags(const Readings& readings, const UnitMask& which) const;
+  void close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                      const ImuSample& merged, State& state) const;
   void calibrate(const Vectors& rates, State& state) const;
-  void watch_repeats(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s, TimeNs time_ns,
-                     State& state) const;
-  void watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
-                     State& state) const;
-  static Eigen::Vector3d median(const Vectors& values, const Flags& which);
-  void exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
-                                   const Eigen::Vector3d& rate, double h, State& state, Flags& used) const;
-  void recover(const Readings& readings, const Flags& present, double h, State& state, ImuSample& merged) const;
+  void detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
+                           TimeNs time_ns, State& state) const;
+  void detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
+                                State& state) const;
+  static Eigen::Vector3d median(const Vectors& values, const UnitMask& which);
+  void exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
+                                   const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const;
+  void recover(const Readings& readings, const UnitMask& present, double h, State& state, ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
   static RateRecovery::Params recovery_params(const Params& params);
 

@@ -71,28 +71,29 @@ struct ImuPlausibilityParams {
 ///
 /// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate. If
 /// the body is pushed all the time, ImuPlausibility detects no error. ImuPlausibility does not detect an accelerometer
-/// whose three axes are all inverted. With several IMUs, ImuMerge::arm_share() detects inverted accelerometers.
+/// whose three axes are all inverted. With several IMUs, ImuMerge::lever_arm_agreement() detects inverted
+/// accelerometers.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
 
-  /// Hold describes how long a sensor (gyro or accelerometer) has repeated one reading.
-  struct Hold {
+  /// Repetition describes how long a sensor (gyro or accelerometer) has repeated one reading.
+  struct Repetition {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double repeated_s = 0.0, longest_s = 0.0, moved_s = 0.0;
+    double repeated_s = 0.0, longest_s = 0.0, changing_s = 0.0;
     double frozen_s = 0.0;  ///< 0: never
-    bool operator==(const Hold&) const = default;
+    bool operator==(const Repetition&) const = default;
   };
   struct State {
-    Hold gyro, accel;
+    Repetition gyro, accel;
     ImuAverage average;
     Eigen::Vector3d force_start_m_s2 = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
+    Eigen::Quaterniond gyro_rotation = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
-    bool open = false, steady = false;
+    bool window_started = false, force_is_constant = false;
     bool in_range = true;  ///< whether all samples of the window and average are within the range
     double force_sum_m_s2 = 0.0, windows = 0.0;
-    double pushed_s = 0.0;                               ///< time with forces that exclude rest
+    double non_rest_force_s = 0.0;                       ///< time with forces that exclude rest
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each possible assignment of axis labels
     double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which the force rotated
     double rotated_windows = 0.0;                                ///< number of windows in which the force rotated
@@ -109,9 +110,9 @@ class ImuPlausibility {
   void step(const ImuSample& sample, State& state) const;
 
   /// Returns the mean magnitude of a constant force as a fraction of gravity, or 1 while unknown.
-  double force_share(const State& state) const;
+  double force_ratio(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
-  double unexplained_share(const State& state) const;
+  double unexplained_rotation_ratio(const State& state) const;
   /// Returns the regression slope of the force's rotation on the gyro's rotation (I20), or 1 while unknown.
   double rotation_slope(const State& state) const;
   /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
@@ -120,7 +121,7 @@ class ImuPlausibility {
   double rotation_agreement(const State& state) const;
   /// Returns the force's rotation as a fraction of the gyro's rotation, or 1 while unknown. The fraction includes
   /// windows in which the force did not rotate.
-  double force_rotated_share(const State& state) const;
+  double force_rotation_ratio(const State& state) const;
   /// Returns the axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
   /// (I22).
   std::optional<AxisLabels> better_axis_labels(const State& state) const;
@@ -131,13 +132,13 @@ class ImuPlausibility {
 
  private:
   /// Returns whether the force rotated far enough, in enough windows, for a decision.
-  bool turned(const State& state) const;
+  bool rotated_enough(const State& state) const;
   /// Returns whether the gyro is inverted, or whether a gyro scaled by the regression slope leaves a far smaller
   /// residual.
-  bool explains_more(const State& state) const;
-  void take(State& state) const;
-  void compare(const Eigen::Vector3d& force_m_s2, State& state) const;
-  void hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const;
+  bool fits_better(const State& state) const;
+  void process_average(State& state) const;
+  void compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const;
+  void hold(const Eigen::Vector3d& reading, double dt_s, Repetition& hold) const;
 
   Params params_;
 };

@@ -5,29 +5,29 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rate_smoother.hpp"
-#include "tumble/attitude/carried_smoother.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
 #include "tumble/attitude/regimes.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held over a whole recording. RateSmoother
-/// estimates the rates under the assumption of flight and contact. CarriedSmoother estimates the rates again where
-/// RegimeEvidence indicates that the body was hand-held while the gyro clipped. The function either() combines the
-/// rates of RateSmoother and CarriedSmoother by the probability of hand-held motion. CarriedSmoother runs only if its
+/// estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates the rates again where
+/// RegimeEvidence indicates that the body was hand-held while the gyro clipped. The function mix_rates() combines the
+/// rates of RateSmoother and HandHeldSmoother by the probability of hand-held motion. HandHeldSmoother runs only if its
 /// rates can change the result. RegimeStream is the streaming form of RegimeSmoother.
 ///
 /// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment. The
 /// smallest probability is used because a hand may release the body during the segment. Flight then determines the
 /// nearby rates, but provides no information about hand-held motion a second later. Additional IMUs determine the rate
-/// in any kind of motion, so CarriedSmoother does not run if there are additional IMUs.
+/// in any kind of motion, so HandHeldSmoother does not run if there are additional IMUs.
 class RegimeSmoother {
  public:
   struct Params {
     RateSmoother::Params rate;
     RegimeEvidence::Params evidence;
-    CarriedSmoother::Params carried;
-    double carried_min = 0.02;  ///< minimum probability of hand-held motion for which CarriedSmoother runs
+    HandHeldSmoother::Params hand_held;
+    double carried_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldSmoother runs
     double near_s = 0.1;        ///< clipped samples within this time of each other form one segment
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -35,7 +35,7 @@ class RegimeSmoother {
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
-      visit.group("carried_", p.carried);
+      visit.group("carried_", p.hand_held);
       visit(p.carried_min,
             {"carried_min", "1", 0.0, 1.0,
              "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
@@ -45,38 +45,39 @@ class RegimeSmoother {
   };
   struct Report {
     RateReport rate;
-    bool judged = false;               ///< probabilities were estimated; the following members are valid
-    RegimeProbabilities shares{};      ///< mean probabilities over all samples
-    double carried_clipped_max = 0.0;  ///< largest probability of hand-held motion in a segment of clipped samples
-    bool carried_asked = false;        ///< CarriedSmoother ran successfully; its report follows
-    CarriedSmoother::Report carried;
+    bool judged = false;                  ///< probabilities were estimated; the following members are valid
+    RegimeProbabilities probabilities{};  ///< mean probabilities over all samples
+    double hand_held_probability_max =
+        0.0;                              ///< largest probability of hand-held motion in a segment of clipped samples
+    bool hand_held_smoother_ran = false;  ///< HandHeldSmoother ran successfully; its report follows
+    HandHeldSmoother::Report hand_held;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeSmoother(const Params& params);
 
   /// Computes one RateState per sample. Returns the status of RateSmoother; on error `rates` is empty. If
-  /// CarriedSmoother fails, `rates` contains the result of RateSmoother.
+  /// HandHeldSmoother fails, `rates` contains the result of RateSmoother.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }
-  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate. CarriedSmoother does not run
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate. HandHeldSmoother does not run
   /// with additional IMUs, and `report.judged` is false.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;
 
-  /// Replaces `rates`, the result of RateSmoother, by the combination with the rates of CarriedSmoother. The report of
+  /// Replaces `rates`, the result of RateSmoother, by the combination with the rates of HandHeldSmoother. The report of
   /// RateSmoother must be in `report.rate`.
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
-  std::vector<double> carried_segments(std::span<const RegimeProbabilities> shares, const RateReport& report,
-                                       std::span<const RateState> rates) const;
+  std::vector<double> hand_held_by_segment(std::span<const RegimeProbabilities> probabilities, const RateReport& report,
+                                           std::span<const RateState> rates) const;
 
   Params params_;
   RateSmoother rate_;
   RegimeEvidence evidence_;
-  CarriedSmoother carried_;
+  HandHeldSmoother hand_held_;
 };
 
 }  // namespace tumble

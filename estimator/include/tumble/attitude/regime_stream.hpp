@@ -6,22 +6,22 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "tumble/attitude/carried_stream.hpp"
+#include "tumble/attitude/hand_held_stream.hpp"
 #include "tumble/attitude/regimes.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream estimates
-/// the rates under the assumption of flight and contact, and detects the saturation levels. CarriedStream estimates the
-/// rates again where RegimeEvidence indicates hand-held motion while the gyro clips. The function either() combines the
-/// rates of RateStream and CarriedStream.
+/// the rates under the assumption of flight and contact, and detects the saturation levels. HandHeldStream estimates
+/// the rates again where RegimeEvidence indicates hand-held motion while the gyro clips. The function mix_rates()
+/// combines the rates of RateStream and HandHeldStream.
 ///
 /// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. Each
 /// probability depends on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
-/// of CarriedStream is the smallest probability of hand-held motion in the segment of clipped samples, as in
+/// of HandHeldStream is the smallest probability of hand-held motion in the segment of clipped samples, as in
 /// RegimeSmoother. While RateStream resets its calibration in more than half of the steps of its lag, clipped samples
-/// do not change the probabilities. CarriedStream is paused while the probability of hand-held motion is below
+/// do not change the probabilities. HandHeldStream is paused while the probability of hand-held motion is below
 /// `carried_min`, and then restarts. Rates of unclipped samples are those of RateStream.
 ///
 /// RateStream fits its clipped rates and all its angular accelerations to the measured force. Far from the centre of
@@ -32,16 +32,16 @@ class RegimeStream {
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
-    CarriedStream::Params carried;  ///< `period_s` and `lag_s` are replaced by those of `rate`
-    double carried_min = 0.02;      ///< minimum probability of hand-held motion for which CarriedStream runs
-    double near_s = 0.1;            ///< clipped samples within this time of each other form one segment
+    HandHeldStream::Params hand_held;  ///< `period_s` and `lag_s` are replaced by those of `rate`
+    double carried_min = 0.02;         ///< minimum probability of hand-held motion for which HandHeldStream runs
+    double near_s = 0.1;               ///< clipped samples within this time of each other form one segment
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
-      visit.group("carried_", p.carried);
+      visit.group("carried_", p.hand_held);
       visit(p.carried_min,
             {"carried_min", "1", 0.0, 1.0,
              "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
@@ -52,20 +52,20 @@ class RegimeStream {
   /// Time and hand-held probability of a reported sample.
   struct ReportedProbability {
     TimeNs time_ns = 0;
-    double carried = 0.0;
+    double hand_held = 0.0;
   };
   struct State {
     RateStream::State rate;
-    CarriedStream::State carried;
+    HandHeldStream::State hand_held;
     std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
-    RegimeProbabilities shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
-    RegimeProbabilities sum{};   ///< sum over all reported samples
-    std::size_t reported = 0;    ///< number of reported samples
-    std::size_t joined = 0;      ///< number of reported samples combined with CarriedStream
-    std::size_t starts = 0;      ///< number of starts of CarriedStream
-    std::size_t rig_resets = 0;  ///< last value of RateStream's counter
-    double resets = 0.0;         ///< resets of RateStream's calibration, decaying over its lag
-    bool carrying = false;       ///< CarriedStream is running
+    RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+    RegimeProbabilities sum{};         ///< sum over all reported samples
+    std::size_t reported = 0;          ///< number of reported samples
+    std::size_t combined_samples = 0;  ///< number of reported samples combined with HandHeldStream
+    std::size_t starts = 0;            ///< number of starts of HandHeldStream
+    std::size_t rig_resets = 0;        ///< last value of RateStream's counter
+    double resets = 0.0;               ///< resets of RateStream's calibration, decaying over its lag
+    bool hand_held_running = false;    ///< HandHeldStream is running
     /// Samples of the last clipped segment within `near_s`, except samples followed by a smaller probability of
     /// hand-held motion. The oldest entry of `near` has the smallest probability.
     std::vector<ReportedProbability> near;
@@ -79,14 +79,14 @@ class RegimeStream {
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Processes one sample like RateStream::push, and combines the rate with that of CarriedStream.
+  /// Processes one sample like RateStream::push, and combines the rate with that of HandHeldStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// Appends the rates of RateStream::flush to `out`, combined with the rates of CarriedStream by the current
+  /// Appends the rates of RateStream::flush to `out`, combined with the rates of HandHeldStream by the current
   /// probabilities.
   void flush(const State& state, std::vector<RateState>& out) const;
 
@@ -97,18 +97,18 @@ class RegimeStream {
   Status check_state(const State& state) const;
 
  private:
-  ClippedElements known_of(State& state) const;
+  ClippedElements update_clip_signs(State& state) const;
   std::size_t index_of(const RateState& rate, const State& state) const;
   bool calibration_is_unstable(const State& state) const;
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, std::span<const RateStream::Knot> window,
                            std::size_t k, const RigCalibration& rig, bool unstable) const;
-  void judge(const RateState& rate, State& state) const;
-  double share_of(const RateState& rate, State& state) const;
+  void update_probabilities(const RateState& rate, State& state) const;
+  double hand_held_weight(const RateState& rate, State& state) const;
 
   Params params_;
   RateStream rate_;
   RegimeEvidence evidence_;
-  CarriedStream carried_;
+  HandHeldStream hand_held_;
 };
 
 }  // namespace tumble

@@ -16,7 +16,7 @@ namespace tumble {
 /// flight (zero specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about
 /// gravity). The three probabilities of RegimeProbabilities sum to 1.
 struct RegimeProbabilities {
-  double flight = 0.0, contact = 0.0, carried = 0.0;
+  double flight = 0.0, contact = 0.0, hand_held = 0.0;
 };
 
 /// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
@@ -30,7 +30,7 @@ struct RegimeProbabilities {
 /// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
 /// probabilities.
 ///
-/// RegimeEvidence needs no attitude, so the probabilities are available before CarriedSmoother runs. RegimeEvidence
+/// RegimeEvidence needs no attitude, so the probabilities are available before HandHeldSmoother runs. RegimeEvidence
 /// does not model a body that hangs on a rope, buoyancy, or aerodynamic forces above `flight_m_s2`.
 class RegimeEvidence {
  public:
@@ -97,6 +97,6 @@ class RegimeEvidence {
 
 /// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
 /// of the more probable estimate and the covariance of the mixture of both estimates.
-RateState either(const RateState& first, const RateState& second, double share);
+RateState mix_rates(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

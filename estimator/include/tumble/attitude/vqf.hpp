@@ -51,24 +51,26 @@ struct VqfParams {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4,
-                    "time constant of the low-pass filter on the specific force in the inertial frame", Rank::first});
-    visit(p.rest_bias_estimation, on_off("rest_bias_estimation", "1: estimate the gyro bias at rest", Rank::first));
+    visit(p.tau_s,
+          {"tau_s", "s", 1e-3, 1e4, "time constant of the low-pass filter on the specific force in the inertial frame",
+           FieldRank::basic});
+    visit(p.rest_bias_estimation,
+          switch_field("rest_bias_estimation", "1: estimate the gyro bias at rest", FieldRank::basic));
     visit(p.motion_bias_estimation,
-          on_off("motion_bias_estimation", "1: also estimate the gyro bias in motion", Rank::first));
-    visit(p.bias_sigma_start_rad_s,
-          {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0, "prior standard deviation of the gyro bias", Rank::first});
-    visit(p.bias_forgetting_s,
-          {"bias_forgetting_s", "s", 1e-9, 1e6, "time in which the bias variance grows to (0.1 deg/s)^2", Rank::first});
-    visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest estimated bias", Rank::first});
+          switch_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", FieldRank::basic));
+    visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
+                                     "prior standard deviation of the gyro bias", FieldRank::basic});
+    visit(p.bias_forgetting_s, {"bias_forgetting_s", "s", 1e-9, 1e6,
+                                "time in which the bias variance grows to (0.1 deg/s)^2", FieldRank::basic});
+    visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest estimated bias", FieldRank::basic});
     visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4,
-                          "the sensor counts as stationary after quiet readings of this duration", Rank::first});
+                          "the sensor counts as stationary after quiet readings of this duration", FieldRank::basic});
     visit(p.rest_rate_rad_s,
           {"rest_rate_rad_s", "rad/s", 1e-9, 1.0,
-           "maximum difference between gyro readings and their low-passed value at rest", Rank::first});
+           "maximum difference between gyro readings and their low-passed value at rest", FieldRank::basic});
     visit(p.rest_force_m_s2,
           {"rest_force_m_s2", "m/s^2", 1e-9, 100.0,
-           "maximum difference between force readings and their low-passed value at rest", Rank::first});
+           "maximum difference between force readings and their low-passed value at rest", FieldRank::basic});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);

@@ -17,13 +17,13 @@ namespace detail {
 
 /// Visitor that prepends the prefixes of the enclosing groups to the name of each field.
 template <class Each>
-class ByWholeName {
+class PrefixedNameVisitor {
  public:
-  explicit ByWholeName(Each& each) : each_(each) {}
+  explicit PrefixedNameVisitor(Each& each) : callback_(each) {}
 
   template <class T>
   void operator()(T& value, const Field& field) {
-    each_(prefix_ + field.name, value, field);
+    callback_(prefix_ + field.name, value, field);
   }
   template <class Params>
   void group(const char* prefix, Params& params) {
@@ -34,7 +34,7 @@ class ByWholeName {
   }
 
  private:
-  Each& each_;
+  Each& callback_;
   std::string prefix_;
 };
 
@@ -44,13 +44,13 @@ class ByWholeName {
 /// `Number`) or a whole Vector3d. `name` is a std::string that starts with the prefixes of the enclosing groups.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
-  detail::ByWholeName<Each> visitor(each);
+  detail::PrefixedNameVisitor<Each> visitor(each);
   std::remove_cv_t<Params>::fields(params, visitor);
 }
 
 /// Returns whether `name` matches one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
 template <class Text>
-bool is_among(std::string_view name, std::span<const Text> patterns) {
+bool matches_any(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {
     if (!pattern.ends_with('*')) return name == pattern;
     return name.starts_with(pattern.substr(0, pattern.size() - 1));

@@ -44,6 +44,6 @@ Status check_sample(const ImuSample& sample);
 /// Checks the time stamps of two consecutive samples. Returns `time_order` unless time_ns > previous_ns, with the value
 /// time_ns and the bound previous_ns. Returns `gap` if the stamps are more than gap_max_s apart, with the gap in
 /// seconds as value. Returns `ok` for valid stamps.
-Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
+Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
 }  // namespace tumble

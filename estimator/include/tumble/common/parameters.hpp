@@ -22,9 +22,9 @@
 /// numbers. The bounds of a Field are plain numbers, so constructors check relations between fields separately.
 namespace tumble {
 
-/// Rank determines the order of fields in a listing. The rank `first` marks the numbers that users usually set before
-/// any others.
-enum class Rank : std::uint8_t { first, further };
+/// FieldRank determines the order of fields in a listing. The rank `basic` marks the numbers that users usually set
+/// before any others.
+enum class FieldRank : std::uint8_t { basic, advanced };
 
 /// Field describes one number of a `Params` struct. All strings are static.
 struct Field {
@@ -32,11 +32,11 @@ struct Field {
   const char* unit;     ///< "1" if dimensionless
   double low, high;     ///< inclusive bounds; for a vector, the bounds of each coordinate
   const char* meaning;  ///< one sentence: effect and source
-  Rank rank = Rank::further;
+  FieldRank rank = FieldRank::advanced;
 };
 
 /// Returns a Field for a boolean switch.
-inline Field on_off(const char* name, const char* meaning, Rank rank = Rank::further) {
+inline Field switch_field(const char* name, const char* meaning, FieldRank rank = FieldRank::advanced) {
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
@@ -58,11 +58,11 @@ struct OutOfBounds {
   Status status;
 };
 
-/// FindOutOfBounds is a visitor that finds the first field whose value is not allowed; NaN is never allowed. The
+/// BoundsChecker is a visitor that finds the first field whose value is not allowed; NaN is never allowed. The
 /// visitor does not allocate.
-class FindOutOfBounds {
+class BoundsChecker {
  public:
-  explicit FindOutOfBounds(OutOfBounds& out) : out_(out) {}
+  explicit BoundsChecker(OutOfBounds& out) : out_(out) {}
 
   template <Number T>
   void operator()(const T& value, const Field& field) {
@@ -86,7 +86,7 @@ class FindOutOfBounds {
 };
 
 /// Throws InvalidParams with the full name of the found field, unless `found` is empty.
-void throw_if(const OutOfBounds& found);
+void throw_if_out_of_bounds(const OutOfBounds& found);
 
 }  // namespace detail
 
@@ -96,18 +96,18 @@ void throw_if(const OutOfBounds& found);
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBounds found;
-  detail::FindOutOfBounds visitor(found);
+  detail::BoundsChecker visitor(found);
   Params::fields(params, visitor);
   return found.status;
 }
 
 /// Throws InvalidParams for the first field of `params` that is out of its bounds.
 template <class Params>
-void require_fields(const Params& params) {
+void require_valid_fields(const Params& params) {
   detail::OutOfBounds found;
-  detail::FindOutOfBounds visitor(found);
+  detail::BoundsChecker visitor(found);
   Params::fields(params, visitor);
-  detail::throw_if(found);
+  detail::throw_if_out_of_bounds(found);
 }
 
 }  // namespace tumble

@@ -54,22 +54,22 @@ class SampleClock {
     }
   };
 
-  static constexpr std::size_t kStart = 32;  ///< number of stamps used for the first fit
+  static constexpr std::size_t kFirstFitStamps = 32;  ///< number of stamps used for the first fit
 
   struct State {
-    std::size_t samples = 0;             ///< number of valid entries of `start` while no line is fitted
-    std::array<TimeNs, kStart> start{};  ///< stamps collected for the first fit
-    std::optional<TimeNs> stamp_ns;      ///< last stamp
-    TimeNs time_ns = 0;                  ///< last estimated sample time
-    bool line_fitted = false;            ///< whether a line is fitted; the members below describe it
-    double period_ns = 0.0;              ///< slope of the line
-    double fit_residual_ns = 0.0;        ///< value of the line at the last sample minus its stamp
-    double sum = 0.0, weighted_sum_number = 0.0,
-           sum_nn = 0.0;  ///< sums of weights; sample numbers count from the last sample
+    std::size_t samples = 0;                      ///< number of valid entries of `start` while no line is fitted
+    std::array<TimeNs, kFirstFitStamps> start{};  ///< stamps collected for the first fit
+    std::optional<TimeNs> stamp_ns;               ///< last stamp
+    TimeNs time_ns = 0;                           ///< last estimated sample time
+    bool line_fitted = false;                     ///< whether a line is fitted; the members below describe it
+    double period_ns = 0.0;                       ///< slope of the line
+    double fit_residual_ns = 0.0;                 ///< value of the line at the last sample minus its stamp
+    double sum = 0.0, weighted_number_sum = 0.0,
+           weighted_number_squared_sum = 0.0;  ///< sums of weights; sample numbers count from the last sample
     double mean_square_error_ns2 = 0.0,
-           mean_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
-    double error_ns = 0.0;                ///< last prediction error
-    std::size_t outliers = 0;             ///< consecutive errors close to half a period
+           lag_one_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
+    double prediction_error_ns = 0.0;        ///< last prediction error
+    std::size_t outliers = 0;                ///< consecutive errors close to half a period
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -91,7 +91,7 @@ class SampleClock {
 
  private:
   void begin(State& state) const;
-  void follow(double step_ns, TimeNs stamp_ns, State& state) const;
+  void update_line(double step_ns, TimeNs stamp_ns, State& state) const;
 
   Params params_;
 };
@@ -99,6 +99,6 @@ class SampleClock {
 /// Replaces the stamps of a recording by the sample times that SampleClock estimates. Cost: O(N). `corrected_jitter_s`
 /// returns the largest jitter that was corrected [s]; 0 means that all stamps are unchanged. If the stamps do not
 /// increase, the function returns `time_order` and leaves `stamps_ns` unchanged.
-Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
+Status correct_stamps(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
 
 }  // namespace tumble

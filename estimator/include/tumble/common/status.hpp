@@ -5,12 +5,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
+#include "tumble/common/detail/same_compiler_settings.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 
-/// Trouble lists the kinds of input errors that a caller must expect. The value `none` means success.
-enum class Trouble : std::uint8_t {
+/// ErrorCode lists the kinds of input errors that a caller must expect. The value `none` means success.
+enum class ErrorCode : std::uint8_t {
   none,
   empty,         ///< a required input is missing
   non_finite,    ///< NaN or infinity
@@ -23,17 +23,17 @@ enum class Trouble : std::uint8_t {
 };
 
 /// Returns the name of an error kind as used in tables and messages ("time_order").
-const char* to_string(Trouble trouble);
+const char* to_string(ErrorCode error_code);
 
 /// Status is the result of a processing step: the invalid field, its value and the violated limit. The library reports
 /// expected errors by a returned Status and prints nothing. Only constructors throw exceptions.
 struct Status {
-  Trouble trouble = Trouble::none;
+  ErrorCode error_code = ErrorCode::none;
   const char* field = "";  ///< static string: name of the input field
   double value = 0.0;      ///< value found, in the field's unit
   double bound = 0.0;      ///< violated limit, in the field's unit
 
-  bool ok() const { return trouble == Trouble::none; }
+  bool ok() const { return error_code == ErrorCode::none; }
   /// Returns a message such as "time_order: time_ns is 5, bound 7". Returns "ok" on success.
   std::string message() const;
 };

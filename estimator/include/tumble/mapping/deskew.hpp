@@ -17,10 +17,10 @@ namespace tumble {
 /// SweepPoint is a usable lidar return in the IMU's axes at the time when the laser fired.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< measured position, in lidar axes
-  float t_s = 0.0f;                                 ///< time after the start of the trajectory, in the IMU's clock
-  float sweep_t_s = 0.0f;                           ///< time after the start of the sweep
-  float range_m = 0.0f;                             ///< distance from the lidar
+  Eigen::Vector3f point_L_m = Eigen::Vector3f::Zero();  ///< measured position, in lidar axes
+  float t_s = 0.0f;                                     ///< time after the start of the trajectory, in the IMU's clock
+  float sweep_time_s = 0.0f;                            ///< time after the start of the sweep
+  float range_m = 0.0f;                                 ///< distance from the lidar
   std::uint16_t ring = 0;
 };
 
@@ -36,7 +36,7 @@ struct PointCounts {
   std::size_t received = 0;
   std::size_t finite = 0;  ///< number of returns with finite coordinates; misses may be NaN
   std::size_t used = 0;
-  bool rings_differ = false;  ///< false if the device does not report ring numbers
+  bool has_ring_numbers = false;  ///< false if the device does not report ring numbers
 };
 
 /// Selects the usable returns of a sweep and transforms the returns to the IMU's axes. `sweep_start_s` is the start of
@@ -71,7 +71,7 @@ class SweepSampler {
   void choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
 
  private:
-  SpatialHash seen_{1 << 14};
+  SpatialHash occupied_voxels_{1 << 14};
 };
 
 }  // namespace tumble

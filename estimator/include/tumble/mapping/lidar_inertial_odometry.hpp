@@ -63,9 +63,10 @@ class LidarInertialOdometry {
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
   /// Sets position and heading of the IMU at the start of the map. The tilt is levelled at rest. Covariances are
-  /// relative to this pose. Call start_at() before the first sweep. Without start_at(), the map starts at the origin.
-  void start_at(const Eigen::Isometry3d& T_WI);
-  /// Returns the pose given to start_at(), if any.
+  /// relative to this pose. Call set_start_pose() before the first sweep. Without set_start_pose(), the map starts at
+  /// the origin.
+  void set_start_pose(const Eigen::Isometry3d& T_WI);
+  /// Returns the pose given to set_start_pose(), if any.
   const std::optional<Eigen::Isometry3d>& start() const;
 
   /// Sets the map of an earlier run, in which the run localises itself. Call use_map() before the first sweep.
@@ -73,11 +74,11 @@ class LidarInertialOdometry {
   /// Until the run is localised, poses are in a local frame, and localised() returns `degenerate`. The local map is
   /// compared with the prior map after each registered sweep. When a pose is accepted, the state continues in the frame
   /// of the prior map: SweepReport::in_prior_map is true, and covariances are relative to the prior map. If `map.T_MI`
-  /// is set, use_map() also calls start_at(). The prior map is kept as a whole, also beyond map_radius_m.
+  /// is set, use_map() also calls set_start_pose(). The prior map is kept as a whole, also beyond map_radius_m.
   /// Returns the errors of check_prior_map(), or `time_order` after the first sweep. On error nothing changes.
   Status use_map(PriorMap map);
   /// Uses the prior map of another object, if any, with its parameters. The localisation starts again, from the pose
-  /// given to start_at(), or else from the pose given with the map.
+  /// given to set_start_pose(), or else from the pose given with the map.
   void use_map_of(const LidarInertialOdometry& other);
   /// Returns ok if the run is localised in the prior map or if there is no prior map, and `degenerate` otherwise.
   Status localised() const;
@@ -133,7 +134,7 @@ class LidarInertialOdometry {
 
   /// Returns `out_of_range` while the vertical of the map is uncertain: the standard deviation of gravity's direction
   /// exceeds 0.02 rad. The reason is a start in motion. The finding ends when the motion has determined gravity.
-  Status vertical() const;
+  Status check_vertical() const;
 
   /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` for a time
   /// outside of the window.

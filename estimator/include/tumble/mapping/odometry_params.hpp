@@ -27,20 +27,20 @@ struct OdometryExpertParams {
   OdometryStartParams start = {};
   StandstillParams standstill = {};
   InertialNoiseParams prior = {};
-  RailedImuParams rails = {};
+  SaturatedImuParams rails = {};
   FlightParams flight = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
   RegistrationStagesParams stages = {};
   TrackingParams tracking = {};
-  RelocalizationParams search = {};
+  RelocalisationParams search = {};
   WorldCovarianceParams world = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
     visit(p.gravity_sigma_m_s2, {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
-                                 "standard deviation of gravity after initial levelling; 0: exact", Rank::first});
+                                 "standard deviation of gravity after initial levelling; 0: exact", FieldRank::basic});
     visit.group("", p.rest);
     visit.group("", p.map);
     visit.group("", p.matching);
@@ -49,7 +49,7 @@ struct OdometryExpertParams {
     visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
                             "number of sweeps that are refined together; the estimate of a sweep uses this number "
                             "minus one of later sweeps",
-                            Rank::first});
+                            FieldRank::basic});
     visit.group("", p.flight);
     visit.group("", p.tracking);
     visit.group("start_", p.start);
@@ -98,7 +98,7 @@ struct OdometryParams {
     visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
                             "edge length of the voxels; one point per voxel and sweep is registered, so a larger value "
                             "is faster and coarser",
-                            Rank::first});
+                            FieldRank::basic});
     visit.group("", p.expert);
   }
 };

@@ -9,17 +9,17 @@
 namespace tumble {
 
 /// PlaneVerdict is the result category of a plane fit to neighbouring map points.
-enum class PlaneVerdict { plane, too_few, collinear, one_line, rough };
+enum class PlaneVerdict { plane, too_few, collinear, one_scan_line, too_thick };
 
 /// PlaneFit is a plane through neighbouring map points: normal . x = normal . centre.
 struct PlaneFit {
   PlaneVerdict verdict = PlaneVerdict::too_few;
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
-  float thickness2_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
+  float thickness_variance_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
   /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation of
   /// the normal is that of a linear regression whose residuals equal the thickness of the plane.
-  Eigen::Matrix<float, 3, 2> tilt_W = Eigen::Matrix<float, 3, 2>::Zero();
+  Eigen::Matrix<float, 3, 2> normal_sigma_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.

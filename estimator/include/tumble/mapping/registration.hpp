@@ -38,9 +38,9 @@ class Registration {
   using Prior = SweepUnknowns::Prior;
   using Vector = SweepUnknowns::Vector;
   using Matrix = SweepUnknowns::Matrix;
-  static constexpr int kMotion = SweepUnknowns::kMotion;
-  static constexpr int kDeficit = SweepUnknowns::kDeficit;
-  static constexpr int kCalibration = SweepUnknowns::kCalibration;
+  static constexpr int kMotionSize = SweepUnknowns::kMotionSize;
+  static constexpr int kDeficitStart = SweepUnknowns::kDeficitStart;
+  static constexpr int kCalibrationStart = SweepUnknowns::kCalibrationStart;
   static constexpr int kUnknowns = SweepUnknowns::kUnknowns;
 
   explicit Registration(const Params& params);
@@ -64,7 +64,8 @@ class Registration {
     PlaneFit plane;
     Eigen::Vector3f search_position_W_m = Eigen::Vector3f::Zero();
     float map_variance_m2 = 0.0f;
-    float reach_m = std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all were found
+    float farthest_neighbour_m =
+        std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all were found
     bool searched = false;
   };
   /// Sums contains the normal equations over the matches of one iteration, for the free unknowns only.
@@ -78,38 +79,39 @@ class Registration {
   using Products = mapping::OuterProducts<kUnknowns, int{kBlock}>;
   struct Unknowns;
   struct Problem;
-  struct Descent;
+  struct IterationState;
 
-  Status iterate(const Problem& problem, Descent& at, SweepTrajectory& trajectory, Result& result);
-  RegistrationVerdict judge(const Problem& problem, const Descent& at) const;
-  Status conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result);
+  Status iterate(const Problem& problem, IterationState& at, SweepTrajectory& trajectory, Result& result);
+  RegistrationVerdict classify_result(const Problem& problem, const IterationState& at) const;
+  Status finalise(const Problem& problem, const IterationState& at, SweepTrajectory& trajectory, Result& result);
   void match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
   void find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
   double kernel_width_m();
-  void describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum, Result& result) const;
+  void compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum, Result& result) const;
   void accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                   const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                         Products& products, Sums& sum);
 
-  struct NoiseOfNormals;
+  struct NormalNoise;
   struct Pulls;
-  void describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                       const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Result& result);
+  void compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                                Result& result);
   struct Weight {
     double variance_m2, robust, information;
   };
-  Weight weigh(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
+  Weight compute_weight(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
   // buffers that are kept between sweeps; results do not depend on their contents
-  std::vector<Eigen::Vector3f> levers_, positions_;
+  std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
-  std::vector<float> distances_, sorted_;
-  std::vector<Sums> parts_;  // one per block of points
-  SpatialHash cluster_of_{1 << 10};
+  std::vector<float> distances_, sorted_distances_;
+  std::vector<Sums> block_sums_;  // one per block of points
+  SpatialHash cluster_index_{1 << 10};
   std::vector<Vector> cluster_gradients_;  // gradients of the clusters
 };
 

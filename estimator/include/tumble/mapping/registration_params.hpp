@@ -73,9 +73,9 @@ struct RegistrationParams {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", Rank::first});
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", FieldRank::basic});
     visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
-                               "maximum distance between a point and its matches in the map", Rank::first});
+                               "maximum distance between a point and its matches in the map", FieldRank::basic});
     visit(p.iterations_max, {"iterations_max", "1", 1, 200, "maximum number of iterations"});
     visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
     visit(p.range_sigma_share,

@@ -43,7 +43,7 @@ struct RegistrationResult {
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   /// Standard deviation of the pose in its least constrained direction, from the surfaces alone and without the
   /// errors-in-variables information.
-  double weakest_sigma_m = std::numeric_limits<double>::infinity();
+  double least_constrained_sigma_m = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace tumble

@@ -11,8 +11,8 @@
 namespace tumble {
 
 /// SweepVerdict is the result category of a sweep. For every value except `registered`, the pose relies on the inertial
-/// prediction. A `degenerate` sweep with conditioning 0 uses the prediction in every direction. A `rejected` sweep with
-/// too few matches still extends the map.
+/// prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the prediction in every direction. A `rejected` sweep
+/// with too few matches still extends the map.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
   registered,  ///< aligned with the map in all six directions
@@ -32,11 +32,11 @@ struct SweepReport {
   /// window has two sweeps, the oldest sweep is the previous sweep. The list of smoothed poses is empty while the
   /// window fills.
   std::vector<PoseState> smoothed;
-  double inlier_share = 0.0;  ///< fraction of the registered points that are inliers
-  double conditioning = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
+  double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
+  double eigenvalue_ratio = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
   /// Standard deviation of the pose in the least constrained direction, from the surfaces of the current sweep alone. A
   /// standard deviation of zero means that the sweep was not aligned.
-  double weakest_sigma_m = 0.0;
+  double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
   /// by the root of nine (the number of unknowns). The mean innovation is at most 1 if inertial prediction and surfaces
   /// have the stated accuracy. An innovation of zero means that the sweep was not aligned.
@@ -45,17 +45,17 @@ struct SweepReport {
   /// the map's drift and tilt, which grow with the path.
   double map_sigma_m = 0.0;
   int iterations = 0;
-  int lost_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
+  int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
   /// True if the sweep relocalised after tracking failure, at a pose that inertial prediction did not expect, without
   /// confirmation so far. Two further sweeps must confirm the pose. A further sweep that contradicts the relocalisation
   /// reverts the relocalisation.
-  bool unconfirmed = false;
+  bool relocalisation_unconfirmed = false;
   /// Direction in W in which the surfaces constrain the pose least. The unit vector contains position, and attitude
   /// scaled to metres by the root-mean-square lever arm.
-  Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< mean correction of the clipped axes
   std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot itself
-  std::size_t lone_points = 0;        ///< unused returns that no neighbouring beam confirms
+  std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
   std::size_t points_registered = 0;  ///< one per voxel of the usable points
   std::size_t map_points_added = 0;
   /// True if the poses of the report are in the frame of the prior map. Without a prior map, always false.

@@ -66,12 +66,13 @@ struct MotionState {
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
-  static constexpr int kDeficit = 3 * kKnots;  ///< number of unknowns, axis by axis within a knot
+  static constexpr int kDeficitSize = 3 * kKnots;  ///< number of unknowns, axis by axis within a knot
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
-  using DeficitJacobian = Eigen::Matrix<double, 3, kDeficit>;
+  using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitSize>;
 
-  /// Instant is the motion at the time of a lidar point: attitude R(t) and double integral S(t) of the specific force.
-  struct Instant {
+  /// PreintegratedMotion is the motion at the time of a lidar point: attitude R(t) and double integral S(t) of the
+  /// specific force.
+  struct PreintegratedMotion {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
   };
@@ -101,10 +102,10 @@ class SweepTrajectory {
   /// kExtrapolation_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds
   /// up calls in time order. Any hint in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
-  Instant at(double t_s, std::size_t& hint) const;
+  PreintegratedMotion at(double t_s, std::size_t& hint) const;
   /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit. For
-  /// several points, levers() is faster than at().
-  void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
+  /// several points, lever_arm_vectors() is faster than at().
+  void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
   /// Returns the end of interval i in seconds after the start.
@@ -117,7 +118,8 @@ class SweepTrajectory {
   }
 
   /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point at x_I in the IMU's axes.
-  Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
+  PreintegratedMotion at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
+                         Eigen::Vector3d& velocity_m_s) const;
 
   /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.
   MotionState state(double t_s) const;
@@ -126,15 +128,15 @@ class SweepTrajectory {
   /// state, the saturation deficit, and gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
-    Eigen::Matrix<double, 9, kDeficit> jacobian_deficit_s;
+    Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;
     Eigen::Matrix<double, 9, 3> jacobian_gravity;
   };
   Transition transition(double t_s) const;
 
   /// Return the magnitude |s_j| of the saturation deficit's factor in the first and in the last interval. The magnitude
   /// |s_j| is 0 if axis j is not clipped in the interval.
-  Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
-  Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
+  Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_factor.cwiseAbs(); }
+  Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_factor.cwiseAbs(); }
 
   /// Returns the axes that were clipped anywhere in the segment: bit j for axis j.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
@@ -143,9 +145,10 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;                                     // rate in body axes; mean specific force in W
-    Eigen::Vector3d preintegrated_velocity_m_s, preintegrated_p;  // integrals of the specific force up to start_s
-    Eigen::Vector3d deficit_share;                                // factor s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;  // rate in body axes; mean specific force in W
+    Eigen::Vector3d preintegrated_velocity_m_s,
+        preintegrated_position_m;    // integrals of the specific force up to start_s
+    Eigen::Vector3d deficit_factor;  // factor s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
         Eigen::Matrix<double, kKnots, 1>::Zero();  // weight of each knot's deficit in the interval
     DeficitJacobian attitude_jacobian, velocity_jacobian, position_jacobian,

@@ -33,7 +33,7 @@ struct Neighbours {
 class VoxelMap {
  public:
   /// Scan line of a point whose scan line is unknown.
-  static constexpr std::uint32_t kNoLine = 0xffffffffu;
+  static constexpr std::uint32_t kUnknownScanLine = 0xffffffffu;
   /// Invalid point index.
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
@@ -56,7 +56,8 @@ class VoxelMap {
   /// Adds a point unless the cube at its position already has a point. `sigma_m` is the standard deviation of the
   /// point's position. `sweep` and `line` are labels, which the functions sweep() and line() return. Returns whether
   /// the point was added. Points that are not finite or beyond 2^20 cells are not added.
-  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine) {
+  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
+              std::uint32_t line = kUnknownScanLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
@@ -115,17 +116,17 @@ class VoxelMap {
   std::uint8_t seen_through(std::uint32_t index) const { return seen_through_[index]; }
 
  private:
-  static constexpr int kChunk = 16;
+  static constexpr int kPointsPerChunk = 16;
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Chunk {
-    std::array<float, kChunk> x, y, z;
+    std::array<float, kPointsPerChunk> x, y, z;
     std::uint32_t next = kNone;
     std::uint32_t count = 0;
   };
   struct Group {
     static constexpr int kBits = 3, kMask = (1 << kBits) - 1;  // a group has 8 cells along each edge
-    static std::size_t row_of(int y, int z);
-    static std::size_t place_of(const Eigen::Vector3i& cell);
+    static std::size_t row_index_of(int y, int z);
+    static std::size_t cell_index_of(const Eigen::Vector3i& cell);
     static Eigen::Vector3i of(const Eigen::Vector3i& cell);  // group of a cell
 
     std::array<std::uint32_t, 1u << (3 * kBits)> first;  // chunk of each cell
@@ -134,17 +135,19 @@ class VoxelMap {
   class Rows;
 
   bool has_room_for(const Eigen::Vector3f& position_W_m) const;
-  std::uint32_t put(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  std::uint32_t& first_of(const Eigen::Vector3i& cell);
+  std::uint32_t store_point(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
+                            std::uint32_t line);
+  std::uint32_t& first_chunk_of(const Eigen::Vector3i& cell);
   std::uint32_t new_chunk(std::uint32_t& first);
-  void search(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst2, Neighbours& found) const;
+  void search(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst_distance2_m2,
+              Neighbours& found) const;
   void load_chunk(StateReader& in);
 
   Params params_;
   float cells_per_m_ = 0.0f;
   float cubes_per_m_ = 0.0f;  // cubes per metre, or cells per metre if all points are kept
-  SpatialHash groups_of_;
-  SpatialHash taken_;
+  SpatialHash group_index_;
+  SpatialHash occupied_cubes_;
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;
   std::vector<float> sigma_m_;  // one per slot of the chunks; negative: free slot

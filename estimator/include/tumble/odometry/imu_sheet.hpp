@@ -22,15 +22,15 @@ struct ImuSheet {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", Rank::first});
+    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", FieldRank::basic});
     visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated", Rank::first});
-    visit(p.accel_range_m_s2,
-          {"accel_range_m_s2", "m/s^2", 0.0, 1e5, "stated range of the accelerometer; 0: not stated", Rank::first});
+          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated", FieldRank::basic});
+    visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5,
+                               "stated range of the accelerometer; 0: not stated", FieldRank::basic});
     visit(p.gyro_noise_rad_s_sqrt_hz,
-          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro", Rank::first});
+          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro", FieldRank::basic});
     visit(p.accel_noise_m_s2_sqrt_hz, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-9, 100.0,
-                                       "noise density of the accelerometer", Rank::first});
+                                       "noise density of the accelerometer", FieldRank::basic});
   }
 };
 

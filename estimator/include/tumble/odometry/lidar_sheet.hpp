@@ -16,8 +16,10 @@ struct LidarSheet {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", Rank::first});
-    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", Rank::first});
+    visit(p.range_min_m,
+          {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", FieldRank::basic});
+    visit(p.range_max_m,
+          {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", FieldRank::basic});
   }
 };
 

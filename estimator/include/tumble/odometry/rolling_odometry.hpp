@@ -73,22 +73,22 @@ class RollingOdometry {
 
     /// Widens the priors for IMUs that have no data sheet and no calibration, mounted anywhere in the sphere. Assumes a
     /// level floor, because the accelerometer bias of such an IMU resembles a slope.
-    void assume_unknown_imus();
+    void widen_priors_for_unknown_imus();
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", Rank::first});
+      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", FieldRank::basic});
       visit(
           p.centre_sigma_m,
           {"centre_sigma_m", "m", 0.0, 10.0,
            "standard deviation of the position of the stated centre, which is the reference point of the IMU positions",
-           Rank::first});
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", Rank::first});
+           FieldRank::basic});
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", FieldRank::basic});
       visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                       "delay after which a smoothed pose is reported; a longer delay makes poses more accurate; 0: "
                       "live; 1e9: the whole recording",
-                      Rank::first});
+                      FieldRank::basic});
       visit.group("merge_", p.expert.merge);
       visit.group("rolling_", p.expert.rolling);
       visit.group("stamps_", p.expert.stamps);
@@ -172,12 +172,12 @@ class RollingOdometry {
   bool started_in_motion() const { return state_->live.started_in_motion; }
 
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
-  const ImuMerge::State& units() const { return *merge_state_; }
+  const ImuMerge::State& units() const { return *imu_merge_state_; }
 
   /// Returns the number of readings of all units that OutlierFilter rejected.
   std::size_t rejected_readings() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
-  std::size_t gaps() const { return gaps_; }
+  std::size_t restart_count() const { return restart_count_; }
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
   std::optional<double> estimated_jitter_s() const;
 
@@ -203,45 +203,45 @@ class RollingOdometry {
   void restart_at_newest();
   void end_run();
   void start_run();
-  void place_start();
-  RollingEstimate in_world(RollingEstimate estimate) const;
-  Status add_held(std::span<const ImuSample> next);
+  void initialise_pose();
+  RollingEstimate transform_to_world(RollingEstimate estimate) const;
+  Status add_delayed_samples(std::span<const ImuSample> next);
   Status add_inliers(std::span<const ImuSample> samples);
-  Status take_in(const ImuSample& merged);
+  Status process_accepted_sample(const ImuSample& merged);
   Status add_aligned(bool ended);
   Status record(std::size_t unit, ImuSample sample);
-  Status finish_whole();
+  Status finish_whole_recording();
   bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;
-  StampOrder order_;
-  StampOrder::State order_state_;
-  SampleClock clock_;
-  SampleClock::State stamps_;  ///< state of the clock from accepted samples
-  ImuMerge merge_;
+  StampOrder stamp_order_;
+  StampOrder::State stamp_order_state_;
+  SampleClock sample_clock_;
+  SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
+  ImuMerge imu_merge_;
   RollingSmoother smoother_;
   UnitRails rails_;
-  UnitAlignment alignment_;
-  UnitAlignment::State alignment_state_;
+  UnitAlignment unit_alignment_;
+  UnitAlignment::State unit_alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each unit, with kWholeRecording
-  std::unique_ptr<ImuMerge::State> merge_state_;
-  std::unique_ptr<ImuMerge::State> merged_state_;  ///< buffer for the next state of ImuMerge
+  std::unique_ptr<ImuMerge::State> imu_merge_state_;
+  std::unique_ptr<ImuMerge::State> merge_state_buffer_;  ///< buffer for the next state of ImuMerge
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
-  std::vector<OutlierFilter> filters_;  ///< one per unit
-  Outliers outliers_{};
-  std::optional<UnitRails::Samples> held_;  ///< samples of all units while OutlierFilter delays one unit
-  std::vector<FrozenAxes> watches_;         ///< one per unit
+  std::vector<OutlierFilter> outlier_filters_;  ///< one per unit
+  Outliers outlier_filter_state_{};
+  std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all units while OutlierFilter delays one unit
+  std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one per unit
   Frozen frozen_{};
-  RestGravity gravity_;
-  std::array<RestGravity::Size, ImuMerge::kImus> gravity_state_{};
-  std::vector<RollingEstimate> done_;
-  std::size_t taken_ = 0;
-  std::optional<Eigen::Isometry3d> start_;  ///< pose given to reset(), until the first sample
-  std::optional<Eigen::Isometry3d> T_WR_;   ///< pose of the run's origin; nothing: the world's origin
-  std::size_t gaps_ = 0;
+  RestGravity rest_gravity_;
+  std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state_{};
+  std::vector<RollingEstimate> results_;
+  std::size_t returned_count_ = 0;
+  std::optional<Eigen::Isometry3d> start_;    ///< pose given to reset(), until the first sample
+  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; nothing: the world's origin
+  std::size_t restart_count_ = 0;
   bool restarted_ = false;  ///< the run continues after a gap or a step of the clock, so its position is uncertain
   bool live_ = true, finished_ = false;
 };

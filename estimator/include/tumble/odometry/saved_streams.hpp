@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "tumble/attitude/carried_stream.hpp"
-#include "tumble/attitude/detail/carried_live.hpp"
+#include "tumble/attitude/detail/hand_held_pipeline.hpp"
+#include "tumble/attitude/hand_held_stream.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
@@ -19,9 +19,9 @@
 namespace tumble {
 
 template <class Stream>
-concept SavedStream =
-    std::same_as<Stream, RateStream> || std::same_as<Stream, RegimeStream> || std::same_as<Stream, CarriedStream> ||
-    std::same_as<Stream, CarriedLive> || std::same_as<Stream, RollingFilter> || std::same_as<Stream, RollingSmoother>;
+concept SavedStream = std::same_as<Stream, RateStream> || std::same_as<Stream, RegimeStream> ||
+    std::same_as<Stream, HandHeldStream> || std::same_as<Stream, HandHeldPipeline> ||
+    std::same_as<Stream, RollingFilter> || std::same_as<Stream, RollingSmoother>;
 
 /// Serialises a state and the parameters of its stream, with a checksum. The saved bytes are equal on every machine. If
 /// a stream with equal parameters loads the bytes, the stream continues with bit-identical results.

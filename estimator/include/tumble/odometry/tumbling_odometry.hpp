@@ -128,10 +128,10 @@ class TumblingOdometry {
   /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding, and a finding
   /// ends when its cause ends (at the latest a minute later). Returns `ok`, or `out_of_range` with a finding:
   /// - a frozen IMU axis and the duration of the freeze,
-  /// - an inverted accelerometer (FlightSense),
+  /// - an inverted accelerometer (FlightSignCheck),
   /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
   /// - a wrong scale of the lidar's ranges (SweepScale),
-  /// - an uncertain vertical after a start in motion (LidarInertialOdometry::vertical),
+  /// - an uncertain vertical after a start in motion (LidarInertialOdometry::check_vertical),
   /// - a run that is not localised in its prior map (LidarInertialOdometry::localised),
   /// - tracking failure (Localisation::present),
   /// - too large a change of the lidar's calibration (StatedCalibration).
@@ -149,11 +149,11 @@ class TumblingOdometry {
   RigCalibration rig() const;
   const SaturationLevels& rails() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
-  std::size_t gaps() const { return gaps_; }
+  std::size_t restart_count() const { return restart_count_; }
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
-  std::size_t rejected_readings() const { return outliers_.rejected; }
+  std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
   /// Returns whether SecondPass has replaced map and pose.
-  bool second_pass_applied() const { return second_pass_.taken(); }
+  bool second_pass_applied() const { return second_pass_.applied(); }
   /// The counters rejected_samples(), dropped_sweeps(), early_sweeps() and unused_odometer_readings() are 0 in normal
   /// operation.
   /// The function rejected_samples() counts IMU samples that the mapper rejected.
@@ -163,7 +163,7 @@ class TumblingOdometry {
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }
-  std::size_t unused_odometer_readings() const { return readings_.straddling(); }
+  std::size_t unused_odometer_readings() const { return readings_.spanning_two_sweeps(); }
   /// Returns the standard deviation of the IMU's time stamps about a regular clock [s], while SampleClock corrects the
   /// stamps.
   std::optional<double> estimated_jitter_s() const;
@@ -193,41 +193,41 @@ class TumblingOdometry {
  private:
   Status check_state() const;
   Status add_reading(const OdometerReading& reading);
-  Status take_in(const ImuSample& sample);
+  Status process_accepted_sample(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
-  void register_covered();
+  void register_covered_sweeps();
   void flush_all();
   void restart_rates();
   void restart_at_newest();
-  void restart_without_first();
+  void restart_without_first_sample();
   void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
   const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
-  void begin_rates();
+  void start_rate_estimation();
   bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status record(const ImuSample& sample);
-  Status finish_whole(const SweepProgress& on_sweep);
+  Status finish_whole_recording(const SweepProgress& on_sweep);
   Status health_of_recording() const;
 
   Params params_;
-  StampOrder order_;
-  StampOrder::State order_state_;
+  StampOrder stamp_order_;
+  StampOrder::State stamp_order_state_;
   GyroOffset gyro_offset_;
   GyroOffset::State gyro_offset_state_;
-  OutlierFilter filter_;
-  OutlierFilter::State outliers_;
-  SampleClock clock_;
-  SampleClock::State stamps_;  ///< state of the clock from accepted samples
+  OutlierFilter outlier_filter_;
+  OutlierFilter::State outlier_filter_state_;
+  SampleClock sample_clock_;
+  SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
   OdometryPass pass_;
   SecondPass second_pass_;
-  std::optional<TimeNs> newest_ns_;      ///< time of the newest accepted sample
-  std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time of the
-                                         ///< first sample
-  std::size_t gaps_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
+  std::optional<TimeNs> newest_ns_;           ///< time of the newest accepted sample
+  std::optional<TimeNs> last_registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time
+                                              ///< of the first sample
+  std::size_t restart_count_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
-  std::deque<Sweep> done_;
+  std::deque<Sweep> results_;
   std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
   std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; its sweeps are in `waiting_`
   std::shared_ptr<const RecordingEstimate> whole_;  ///< set by finish() with kWholeRecording

@@ -45,7 +45,7 @@ struct TumblingExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", Rank::first});
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", FieldRank::basic});
     visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
@@ -91,10 +91,10 @@ struct TumblingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
-    visit(p.lever_arm_I_m,
-          {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre of mass to the IMU, IMU axes", Rank::first});
+    visit(p.lever_arm_I_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre of mass to the IMU, IMU axes",
+                            FieldRank::basic});
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", Rank::first});
+          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", FieldRank::basic});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
@@ -102,7 +102,7 @@ struct TumblingParams {
     visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                     "maximum time for which a sweep waits for later data, at most 10 s; a longer time adds delay and "
                     "makes poses more accurate; 1e9: the whole recording",
-                    Rank::first});
+                    FieldRank::basic});
     visit.group("", p.expert);
   }
 };

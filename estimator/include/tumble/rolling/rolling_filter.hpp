@@ -51,9 +51,9 @@ class RollingFilter {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
     Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
-    double log_weight = 0.0;         ///< log probability relative to the most probable hypothesis
-    std::int64_t switched_node = 0;  ///< node at which the current contact mode began
-    std::int32_t parent = 0;         ///< index of the hypothesis' parent at the previous node
+    double log_weight = 0.0;           ///< log probability relative to the most probable hypothesis
+    std::int64_t mode_start_node = 0;  ///< node at which the current contact mode began
+    std::int32_t parent = 0;           ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
@@ -76,11 +76,11 @@ class RollingFilter {
     double gap_longest_s = 0.0;
     // Linearisation point that all hypotheses share.
     RollingNominal nominal;
-    RollingSums sums;
-    ImuAverage average;                                          ///< average of the readings that are not yet processed
-    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
+    RollingIntegrals sums;
+    ImuAverage average;  ///< average of the readings that are not yet processed
+    Eigen::Matrix3d pruned_position_spread_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
     RestDetector::State rest;
-    Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d low_passed_rate_rad_s = Eigen::Vector3d::Zero();
     bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant
     double variance_before_event_m2 = 0.0;  ///< horizontal position variance at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
@@ -126,24 +126,24 @@ class RollingFilter {
 
   void start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
   void bridge(const ImuSample& sample, double gap_s, State& state, Listener listener) const;
-  void take_average(State& state, Listener listener) const;
-  void close_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
+  void process_average(State& state, Listener listener) const;
+  void complete_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
   void detect_rest(State& state) const;
   bool spins_in_place(const State& state) const;
   void correct_at_rest(State& state) const;
-  void choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const;
-  void rebase(bool lost_heading, State& state) const;
+  void choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const;
+  void move_linearisation_point(bool heading_lost, State& state) const;
   void report(State& state) const;
   void flag_uncertain(State& state) const;
   void constrain_position(State& state) const;
   static RollingMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
   static Eigen::Matrix3d position_spread(const State& state);
-  static void weigh_events(State& state);
-  static void keep_first(std::size_t count, State& state);
+  static void weigh_modes(State& state);
+  static void keep_most_probable(std::size_t count, State& state);
 
   Params params_;
-  RestDetector rests_;
+  RestDetector rest_detector_;
 };
 
 }  // namespace tumble

@@ -19,7 +19,7 @@ enum class RollingMode : std::uint8_t {
 inline constexpr int kRollingModes = 5;
 
 /// Returns whether the contact point may move along the floor in `mode`.
-inline bool slips(RollingMode mode) {
+inline bool may_slip(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
 
@@ -54,18 +54,20 @@ struct RollingNominal {
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// RollingSums contains integrals since the last node, with attitude R, specific force f and rate w. The integrands are
-/// R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
-struct RollingSums {
-  Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d R_force_s = Eigen::Matrix3d::Zero();  ///< integral of R over the readings whose force is used
-  Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 3, 9> R_f = Eigen::Matrix<double, 3, 9>::Zero(), R_w = Eigen::Matrix<double, 3, 9>::Zero();
-  Eigen::Vector3d rotated_rate_cross_force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
-  double rotated_rad2_s = 0.0;
+/// RollingIntegrals contains integrals since the last node, with attitude R, specific force f and rate w. The
+/// integrands are R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
+struct RollingIntegrals {
+  Eigen::Matrix3d rotation_integral_s = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d rotation_integral_used_force_s =
+      Eigen::Matrix3d::Zero();  ///< integral of R over the readings whose force is used
+  Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 3, 9> rotation_force_integral = Eigen::Matrix<double, 3, 9>::Zero(),
+                              rotation_rate_integral = Eigen::Matrix<double, 3, 9>::Zero();
+  Eigen::Vector3d rate_cross_force_integral_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_integral_I_rad = Eigen::Vector3d::Zero(), force_integral_I_m_s = Eigen::Vector3d::Zero();
+  double squared_rate_integral_rad2_s = 0.0;
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< duration of saturated readings
-  double recovered_s = 0.0;                            ///< duration of recovered rates
+  double recovered_rate_s = 0.0;                       ///< duration of recovered rates
   double impact_m_s = 0.0;                             ///< integral of | |f| - g | above its usual level
   double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d subsample_saturation_W_m_s =
@@ -73,7 +75,7 @@ struct RollingSums {
   // Duration of a gap, and the variances that the gap adds to the angle, to rate times time, and to the velocity.
   double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
   double node_s = 0.0;
-  bool operator==(const RollingSums&) const = default;
+  bool operator==(const RollingIntegrals&) const = default;
 };
 
 }  // namespace tumble

@@ -55,32 +55,32 @@ class RollingSmoother {
       visit(p.lag_s,
             {"lag_s", "s", 1e-3, 1e9,
              "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
-             Rank::first});
+             FieldRank::basic});
       visit(p.block_s, {"block_s", "s", 1e-3, 1e3, "length of the blocks in which estimates are reported"});
       visit(p.rate_max_hz,
             {"rate_max_hz", "Hz", 1e-3, 1e5, "maximum sample rate; determines the memory for the delay"});
       visit(p.known_distance_m,
             {"known_distance_m", "m", 0.0, 1e6,
              "known horizontal distance from start to end, from which the radius is estimated; 0: not known",
-             Rank::first});
+             FieldRank::basic});
       visit(p.known_distance_sigma_m,
-            {"known_distance_sigma_m", "m", 1e-12, 1e3, "standard deviation of the known distance", Rank::first});
+            {"known_distance_sigma_m", "m", 1e-12, 1e3, "standard deviation of the known distance", FieldRank::basic});
     }
   };
 
-  /// Step contains the contact modes of all hypotheses at a node, and the parent of each hypothesis at the previous
-  /// node.
-  struct Step {
+  /// NodeModes contains the contact modes of all hypotheses at a node, and the parent of each hypothesis at the
+  /// previous node.
+  struct NodeModes {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
-    Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
     double rest_s = 0.0;  ///< duration of the rest so far
     bool at_rest = false;
     bool spins_in_place = false;
-    bool operator==(const Step&) const = default;
+    bool operator==(const NodeModes&) const = default;
   };
-  /// Committed is the state of the final pass at the node up to which estimates are reported.
-  struct Committed {
+  /// FinalPassState is the state of the final pass at the node up to which estimates are reported.
+  struct FinalPassState {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
@@ -92,15 +92,15 @@ class RollingSmoother {
     // Rate of the gap that contains the node, if any.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
     TimeNs gap_start_ns = 0;
-    int gap_piece = 0;
+    int gap_step = 0;
     bool started = false;
-    bool operator==(const Committed&) const = default;
+    bool operator==(const FinalPassState&) const = default;
   };
   struct State {
     RollingFilter::State live;
-    Committed committed;
+    FinalPassState committed;
     std::vector<ImuSample> samples;  ///< samples after the committed node
-    std::vector<Step> steps;
+    std::vector<NodeModes> steps;
     RollingNominal constants;     ///< constants at the newest smoothed node
     double radius_sigma_m = 0.0;  ///< standard deviation of the radius at the newest smoothed node
     bool operator==(const State& other) const;
@@ -121,13 +121,13 @@ class RollingSmoother {
 
   /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
   /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
-  using Take = std::function<void(const RollingEstimate&)>;
-  void finish(State& state, const Take& take) const;
+  using EstimateCallback = std::function<void(const RollingEstimate&)>;
+  void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run with externally known contact modes, one per sample of a whole run that `state` processed with
   /// kWholeRun.
-  void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
+  void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant. The function
   /// rejects a state with a lag if its number of samples exceeds four times that of rate_max_hz.
@@ -138,11 +138,11 @@ class RollingSmoother {
 
   /// Returns the number of samples for which the memory of the lag is allocated in advance.
   std::size_t preallocated_samples() const;
-  Path best_path(const State& state) const;
-  void run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const;
+  Path most_probable_path(const State& state) const;
+  void smooth_window(const Path& path, std::size_t emitted, State& state, const EstimateCallback& take) const;
 
   Params params_;
-  RollingParams path_params_;
+  RollingParams final_pass_params_;
   RollingFilter filter_;
   std::size_t lag_nodes_ = 0, block_nodes_ = 0;
 };

@@ -10,10 +10,10 @@ namespace tumble {
 /// The namespace arrow contains the arrow matrix of RateSmoother and RateStream; see ArrowSystem.
 namespace arrow {
 
-inline constexpr int kState = 6;    ///< size of a block: rate and scaled angular acceleration
-inline constexpr int kBorder = 20;  ///< size of the border: see RigConstants
+inline constexpr int kBlockSize = 6;    ///< size of a block: rate and scaled angular acceleration
+inline constexpr int kBorderSize = 20;  ///< size of the border: see RigConstants
 
-using System = ArrowSystem<kState, kBorder>;
+using System = ArrowSystem<kBlockSize, kBorderSize>;
 using StateMatrix = System::StateMatrix;
 using StateVector = System::StateVector;
 using CrossMatrix = System::CrossMatrix;
@@ -24,12 +24,12 @@ using Corner = System::Corner;
 using Conditional = System::Conditional;
 using Marginal = System::Marginal;
 
-inline constexpr int kErrors = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
+inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
-/// Derivative of the gradient of a block, or of the border, by each of the kErrors sensor errors. After
+/// Derivative of the gradient of a block, or of the border, by each of the kErrorCount sensor errors. After
 /// back-substitution, the matrix contains the derivative of the solution step.
-using ErrorMatrix = Eigen::Matrix<double, kState, kErrors>;
-using BorderErrors = Eigen::Matrix<double, kBorder, kErrors>;
+using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
+using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
 /// Eliminates a block like ArrowSystem::eliminate.
 bool eliminate(Block& block, Block* next, Corner& corner);

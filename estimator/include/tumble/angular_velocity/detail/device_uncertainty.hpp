@@ -21,7 +21,7 @@ class DeviceUncertainty {
   struct Posterior {
     /// Covariance of the sensor errors about the values for which readings are corrected.
     SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
-    double unlike = 0.0;  ///< probability that the device does not match its data sheet
+    double uncalibrated_probability = 0.0;  ///< probability that the device does not match its data sheet
   };
 
   /// Buffers of update(). The buffers are too large for the small stack of a robot's thread.
@@ -33,28 +33,29 @@ class DeviceUncertainty {
   DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
   /// Computes `posterior` from the measurement information. Cost: O(1), two systems of 29 unknowns, no allocation. If
-  /// the information is not finite, `posterior` is the prior. `unlike` states that the device is known not to match its
-  /// data sheet.
-  void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior, bool unlike = false) const;
+  /// the information is not finite, `posterior` is the prior. `is_uncalibrated` states that the device is known not to
+  /// match its data sheet.
+  void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
+              bool is_uncalibrated = false) const;
 
   /// Returns the likelihood ratio of a device with synchronous gyro and accelerometer, as in the data sheet, to an
   /// asynchronous device. See rate_stream.md (R106). `delay_s` is a measured delay minus the known delay, and `sigma_s`
   /// is its standard deviation.
-  double odds_of_sheet(double delay_s, double sigma_s) const;
+  double data_sheet_odds(double delay_s, double sigma_s) const;
 
   /// Returns the delay beyond the corrected delay that `evidence` implies for a device with any delay within `reach_s`.
   /// See rate_stream.md (R107). Cost: O(1), no allocation. Returns 0 if the information is indefinite.
-  double further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const;
+  double delay_correction_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
   /// Resets the posterior to the prior.
   void reset(Posterior& posterior) const;
 
   /// Returns the variance of a delay common to gyro and accelerometer [s^2]. If a device does not match its data sheet,
   /// no measurement determines the common delay.
-  double common_delay_s2(const Posterior& posterior) const;
+  double common_delay_variance_s2(const Posterior& posterior) const;
 
  private:
-  SensorErrors::Vector sheet_, unknown_;  ///< standard deviations
+  SensorErrors::Vector data_sheet_sigma_, uncalibrated_sigma_;  ///< standard deviations
   double uncalibrated_;
 };
 

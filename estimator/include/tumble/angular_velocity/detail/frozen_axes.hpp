@@ -58,17 +58,17 @@ class FrozenAxes {
   /// State of one axis of the gyro or of the accelerometer.
   struct Axis {
     double reading = 0.0;
-    TimeNs since_ns = 0;       ///< first sample with the current reading
-    double repeated_s = 0.0;   ///< duration of the current reading
-    bool flagged = false;      ///< flagged by the device during the current reading
-    bool frozen = false;       ///< frozen at the current reading
-    bool ever_frozen = false;  ///< frozen at the current or an earlier reading
-    double longest_s = 0.0;    ///< longest earlier repetition of a working axis
-    double moved_s = 0.0;      ///< total time with changing readings
-    double quantum = 0.0;      ///< smallest observed change; 0: none yet
+    TimeNs since_ns = 0;           ///< first sample with the current reading
+    double repeated_s = 0.0;       ///< duration of the current reading
+    bool device_flagged = false;   ///< flagged by the device during the current reading
+    bool frozen = false;           ///< frozen at the current reading
+    bool ever_frozen = false;      ///< frozen at the current or an earlier reading
+    double longest_s = 0.0;        ///< longest earlier repetition of a working axis
+    double changing_s = 0.0;       ///< total time with changing readings
+    double smallest_change = 0.0;  ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
     /// Minimum, maximum and number of changes of the two other axes of the same sensor, during the repetition.
-    std::array<double, 2> other_low{}, other_high{}, other_changes{};
+    std::array<double, 2> others_min{}, others_max{}, others_changes{};
     double samples = 0.0;       ///< number of repeated samples
     double stationary_s = 0.0;  ///< duration of rest on the other axes during the repetition
     std::array<double, 6> stationary_reference{};
@@ -78,7 +78,7 @@ class FrozenAxes {
     std::array<Axis, 6> axes;  ///< gyro x, y, z; accelerometer x, y, z
     std::array<double, 6> before{};
     TimeNs last_time_ns = 0;
-    double fastest_rad_s = 0.0;  ///< largest rate that the gyro has read
+    double rate_max_so_far_rad_s = 0.0;  ///< largest rate that the gyro has read
     bool started = false;
     bool operator==(const State&) const = default;
   };
@@ -100,7 +100,8 @@ class FrozenAxes {
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:
-  void hold(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags, State& state) const;
+  void track_repetition(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
+                        State& state) const;
   bool at_rail(std::size_t channel, const Axis& axis) const;
   bool others_move(std::size_t channel, double changing_share, const Axis& axis) const;
 

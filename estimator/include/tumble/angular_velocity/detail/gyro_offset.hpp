@@ -12,13 +12,13 @@ namespace tumble {
 
 /// Estimates a gyro's zero offset from the rest at the start of a run, if the offset is larger than the mean rate that
 /// RestDetector accepts at rest by default (0.05 rad/s). Data sheets of consumer gyros allow such offsets. At rest,
-/// rate and force are constant for half a second, and the offset is at most kMost_rad_s per axis. A smaller offset
+/// rate and force are constant for half a second, and the offset is at most kOffsetMax_rad_s per axis. A smaller offset
 /// needs no estimate: the prior of the bias includes it. GyroOffset does not distinguish an offset from a steady
 /// rotation about the vertical.
 class GyroOffset {
  public:
-  static constexpr double kLeast_rad_s = 0.05, kMost_rad_s = 0.15;
-  static constexpr double kWithin_s = 2.0;  ///< the rest must end within this time after the first sample
+  static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;
+  static constexpr double kRestEndMax_s = 2.0;  ///< the rest must end within this time after the first sample
 
   struct State {
     RestDetector::State rest;
@@ -34,7 +34,7 @@ class GyroOffset {
   Eigen::Vector3d find(std::span<const ImuSample> samples) const;
 
  private:
-  RestDetector rests_;
+  RestDetector rest_detector_;
 };
 
 }  // namespace tumble

@@ -18,7 +18,7 @@ struct RateKnot {
 /// constants.
 struct RateFactor {
   Eigen::Vector3d residual;
-  Eigen::Matrix<double, 3, 6> by_knot;
+  Eigen::Matrix<double, 3, 6> jacobian_knot;
   Eigen::Matrix<double, 3, RigConstants::kSize> jacobian_calibration;
 };
 
@@ -37,14 +37,14 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ei
 /// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. Euler's equation without
 /// torque propagates rate and angular acceleration back by the delay d. The propagated rate is w - d alpha + d^2/2 j,
 /// and the propagated angular acceleration is alpha - d j, with the angular jerk j. The residual of a late reading also
-/// depends on the inertia. `by_delay` (may be null) receives the derivative of the residual by the delay.
-RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
-                              double delay_s, Eigen::Vector3d* by_delay);
+/// depends on the inertia. `jacobian_delay` (may be null) receives the derivative of the residual by the delay.
+RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
+                                 double delay_s, Eigen::Vector3d* jacobian_delay);
 
-/// Residual of late_flight_factor() with derivatives by lever arm and accelerometer bias only; all other derivatives
+/// Residual of delayed_flight_factor() with derivatives by lever arm and accelerometer bias only; all other derivatives
 /// are zero. The function is for callers that evaluate only how well a sample fits.
-RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
-                              double delay_s);
+RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
+                                               const Eigen::Vector3d& reading_m_s2, double delay_s);
 
 /// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. The effect of a
 /// window on a reading is half of the second derivative, times the variance of the window.

@@ -23,11 +23,12 @@ class RateModel {
   RateModel(const RateModelParams& params, double period_s);
 
   /// Computes the weight of a sample between flight and contact at the current estimate. `rig_covariance` prevents that
-  /// errors of the calibration are mistaken for contact. `widen` >= 1 multiplies the contact threshold while the rates
-  /// are still inaccurate. `jump` is the smaller of the two results of jump() for the neighbours, because flight has at
-  /// least one smooth side.
-  void weigh(const RateObservation& observation, const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
-             double widen, double jump, RateEstimate& estimate) const;
+  /// errors of the calibration are mistaken for contact. `threshold_factor` >= 1 multiplies the contact threshold while
+  /// the rates are still inaccurate. `jump` is the smaller of the two results of jump() for the neighbours, because
+  /// flight has at least one smooth side.
+  void compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
+                             const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
+                             RateEstimate& estimate) const;
 
   /// Returns how far a step between two samples violates the smoothness of flight: squared, normalised, six degrees of
   /// freedom.
@@ -35,7 +36,7 @@ class RateModel {
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
   /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
-  void seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
+  void search_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Initialises the lower bounds of a sample's clipped rates near the current estimate or near the reading, whichever
   /// is larger in magnitude.
@@ -85,7 +86,7 @@ class RateModel {
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
   /// Returns the weight of one sample in errors that last `model_error_s`, or 1 if samples are at least as long.
-  double distinct_reading_share() const { return share_; }
+  double independent_reading_ratio() const { return share_; }
 
  private:
   struct ForceFactor {
@@ -101,28 +102,30 @@ class RateModel {
   RateKnot at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
   /// Returns the gyro's reading, corrected for known sensor errors.
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns flight_factor() with the known accelerometer errors. `by_delay` is passed to late_flight_factor().
+  /// Returns flight_factor() with the known accelerometer errors. `jacobian_delay` is passed to
+  /// delayed_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
-                    Eigen::Vector3d* by_delay = nullptr) const;
-  /// Returns flight() with only the derivatives by the calibration, which weigh() needs. The function flight_by_rig()
-  /// needs less than half of the computation of flight().
-  RateFactor flight_by_rig(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const;
+                    Eigen::Vector3d* jacobian_delay = nullptr) const;
+  /// Returns flight() with only the derivatives by the calibration, which compute_flight_weight() needs. The function
+  /// flight_jacobian_calibration() needs less than half of the computation of flight().
+  RateFactor flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
+                                         const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
   void add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                     arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const;
   static bool is_uninformative(const RateEstimate& estimate);
-  static void keep_from_rig(const RateObservation& observation, RateFactor& flight);
+  static void exclude_from_calibration(const RateObservation& observation, RateFactor& flight);
   void add_auxiliary_imus(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                           arrow::Block& block) const;
   Eigen::Matrix3d euler_information(const RateEstimate& estimate) const;
   double accel_sigma_m_s2(const RateObservation& observation) const;
-  double accel_variance_together(const RateObservation& observation) const;
+  double accel_variance_of_sum(const RateObservation& observation) const;
 
   RateModelParams params_;
-  bool exact_ = true;    ///< no sensor errors are known, so readings are used unchanged
-  double time_scale_s_;  ///< factor from angular acceleration to the solver's unit
+  bool uses_raw_readings_ = true;  ///< no sensor errors are known, so readings are used unchanged
+  double time_scale_s_;            ///< factor from angular acceleration to the solver's unit
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;
   double accel_sigma_m_s2_;

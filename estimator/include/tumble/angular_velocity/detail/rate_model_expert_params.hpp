@@ -39,16 +39,16 @@ struct RateFlightParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m_s2, {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0,
-                         "standard deviation of the force error of the flight model", Rank::first});
+                         "standard deviation of the force error of the flight model", FieldRank::basic});
     visit(p.euler_sigma_rad_s2,
           {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6,
            "standard deviation of the angular acceleration that Euler's equation without torque does not explain",
-           Rank::first});
+           FieldRank::basic});
     visit(p.jerk_psd_rad2_s5, {"jerk_psd_flight_rad2_s5", "rad^2/s^5", 1.0, 1e12,
-                               "power spectral density of the angular jerk in flight", Rank::first});
+                               "power spectral density of the angular jerk in flight", FieldRank::basic});
     visit(p.threshold,
           {"flight_threshold", "1", 1.0, 100.0,
-           "flight residual, in standard deviations, above which a sample counts as contact", Rank::first});
+           "flight residual, in standard deviations, above which a sample counts as contact", FieldRank::basic});
   }
 };
 
@@ -74,7 +74,7 @@ struct RateContactParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gain_rad_m, {"contact_gain_rad_m", "rad/m", 0.0, 1e3,
-                         "standard deviation of the angular acceleration per contact force", Rank::first});
+                         "standard deviation of the angular acceleration per contact force", FieldRank::basic});
     visit(p.sigma_factor, {"contact_sigma_factor", "1", 1.0, 10.0,
                            "the standard deviations of rates fitted through an impact are multiplied by this factor"});
     visit(p.lever_rad_m, {"contact_lever_rad_m", "rad/m", 0.0, 1e3,

@@ -23,10 +23,12 @@ struct RateObservation {
   // Masks of axes whose readings have a separate standard deviation, bit j for axis j. Each axis is in at most one of
   // the three masks subsample_saturated, lone and suspect.
   std::uint8_t subsample_saturated = 0;  ///< saturated for a part of the window, see SubsampleSaturation
-  std::uint8_t lone = 0;                 ///< few high readings on a side without a known saturation level
+  std::uint8_t isolated_high_axes = 0;   ///< few high readings on a side without a known saturation level
   std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation level: lower bounds
-  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected saturation deficit, with the reading's sign
-  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of lost_rad_s
+  Eigen::Vector3d expected_deficit_rad_s =
+      Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
+  Eigen::Vector3d expected_deficit_sigma_rad_s =
+      Eigen::Vector3d::Zero();  ///< standard deviation of expected_deficit_rad_s
   /// Age of the readings of gyro and accelerometer at the sample's time stamp, and whether the gyro repeats the
   /// previous reading.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
@@ -37,20 +39,22 @@ struct RateObservation {
 
   /// Returns whether a sensing element clips. If an element clips, all axes are corrupted and the gyro is used element
   /// by element.
-  bool by_elements() const { return (clipping.gyro | clipping.missing_gyro) != 0; }
+  bool is_element_clipped() const { return (clipping.gyro | clipping.unusable_gyro) != 0; }
 
   /// Returns the axes whose readings have a larger standard deviation than the gyro's noise.
-  std::uint8_t read_in_part() const { return static_cast<std::uint8_t>(subsample_saturated | lone | suspect); }
+  std::uint8_t partly_saturated_axes() const {
+    return static_cast<std::uint8_t>(subsample_saturated | isolated_high_axes | suspect);
+  }
   /// Returns the axes whose reading may be below the rate although no saturation level was found.
-  std::uint8_t may_hide() const { return static_cast<std::uint8_t>(lone | suspect); }
+  std::uint8_t possibly_saturated_axes() const { return static_cast<std::uint8_t>(isolated_high_axes | suspect); }
 
   /// Returns the axes whose rate is not measured, or has only a lower bound.
-  std::uint8_t unseen() const {
+  std::uint8_t unmeasured_axes() const {
     for (const AuxiliaryReading& auxiliary_imu : auxiliary_imus) {
       if (auxiliary_imu.measures_all_rates()) return 0;
     }
-    return static_cast<std::uint8_t>((clipping.gyro | clipping.missing_gyro) &
-                                     ~(subsample_saturated & ~clipping.missing_gyro));
+    return static_cast<std::uint8_t>((clipping.gyro | clipping.unusable_gyro) &
+                                     ~(subsample_saturated & ~clipping.unusable_gyro));
   }
 };
 
@@ -65,7 +69,7 @@ struct RateEstimate {
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
   /// Specific force of contact at the centre of mass, which is the part of the force that the flight model does not
   /// explain.
-  Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d contact_force_m_s2 = Eigen::Vector3d::Zero();
   /// Gaussian factors (sites) of the lower bounds of clipped elements, on the saturation deficit along m_j. A Gaussian
   /// factor is stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();

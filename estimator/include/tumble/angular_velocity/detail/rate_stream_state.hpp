@@ -9,13 +9,13 @@
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
-#include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/detail/flight_sign_check.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/angular_velocity/detail/least_rails.hpp"
-#include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/impact_sums.hpp"
+#include "tumble/angular_velocity/detail/min_saturation_levels.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
-#include "tumble/angular_velocity/detail/stroke_sums.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
@@ -38,12 +38,12 @@ struct RateStreamForce {
 struct RateStreamKnot {
   RateObservation observation;  ///< force at the sample's own time; `read` has the force as received
   RateStreamForce read;
-  Clipping by_upright_rails;  ///< clipping by flags and equal readings; the observation also uses planes
+  Clipping by_axis_aligned_rails;  ///< clipping by flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
   /// Growth of each axis's magnitude per step up to the sample: the smaller growth of the last two steps, and at least
   /// 0.
-  Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d reading_growth_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
   RepeatedReading repeated;  ///< repetition of the gyro's reading; none at rest
@@ -52,8 +52,8 @@ struct RateStreamKnot {
 
 /// RateStreamDelay contains the delay of the accelerometer relative to the gyro, see rate_stream.md (R104) to (R107).
 struct RateStreamDelay {
-  StrokeSums strokes;
-  double in_use_s = 0.0;             ///< delay that is applied; the prior until a delay is found
+  ImpactSums impacts;
+  double applied_delay_s = 0.0;      ///< delay that is applied; the prior until a delay is found
   double estimated_s = 0.0;          ///< latest estimate from impacts and from sensor-error evidence
   bool found = false;                ///< whether the delay differs from the prior
   TriadDelay guess;                  ///< latest estimate from impacts alone
@@ -65,7 +65,7 @@ struct RateStreamDelay {
 /// derivatives. See rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
-    arrow::BorderErrors border, of_rig;
+    arrow::BorderErrors border, calibration_by_errors;
     SensorErrorEvidence window_evidence;
     DeviceUncertainty::Work posterior_work;
   };
@@ -82,11 +82,11 @@ struct RateStreamDevice {
 /// RateStreamState is the complete state, which RateStream::start() creates. The state can be copied, and
 /// RateStream::equal() compares states.
 struct RateStreamState {
-  RailWatch::State rails;
+  StreamingClippingFinder::State rails;
   RestDetector::State rests;
   RepeatDetector::State repeat_state;
   FrozenAxes::State frozen;
-  FlightSense::State sense;
+  FlightSignCheck::State sense;
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
@@ -99,16 +99,16 @@ struct RateStreamState {
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
   /// largest and smallest readings so far
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  LeastRails least;  ///< lower bounds from the readings so far
+  MinSaturationLevels min_levels;  ///< lower bounds from the readings so far
   /// Data of a run of readings at a possible saturation level that has partly left the window. The data are
-  /// RateStreamKnot::approach_rad_s before the run, and the number of samples that left.
-  Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
-  std::optional<RateKnot> left;  ///< the sample that left the window last, and its time
-  TimeNs left_ns = 0;
+  /// RateStreamKnot::reading_growth_rad_s before the run, and the number of samples that left.
+  Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
+  std::optional<RateKnot> last_marginalised;  ///< the sample that left the window last, and its time
+  TimeNs last_marginalised_ns = 0;
   RateKnot prior_knot;
   RigConstants prior_rig;
   std::size_t samples = 0;
-  std::size_t waiting = 0;              ///< number of samples since the last Gauss-Newton step
+  std::size_t samples_since_step = 0;   ///< number of samples since the last Gauss-Newton step
   std::size_t calibration_samples = 0;  ///< flight samples that left the window and updated the calibration
   std::size_t flight_run = 0;           ///< consecutive flight samples among the last samples that left
   std::size_t rig_resets = 0;           ///< number of resets of the calibration

@@ -20,10 +20,10 @@ struct RepeatedReading {
   bool is_slower_than_log() const { return period_samples > 1.0; }
   /// Returns how far the middle of the reading's window is before the middle of the sample's window, in samples. The
   /// reading's window has the length of the update period, and ends when the sensor takes the reading.
-  double behind_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
-  /// Returns the change of the measured quantity during behind_samples(), extrapolated with the slope of the last
+  double delay_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
+  /// Returns the change of the measured quantity during delay_samples(), extrapolated with the slope of the last
   /// change.
-  Eigen::Vector3d stale() const;
+  Eigen::Vector3d change_since_reading() const;
   bool operator==(const RepeatedReading&) const = default;
 };
 
@@ -35,7 +35,7 @@ class RepeatDetector {
   /// State of gyro or accelerometer.
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double run_samples = 0.0;             ///< consecutive samples with this reading
+    double equal_samples = 0.0;           ///< consecutive samples with this reading
     double moving = 0.0, repeated = 0.0;  ///< samples in motion; repeated samples in motion; both decay slowly
     RepeatedReading now;
     bool operator==(const Memory&) const = default;

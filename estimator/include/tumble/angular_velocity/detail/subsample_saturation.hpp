@@ -12,8 +12,8 @@ namespace tumble {
 /// still a measurement, but slightly too small.
 struct SubsampleSaturation {
   bool saturated = false;
-  double lost_rad_s = 0.0;   ///< expected |truth| - |reading|
-  double sigma_rad_s = 0.0;  ///< standard deviation of the deficit
+  double expected_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
+  double sigma_rad_s = 0.0;             ///< standard deviation of the deficit
 };
 
 /// Estimates the saturation deficit of a flagged reading from its unsaturated neighbour. The model is a rate with
@@ -34,8 +34,8 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
 /// current window was unsaturated in the window before. Flagged readings that decrease one by one along a tilted plane
 /// are not rates. See rails.md (R70).
 template <class Read>
-double free_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
-                      const ImuSample* after, const Read& read) {
+double unsaturated_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
+                             const ImuSample* after, const Read& read) {
   double smallest = rail_rad_s;
   for (const ImuSample* beside : {before, after}) {
     if (beside == nullptr) continue;

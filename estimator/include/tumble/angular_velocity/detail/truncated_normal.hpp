@@ -9,18 +9,18 @@ struct NormalMoments {
 };
 
 /// Returns the moments of a normal distribution truncated below `bound`. The bound is uncertain, with the variance
-/// `softness2`. Expectation propagation uses the moments of truncated distributions (Minka 2001).
-NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2);
+/// `bound_variance`. Expectation propagation uses the moments of truncated distributions (Minka 2001).
+NormalMoments truncated_below(const NormalMoments& from, double bound, double bound_variance);
 
-/// NormalSite is a Gaussian factor, stored as precision and precision * mean.
-struct NormalSite {
+/// GaussianSite is a Gaussian factor, stored as precision and precision * mean.
+struct GaussianSite {
   double precision = 0.0, shift = 0.0;
 };
 
 /// Returns the Gaussian factor (site) that gives `marginal` the moments of a distribution truncated at `bound`. `now`
 /// is the current site. `share` in (0, 1] is the weight of the new site, which damps the update. The standard deviation
-/// of the marginal without its site is limited to sqrt(`widest2`).
-NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
-                         double widest2, double share);
+/// of the marginal without its site is limited to sqrt(`variance_max`).
+GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
+                           double variance_max, double share);
 
 }  // namespace tumble

@@ -18,7 +18,7 @@ struct AxisLabels {
   bool gyro_flipped = false;                  ///< all three rates are inverted
 
   /// Returns the force in the gyro's axes.
-  Eigen::Vector3d renamed(const Eigen::Vector3d& force) const {
+  Eigen::Vector3d relabelled(const Eigen::Vector3d& force) const {
     return {sign[0] * force[axis[0]], sign[1] * force[axis[1]], sign[2] * force[axis[2]]};
   }
 };

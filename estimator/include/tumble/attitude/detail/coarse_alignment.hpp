@@ -15,13 +15,13 @@ namespace tumble {
 /// sum of gravity's integral and the change of velocity. The integral of gravity grows with time, but the change of
 /// velocity is bounded. See attitude.md (A19), (A20). The method is not a linearisation, and works from any initial
 /// attitude, including upside down. CoarseAlignment does not model the gyro's error; the caller adds the gyro's error
-/// to `grown_rad2`.
+/// to `tilt_variance_growth_rad2`.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
   double velocity_m2_s2 = 0.0;                            ///< variance of the velocity at the start, one axis
-  double lost_rad2 = 0.0;                                 ///< variance of the tilt at the start, one axis
-  double grown_rad2 = 0.0;                                ///< growth of the tilt's variance since the start
+  double start_tilt_variance_rad2 = 0.0;                  ///< variance of the tilt at the start, one axis
+  double tilt_variance_growth_rad2 = 0.0;                 ///< growth of the tilt's variance since the start
   Eigen::Vector3d force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
   bool operator==(const CoarseAlignment&) const = default;
 
@@ -29,7 +29,7 @@ struct CoarseAlignment {
     *this = {};
     running = true;
     velocity_m2_s2 = velocity_variance_m2_s2;
-    lost_rad2 = tilt_variance_rad2;
+    start_tilt_variance_rad2 = tilt_variance_rad2;
   }
 
   /// Adds `more_W_m_s`, the integral of the specific force over `length_s`.
@@ -39,7 +39,7 @@ struct CoarseAlignment {
   }
 
   /// Returns the variance of the tilt without the alignment, one axis.
-  double tilt_rad2() const { return lost_rad2 + grown_rad2; }
+  double tilt_rad2() const { return start_tilt_variance_rad2 + tilt_variance_growth_rad2; }
 
   /// Returns the variance of the tilt after a correction by levelling(). The tilt variance depends on the velocities at
   /// the start and end of the alignment, and on the gyro's errors between start and end. A difference of the mean
@@ -47,12 +47,12 @@ struct CoarseAlignment {
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);
-    return std::max(velocity_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + grown_rad2;
+    return std::max(velocity_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + tilt_variance_growth_rad2;
   }
 
   /// Return the rotation of W that makes the mean force point up without changing the heading, and its angle.
   Eigen::Quaterniond levelling() const { return tumble::levelling(force_W_m_s.normalized()); }
-  double off_rad() const { return std::atan2(force_W_m_s.head<2>().norm(), force_W_m_s.z()); }
+  double mean_force_tilt_rad() const { return std::atan2(force_W_m_s.head<2>().norm(), force_W_m_s.z()); }
 };
 
 }  // namespace tumble

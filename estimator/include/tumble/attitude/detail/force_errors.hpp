@@ -36,7 +36,7 @@ class ForceErrors {
     double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
     double noise_m_s2 = 0.06;                     ///< noise of one force difference, over a span; bound (0, 1e3]
     double acceleration_share = 0.02;             ///< additional noise, as a fraction of a x r; bound [0, 1]
-    double gate_deviations = 5.0;                 ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
+    double gate_sigmas = 5.0;                     ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();
@@ -44,7 +44,7 @@ class ForceErrors {
     // Sums over the current averaging span.
     Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
-    Eigen::Matrix3d by_position = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d jacobian_position = Eigen::Matrix3d::Zero();
     double acceleration_rad_s2 = 0.0;
     int samples = 0;
     double span_s = 0.0;

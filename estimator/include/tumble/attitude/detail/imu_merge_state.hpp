@@ -7,7 +7,7 @@
 
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
-#include "tumble/attitude/detail/unit_senses.hpp"
+#include "tumble/attitude/detail/unit_sign_check.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/time.hpp"
 
@@ -26,25 +26,25 @@ struct ImuRepeat {
 
 /// ImuMergeUnit contains the errors of one unit's rate relative to the mean of all units.
 struct ImuMergeUnit {
-  static constexpr int kErrors = 13;  ///< bias, scale and misalignment, time offset
+  static constexpr int kErrorCount = 13;  ///< bias, scale and misalignment, time offset
 
-  Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
-  Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
+  Eigen::Matrix<double, kErrorCount, 1> x = Eigen::Matrix<double, kErrorCount, 1>::Zero();
+  Eigen::Matrix<double, kErrorCount, kErrorCount> P = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
   ImuAverage window;  ///< average of the unit's readings since the last window
   /// Mean rate and force over the last window. For an absent unit, the means are predicted from the readings of the
   /// remaining units.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-  double suspect_s = 0.0;     ///< remaining time of exclusion from the mean force
-  std::int64_t left_out = 0;  ///< number of windows without this unit
+  double exclusion_left_s = 0.0;      ///< remaining time of exclusion from the mean force
+  std::int64_t excluded_windows = 0;  ///< number of windows without this unit
   ImuRepeat rate_repeat, force_repeat;
-  double thawing_s = 0.0;
-  double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
-  TimeNs misfits_since_ns = 0;
+  double changing_readings_s = 0.0;
+  double rate_disagreement_rad_s = 0.0, force_disagreement_m_s2 = 0.0, disagreement_s = 0.0;
+  TimeNs disagreement_since_ns = 0;
   bool frozen = false, disagrees = false;
-  std::int64_t absent = 0;  ///< number of samples that were not finite
-  TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, absent_since_ns = 0;
-  bool left_out_for_long() const { return frozen || disagrees; }
-  double offset_s() const { return x[kErrors - 1]; }
+  std::int64_t missing_samples = 0;  ///< number of samples that were not finite
+  TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, missing_since_ns = 0;
+  bool is_excluded() const { return frozen || disagrees; }
+  double offset_s() const { return x[kErrorCount - 1]; }
   bool operator==(const ImuMergeUnit&) const = default;
 };
 
@@ -61,10 +61,10 @@ struct ImuMergeState {
   double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
   double window_s = 0.0;                                        ///< length of the current window
   double length_s = 0.0, length_before_s = 0.0;                 ///< lengths of the last two windows
-  double lever_arm_correlation = 0.0, arm_square_m2_s3 = 0.0;   ///< sums for arm_share()
-  UnitSenses senses;
+  double lever_arm_correlation = 0.0, lever_arm_effect_m2_s3 = 0.0;  ///< sums for lever_arm_agreement()
+  UnitSignCheck senses;
   std::int64_t samples = 0, windows = 0;
-  int free_windows =
+  int unclipped_windows =
       kAccelerationWindows;  ///< windows since a gyro was clipped or a unit absent, at most kAccelerationWindows
   TimeNs last_time_ns = 0;
   bool all_frozen = false;  ///< all units present in the last window are frozen

@@ -23,7 +23,8 @@ struct LowPass {
   double averaged_s = 0.0;
   double samples = 0.0;
 
-  /// Processes the next input, `dt_s` after the previous input. `warp` is the result of low_pass_warp() for tau and dt.
+  /// Processes the next input, `dt_s` after the previous input. `warp` is the result of low_pass_prewarp() for tau and
+  /// dt.
   void advance(const Vector& next, double tau_s, double dt_s, double warp) {
     if (averaged_s < tau_s) {
       samples += 1.0;
@@ -44,7 +45,7 @@ struct LowPass {
 
 /// Returns the warped frequency tan(pi f_c dt) for LowPass. The result is bounded, so that a sample period much longer
 /// than tau passes the input unfiltered.
-inline double low_pass_warp(double tau_s, double dt_s) {
+inline double low_pass_prewarp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }
 

@@ -87,11 +87,11 @@ class PivotCheck {
   struct Found {
     int reading = 0;                    ///< index of the gyro alternative that explains most; 0: unchanged gyro
     double evidence = 0.0;              ///< evidence against the unchanged rates: sum of logarithms
-    std::size_t counted = 0;            ///< segments that the alternative or the unchanged rates explain
-    std::size_t better = 0, worse = 0;  ///< segments that the alternative explains better or worse
-    double scale = 1.0;                 ///< best scale of the rates, from segments with a near pivot
+    std::size_t compared_segments = 0;  ///< segments that the alternative or the unchanged rates explain
+    std::size_t better_segments = 0, worse_segments = 0;  ///< segments that the alternative explains better or worse
+    double scale = 1.0;                                   ///< best scale of the rates, from segments with a near pivot
     double scale_sigma = std::numeric_limits<double>::infinity();
-    std::size_t scale_segments = 0, explained = 0;  ///< segments that determine the scale; explained segments
+    std::size_t scale_segments = 0, explained_segments = 0;  ///< segments that determine the scale; explained segments
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

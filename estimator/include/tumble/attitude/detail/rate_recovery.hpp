@@ -17,10 +17,10 @@ namespace tumble {
 /// An extended Kalman filter estimates rate w, angular acceleration a and specific force c at the mean position of the
 /// units, and the error of each lever arm r_k. The measurement model of unit k is f_k = c + a x r_k + w x (w x r_k). In
 /// body axes, the specific force c rotates as gravity does. The filter runs while a gyro is clipped or reads more than
-/// the fraction kFast of its range. The lever arms are therefore calibrated before a gyro saturates. RateRecovery
-/// treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the flags for devices
-/// that clip below their range without reporting saturation. Clipped readings of gyro and accelerometer are lower
-/// bounds, not measurements.
+/// the fraction kActiveRangeRatio of its range. The lever arms are therefore calibrated before a gyro saturates.
+/// RateRecovery treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the
+/// flags for devices that clip below their range without reporting saturation. Clipped readings of gyro and
+/// accelerometer are lower bounds, not measurements.
 ///
 /// RateRecovery does not model scale errors; the lever arms are calibrated relative to the gyro's scale. Units at one
 /// position provide no information about the rate. An impact increases the uncertainty of the rate, and does not change
@@ -32,7 +32,7 @@ class RateRecovery {
   /// Duration to which the noise of readings refers. The noise of shorter readings grows with the inverse root of their
   /// duration, so a higher sample rate adds no information.
   static constexpr double kReading_s = 4e-3;
-  static constexpr double kFast = 0.5;  ///< fraction of the gyro's range above which the filter runs
+  static constexpr double kActiveRangeRatio = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
@@ -78,14 +78,14 @@ class RateRecovery {
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
-  /// Met describes the saturation of the current readings.
-  struct Met {
+  /// SaturatedSensors describes the saturation of the current readings.
+  struct SaturatedSensors {
     bool rate = false;   ///< a gyro is saturated
     bool force = false;  ///< enough accelerometers are saturated to corrupt the mean force
   };
-  bool rate_railed(const ImuSample& unit, int axis) const;
-  bool force_railed(const ImuSample& unit, int axis) const;
-  Met met_by(std::span<const ImuSample> units) const;
+  bool is_rate_saturated(const ImuSample& unit, int axis) const;
+  bool is_force_saturated(const ImuSample& unit, int axis) const;
+  SaturatedSensors find_saturated_sensors(std::span<const ImuSample> units) const;
   void start(const ImuSample& merged, State& state) const;
   void predict(double dt_s, State& state) const;
   void measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const;

@@ -70,25 +70,27 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  /// Size contains the state for the magnitude of the force at rest.
-  struct Size {
-    RestDetector::State rest, weightless, heavy;
+  /// MagnitudeState contains the state for the magnitude of the force at rest.
+  struct MagnitudeState {
+    RestDetector::State rest, weightless, above_gravity;
     double rest_s = 0.0, force_sum_m = 0.0;  ///< duration of all rests, and integral of the force at rest
     double weightless_s = 0.0;               ///< duration of rests without force
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
-    bool operator==(const Size&) const = default;
+    bool operator==(const MagnitudeState&) const = default;
   };
-  struct State : Size {
-    Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
+  struct State : MagnitudeState {
+    Eigen::Vector3d last_rest_force_m_s2 =
+        Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
     double span_angle_rad = 0.0, variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
-    double span_s = 0.0, hidden_m_s = 0.0;         ///< time since the last rest; saturation deficit of the force
-    double segment_s = 0.0, segment_rad2_s = 0.0;  ///< duration and variance of unmeasured samples
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;   ///< angle error of the worst pair of rests, with its deviation
-    double velocity_share = 0.0, velocity_allowed_share = 0.0;  ///< velocity error of the worst pair, and limit
-    std::size_t spans = 0;                                      ///< number of compared pairs of rests
+    double span_s = 0.0, saturation_deficit_m_s = 0.0;  ///< time since the last rest; saturation deficit of the force
+    double segment_s = 0.0, segment_rad2_s = 0.0;       ///< duration and variance of unmeasured samples
+    double angle_error_rad = 0.0,
+           angle_error_sigma_rad = 0.0;  ///< angle error of the worst pair of rests, with its deviation
+    double velocity_error_ratio = 0.0, velocity_error_ratio_max = 0.0;  ///< velocity error of the worst pair, and limit
+    std::size_t spans = 0;                                              ///< number of compared pairs of rests
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -98,36 +100,36 @@ class RestGravity {
   /// are ignored.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
   /// Processes a sample without a rate, only for the magnitude of the force at rest.
-  void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
+  void step(const ImuSample& sample, MagnitudeState& state) const { (void)follow(sample, state); }
 
   /// Limits the memory of the force at rest to a minute of rest, so that a finding ends.
-  static void limit_memory(Size& state);
+  static void limit_memory(MagnitudeState& state);
 
   /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
   /// without force, and 1 if the body never rested.
-  double size_share(const Size& state) const;
-  /// Returns `out_of_range` if size_share() differs from 1. If the magnitude is wrong by more than a factor of three,
-  /// the message names the unit of the force as suspect.
-  Status size_verdict(const Size& state) const;
-  /// Returns the error of size_verdict(), or checks the rates of the worst pair of rests. Returns `out_of_range` if the
-  /// rates of the worst pair of rests miss gravity or leave a velocity beyond the limits.
+  double magnitude_error_ratio(const MagnitudeState& state) const;
+  /// Returns `out_of_range` if magnitude_error_ratio() differs from 1. If the magnitude is wrong by more than a factor
+  /// of three, the message names the unit of the force as suspect.
+  Status magnitude_verdict(const MagnitudeState& state) const;
+  /// Returns the error of magnitude_verdict(), or checks the rates of the worst pair of rests. Returns `out_of_range`
+  /// if the rates of the worst pair of rests miss gravity or leave a velocity beyond the limits.
   Status verdict(const State& state) const;
 
  private:
-  enum class Follows { not_at_all, after_gap, directly };
+  enum class Continuity { unrelated, after_gap, directly };
   struct Step {
-    Follows follows = Follows::not_at_all;
+    Continuity follows = Continuity::unrelated;
     double dt_s = 0.0;
   };
-  Step follow(const ImuSample& sample, Size& state) const;
-  void turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
+  Step follow(const ImuSample& sample, MagnitudeState& state) const;
+  void integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
   void end_segment(State& state) const;
-  void arrive(State& state) const;
-  void close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const;
+  void finish_span(State& state) const;
+  void check_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const;
   double allowed_rad(double sigma_rad) const;
 
   Params params_;
-  RestDetector detector_, weightless_, heavy_;
+  RestDetector detector_, weightless_, above_gravity_;
 };
 
 }  // namespace tumble

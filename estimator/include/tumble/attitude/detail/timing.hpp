@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-/// Computes the time from `last_time_ns` to `time_ns`. On error, returns the status of check_follows() and leaves
+/// Computes the time from `last_time_ns` to `time_ns`. On error, returns the status of check_stamp_order() and leaves
 /// `dt_s` unchanged. The function is safe for any pair of time stamps, and for gap_max_s up to 1e9.
 Status elapsed(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
 

@@ -58,7 +58,7 @@ struct ArrowSystem {
   /// block's mean by the border.
   struct Conditional {
     StateMatrix state;
-    CrossMatrix by_border;
+    CrossMatrix jacobian_border;
   };
 
   /// Marginal contains the posterior covariance of a block, and its cross-covariance with the border.
@@ -174,12 +174,12 @@ auto ArrowSystem<State, Border>::back_conditional(const Block& block, const Cond
   Conditional out;
   out.state = L_inv.transpose().lazyProduct(L_inv);
   if (next == nullptr) {
-    out.by_border = -L_inv.transpose().lazyProduct(block.border);
+    out.jacobian_border = -L_inv.transpose().lazyProduct(block.border);
     return out;
   }
   CrossMatrix pull = block.border;
-  pull.noalias() += block.coupling.lazyProduct(next->by_border);
-  out.by_border = -L_inv.transpose().lazyProduct(pull);
+  pull.noalias() += block.coupling.lazyProduct(next->jacobian_border);
+  out.jacobian_border = -L_inv.transpose().lazyProduct(pull);
   const StateMatrix A = L_inv.transpose().lazyProduct(block.coupling);
   const StateMatrix A_state = A.lazyProduct(next->state);
   out.state.noalias() += A_state.lazyProduct(A.transpose());
@@ -190,9 +190,9 @@ template <int State, int Border>
 auto ArrowSystem<State, Border>::marginal(const Conditional& conditional, const BorderMatrix& border_covariance)
     -> Marginal {
   Marginal out;
-  out.cross = conditional.by_border.lazyProduct(border_covariance);
+  out.cross = conditional.jacobian_border.lazyProduct(border_covariance);
   out.state = conditional.state;
-  out.state.noalias() += out.cross.lazyProduct(conditional.by_border.transpose());
+  out.state.noalias() += out.cross.lazyProduct(conditional.jacobian_border.transpose());
   return out;
 }
 

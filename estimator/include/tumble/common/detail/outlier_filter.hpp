@@ -20,7 +20,7 @@ namespace tumble {
 ///
 /// The filter is causal. OutlierFilter delays a reading that jumps further than the other triad explains until the next
 /// reading confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or
-/// kForceMax_m_s2 never pass. A wild first reading passes, but the next two readings refute it (first_is_refuted()).
+/// kForceMax_m_s2 never pass. A wild first reading passes, but the next two readings refute it (first_is_outlier()).
 /// Cost: O(1) per reading, no allocation. OutlierFilter does not model two wild readings in a row, or a wild reading
 /// during an impact that is hard enough to explain it.
 class OutlierFilter {
@@ -28,8 +28,8 @@ class OutlierFilter {
   /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of
   /// a robot measures forces above kForceMax_m_s2 (10 000 g).
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
-  /// Devices read up to kRangesMax times the range in their data sheet.
-  static constexpr double kRangesMax = 2.0;
+  /// Devices read up to kStatedRangesMax times the range in their data sheet.
+  static constexpr double kStatedRangesMax = 2.0;
 
   /// Properties of the device, from its data sheet; 0 means not stated.
   struct Device {
@@ -40,9 +40,9 @@ class OutlierFilter {
   };
 
   struct State {
-    std::array<ImuSample, 2> passed{};  ///< last samples that passed; the newest is last
-    std::size_t count = 0;              ///< number of valid samples in `passed`
-    std::optional<ImuSample> held;
+    std::array<ImuSample, 2> recent_inliers{};  ///< last samples that passed; the newest is last
+    std::size_t count = 0;                      ///< number of valid samples in `recent_inliers`
+    std::optional<ImuSample> delayed;
     std::size_t rejected = 0;  ///< number of samples rejected since the start
   };
 
@@ -51,21 +51,21 @@ class OutlierFilter {
   /// Decides about the delayed sample from `next`, which must be later than all samples that passed. Returns the
   /// delayed sample if `next` confirms the delayed sample. Returns nothing if the delayed sample is rejected or no
   /// sample was delayed. After the call, no sample is delayed.
-  std::optional<ImuSample> settle(const ImuSample& next, State& state) const;
+  std::optional<ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
-  /// Returns whether settle() confirms the second sample of a run, which was delayed because it contradicts the first.
-  /// The first sample is then an outlier, and the run should restart with the second. Call this function before
-  /// settle().
-  bool first_is_refuted(const ImuSample& next, const State& state) const {
-    return state.count == 1 && state.held && jumps(*state.held, state) && confirms(next, state);
+  /// Returns whether filter_sample() confirms the second sample of a run, which was delayed because it contradicts the
+  /// first. The first sample is then an outlier, and the run should restart with the second. Call this function before
+  /// filter_sample().
+  bool first_is_outlier(const ImuSample& next, const State& state) const {
+    return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
   }
 
   /// Returns true if a finite sample must not be used now, because it is delayed, or rejected as larger than any sensor
-  /// reads. Call settle() before keeps_back().
-  bool keeps_back(const ImuSample& sample, State& state) const;
+  /// reads. Call filter_sample() before must_delay().
+  bool must_delay(const ImuSample& sample, State& state) const;
 
-  /// Records that a sample was used: a sample that settle() returned, or a sample for which keeps_back() returned
-  /// false.
+  /// Records that a sample was used: a sample that filter_sample() returned, or a sample for which must_delay()
+  /// returned false.
   static void pass(const ImuSample& sample, State& state);
 
   /// Rejects the delayed sample, if any, because no further reading can confirm the sample.
@@ -73,12 +73,12 @@ class OutlierFilter {
 
  private:
   bool confirms(const ImuSample& next, const State& state) const {
-    return next.time_ns > state.held->time_ns && !is_outlier(*state.held, next, state);
+    return next.time_ns > state.delayed->time_ns && !is_outlier(*state.delayed, next, state);
   }
   double period_s(const State& state) const;
   bool jumps(const ImuSample& sample, const State& state) const;
   bool is_suspicious(const ImuSample& sample, const State& state) const;
-  bool is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const;
+  bool is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const;
 
   Device device_;
 };

@@ -15,7 +15,7 @@ inline constexpr double kReadingMax = 1e6;
 Status check_stamp(TimeNs stamp_ns, const char* field);
 
 /// Returns the first error in a sequence of samples: `empty`, the error of a single sample (check_sample()), or the
-/// error of a pair (check_follows()). O(N).
+/// error of a pair (check_stamp_order()). O(N).
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s);
 
 }  // namespace tumble

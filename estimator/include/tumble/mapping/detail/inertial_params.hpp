@@ -31,18 +31,18 @@ struct InertialNoiseParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3,
-                      "standard deviation of the position after 0.1 s of inertial prediction", Rank::first});
+                      "standard deviation of the position after 0.1 s of inertial prediction", FieldRank::basic});
     visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3,
-                        "standard deviation of the attitude after 0.1 s of inertial prediction", Rank::first});
+                        "standard deviation of the attitude after 0.1 s of inertial prediction", FieldRank::basic});
     visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3,
-                        "standard deviation of the velocity after 0.1 s of inertial prediction", Rank::first});
-    visit(p.rotation_share,
-          {"rotation_sigma_share", "1", 0.0, 1.0,
-           "standard deviation of the attitude after inertial prediction, as a share of the rotation", Rank::first});
+                        "standard deviation of the velocity after 0.1 s of inertial prediction", FieldRank::basic});
+    visit(p.rotation_share, {"rotation_sigma_share", "1", 0.0, 1.0,
+                             "standard deviation of the attitude after inertial prediction, as a share of the rotation",
+                             FieldRank::basic});
     visit(p.force_share,
           {"force_sigma_share", "1", 0.0, 1.0,
            "standard deviation of the velocity after inertial prediction, as a share of the integrated force",
-           Rank::first});
+           FieldRank::basic});
     visit(p.gap_velocity_walk_m_s_sqrt_s,
           {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
     visit(p.gap_rate_walk_rad_s_sqrt_s,
@@ -61,7 +61,7 @@ struct InertialNoiseParams {
 /// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
 /// uncertainty, but at least deficit_sigma_min_rad_s, correlated over deficit_time_s. If saturation lasts across the
 /// boundary of two sweeps, the saturation deficit is continuous at the boundary.
-struct RailedImuParams {
+struct SaturatedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
   double rate_sigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
@@ -78,14 +78,14 @@ struct RailedImuParams {
     visit(p.force_sigma_m_s2, {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of a saturated force"});
     visit(p.rate_sigma_rad_s,
           {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
-           "assumed standard deviation of a clipped axis that the rate method did not recover", Rank::first});
-    visit(p.estimate_deficit, on_off("estimate_saturation_deficit",
-                                     "1: estimate the saturation deficit of clipped axes in the registration"));
+           "assumed standard deviation of a clipped axis that the rate method did not recover", FieldRank::basic});
+    visit(p.estimate_deficit, switch_field("estimate_saturation_deficit",
+                                           "1: estimate the saturation deficit of clipped axes in the registration"));
     visit(p.deficit_sigma_min_rad_s,
           {"deficit_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
-           "minimum prior standard deviation of the saturation deficit of a clipped axis", Rank::first});
+           "minimum prior standard deviation of the saturation deficit of a clipped axis", FieldRank::basic});
     visit(p.deficit_time_s,
-          {"deficit_time_s", "s", 1e-3, 1e3, "correlation time of the saturation deficit", Rank::first});
+          {"deficit_time_s", "s", 1e-3, 1e3, "correlation time of the saturation deficit", FieldRank::basic});
     visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
                                 "maximum growth factor of the saturation deficit from one sweep to the next"});
     visit(p.deficit_knot_share, {"deficit_knot_share", "1", 1e-6, 1.0,

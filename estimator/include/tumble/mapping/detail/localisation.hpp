@@ -34,11 +34,11 @@ class Localisation {
 
   double largest_sigma_m() const { return largest_sigma_m_; }
   /// Returns the second largest SweepReport::innovation.
-  double second_innovation() const { return second_innovation_; }
+  double second_largest_innovation() const { return second_largest_innovation_; }
   /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.
   Status verdict() const;
   /// Returns `out_of_range` with the present finding and the violated limit. Returns `ok` without a finding.
-  Status present() const;
+  Status current_verdict() const;
 
   /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
@@ -46,11 +46,12 @@ class Localisation {
 
  private:
   double matched_m_;
-  bool mapped_ = false;
-  double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_innovation_ = 0.0;
+  bool map_started_ = false;
+  double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
   double sigma_m_ = 0.0;  ///< of the newest sweep, relative to the map
   TimeNs newest_ns_ = 0;
-  std::optional<TimeNs> contradicted_ns_, before_ns_;  ///< the last two sweeps that surfaces corrected beyond the prior
+  std::optional<TimeNs> last_contradicted_ns_,
+      previous_contradicted_ns_;  ///< the last two sweeps that surfaces corrected beyond the prior
 };
 
 }  // namespace tumble

@@ -15,11 +15,11 @@ namespace tumble::mapping {
 /// therefore share line numbers. After a rotation of the sensor, the scan lines have new numbers.
 class ScanLines {
  public:
-  /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kNoLine if the device does not
-  /// report rings.
-  std::uint32_t base(const Eigen::Vector3d& spin_axis_W, bool rings_differ);
+  /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kUnknownScanLine if the device
+  /// does not report rings.
+  std::uint32_t base(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers);
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
-    return base == VoxelMap::kNoLine ? base : base | ring;
+    return base == VoxelMap::kUnknownScanLine ? base : base | ring;
   }
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
@@ -31,7 +31,7 @@ class ScanLines {
 
 /// Returns the points of a map, with normals fitted to nearest neighbours. Cost: O(n). Each normal points towards the
 /// position from which the sensor observed the point.
-std::vector<MapPoint> with_normals(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
-                                   double match_distance_m);
+std::vector<MapPoint> to_map_points(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
+                                    double match_distance_m);
 
 }  // namespace tumble::mapping

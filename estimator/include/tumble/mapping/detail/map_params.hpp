@@ -8,7 +8,7 @@ namespace tumble {
 
 /// Extent and resolution of the local map.
 struct LocalMapParams {
-  static constexpr double kPruneShare = 0.1;  ///< motion that deletes distant points, as a fraction of radius_m
+  static constexpr double kPruneRatio = 0.1;  ///< motion that deletes distant points, as a fraction of radius_m
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
   double spacing_m = 0.1;                     ///< edge of the cubes that contain at most one map point
   double radius_m = 100.0;                    ///< points within this distance of the sensor are kept
@@ -16,12 +16,13 @@ struct LocalMapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table", Rank::first});
+    visit(p.voxel_m,
+          {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table", FieldRank::basic});
     visit(
         p.spacing_m,
         {"map_spacing_m", "m", 0.0, 10.0,
          "edge length of the cube that stores at most one map point; a larger value makes the map smaller and coarser",
-         Rank::first});
+         FieldRank::basic});
     visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5,
                        "radius around the sensor within which map points are kept, accurate to 10 %"});
     visit(p.sigma_max_m, {"map_sigma_max_m", "m", 1e-6, 1e3,

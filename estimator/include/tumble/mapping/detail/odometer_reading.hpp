@@ -41,7 +41,7 @@ using OdometerReading = std::variant<VelocityReading, MotionReading>;
 /// motion does not end after its start.
 Status check_reading(const OdometerReading& reading);
 /// Return the start and the end of an odometer reading. A velocity reading has equal start and end.
-TimeNs begins_ns(const OdometerReading& reading);
-TimeNs ends_ns(const OdometerReading& reading);
+TimeNs reading_start_ns(const OdometerReading& reading);
+TimeNs reading_end_ns(const OdometerReading& reading);
 
 }  // namespace tumble

@@ -10,10 +10,10 @@ namespace tumble {
 
 /// Matching of a sweep with the map.
 struct MatchingParams {
-  int neighbours = 12;              ///< number k of neighbours of a plane fit
-  double distance_m = 1.0;          ///< maximum distance of matched map points
-  std::size_t least = 100;          ///< minimum number of matches; sweeps with fewer are rejected
-  std::size_t agreeing_least = 30;  ///< minimum number of matches if the result agrees with the prior
+  int neighbours = 12;                    ///< number k of neighbours of a plane fit
+  double distance_m = 1.0;                ///< maximum distance of matched map points
+  std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
+  std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
   /// Maximum number of iterations of a registration. At most eight iterations use all points. After eight iterations,
   /// the registration continues with a thousand points until convergence.
   int iterations_max = 30;
@@ -28,11 +28,11 @@ struct MatchingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", Rank::first});
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", FieldRank::basic});
     visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
-                         "maximum distance between a point and its matches in the map", Rank::first});
-    visit(p.least, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
-    visit(p.agreeing_least,
+                         "maximum distance between a point and its matches in the map", FieldRank::basic});
+    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
+    visit(p.agreeing_matches_min,
           {"matches_agreeing_min", "1", 1, 1e9,
            "with fewer matches: minimum number of matches for an accepted sweep that agrees with the prior"});
     visit(p.iterations_max,
@@ -120,8 +120,8 @@ struct TrackingParams {
 };
 
 /// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, sections 5 and 10.
-struct RelocalizationParams {
-  static constexpr double kLeastShift_m = 0.3, kLeastRotation_rad = 0.1;  ///< closer starts converge to one pose
+struct RelocalisationParams {
+  static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starts converge to one pose
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
   double deficit_try_rad_s = 3.0;  ///< smallest tried deficit; two, three and five times this value follow
   int starts_per_sweep = 3;        ///< number of starts after tracking failure, including the prior
@@ -139,8 +139,8 @@ struct RelocalizationParams {
     visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100,
                                "number of initial poses per sweep after a tracking failure, including the prior pose"});
     visit(p.shift_m,
-          {"shift_m", "m", kLeastShift_m, 100.0, "maximum position offset of these initial poses in the first round"});
-    visit(p.rotation_rad, {"rotation_rad", "rad", kLeastRotation_rad, 3.15,
+          {"shift_m", "m", kShiftMin_m, 100.0, "maximum position offset of these initial poses in the first round"});
+    visit(p.rotation_rad, {"rotation_rad", "rad", kRotationMin_rad, 3.15,
                            "maximum rotation offset of these initial poses in the first round"});
     visit(p.rounds, {"rounds", "1", 1, 100,
                      "number of rounds of initial poses; each round increases the maximum offsets by the same amount"});

@@ -14,7 +14,7 @@ namespace tumble {
 /// PriorMap is the map of an earlier run, in which a new run localises itself. M is the frame of the prior map. The z
 /// axis of M is vertical, as in every map of this library.
 struct PriorMap {
-  std::vector<MapPoint> points = {};  ///< points with normals, in M; see with_normals() for points without normals
+  std::vector<MapPoint> points = {};  ///< points with normals, in M; see to_map_points() for points without normals
   /// Pose of the IMU in M where the new run starts, if known. Position and heading are used. If empty, the run may
   /// start anywhere in the map, and the search covers the whole map.
   std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
@@ -33,6 +33,6 @@ Status check_prior_map(const PriorMap& map);
 /// Returns map points with normals for positions, for example of a PCD or PLY file. The plane fit is that of
 /// LidarInertialOdometry::map(). At most one point per cube of 0.1 m is kept. The sign of a normal is arbitrary, and
 /// `sigma_m` is the standard deviation of each position. Positions that are not finite are dropped. Cost: O(points).
-std::vector<MapPoint> with_normals(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
+std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
 
 }  // namespace tumble

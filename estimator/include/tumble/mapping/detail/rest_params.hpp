@@ -10,14 +10,14 @@ namespace tumble {
 /// rate_rad_s. At rest, the specific force differs from gravity and from its mean by at most force_m_s2. During the
 /// initial rest the robot is stationary, and the mean rate becomes the estimate of the gyro's bias.
 struct RestBoundsParams {
-  double levels_s = 0.5;  ///< maximum duration of the initial rest that is used for levelling
+  double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that is used for levelling
   double rate_rad_s = 0.05;
   double force_m_s2 = 0.5;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.levels_s, {"rest_s", "s", 1e-9, 60.0, "maximum part of the initial rest that is used to level the attitude",
-                       Rank::first});
+    visit(p.levelling_max_s, {"rest_s", "s", 1e-9, 60.0,
+                              "maximum part of the initial rest that is used to level the attitude", FieldRank::basic});
     visit(p.rate_rad_s,
           {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
            "at rest: maximum difference between the rate and the bias, and between the rate and its mean, per axis"});

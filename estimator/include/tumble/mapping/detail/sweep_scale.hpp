@@ -23,8 +23,8 @@ struct SweepScale {
   std::size_t changes = 0;  ///< number of compared velocity changes
 
   /// Returns whether the scale differs from 1 by more than 2 % and by more than five standard deviations.
-  bool is_off() const;
-  /// Returns `out_of_range` with the scale and the violated limit if is_off(), otherwise `ok`.
+  bool is_inconsistent() const;
+  /// Returns `out_of_range` with the scale and the violated limit if is_inconsistent(), otherwise `ok`.
   Status verdict() const;
 };
 
@@ -43,17 +43,17 @@ SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const 
 /// Estimates the lidar's range scale while samples and sweeps arrive, from the changes of velocity of the last minute,
 /// at most 1000. The estimate uses the first pose of each sweep and is therefore less accurate than an estimate from
 /// the final poses of a whole run.
-class SweepScaleWatch {
+class SweepScaleEstimator {
  public:
   /// Change is the change of velocity from one span to the next span.
   struct Change {
     TimeNs time_ns = 0;
-    Eigen::Vector3d by_imu_m_s = Eigen::Vector3d::Zero(), by_sweeps_m_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d imu_change_m_s = Eigen::Vector3d::Zero(), sweeps_change_m_s = Eigen::Vector3d::Zero();
   };
 
   /// Buffers `samples_max` samples, which should cover two seconds. If more than `samples_max` samples arrive between
   /// sweeps, nothing is compared.
-  SweepScaleWatch(double gravity_m_s2, std::size_t samples_max);
+  SweepScaleEstimator(double gravity_m_s2, std::size_t samples_max);
 
   /// Adds an IMU sample in time order, with its saturated axes flagged. The function does not allocate.
   void add(const ImuSample& sample);

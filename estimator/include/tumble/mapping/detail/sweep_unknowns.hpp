@@ -13,10 +13,11 @@ namespace tumble {
 /// (left perturbation in W) and velocity at the start of the trajectory, saturation deficit of clipped axes,
 /// calibration.
 struct SweepUnknowns {
-  static constexpr int kMotion = 9;         ///< position, attitude, velocity
-  static constexpr int kDeficit = kMotion;  ///< first unknown of the saturation deficit, knot after knot
-  static constexpr int kCalibration = kDeficit + SweepTrajectory::kDeficit;  ///< first unknown of the calibration
-  static constexpr int kUnknowns = kCalibration + SweepCalibration::kErrors;
+  static constexpr int kMotionSize = 9;              ///< position, attitude, velocity
+  static constexpr int kDeficitStart = kMotionSize;  ///< first unknown of the saturation deficit, knot after knot
+  static constexpr int kCalibrationStart =
+      kDeficitStart + SweepTrajectory::kDeficitSize;  ///< first unknown of the calibration
+  static constexpr int kUnknowns = kCalibrationStart + SweepCalibration::kErrorCount;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Deficit = SweepTrajectory::Deficit;
@@ -44,7 +45,7 @@ struct SweepUnknowns {
     Prior() = default;
     /// Constructs the prior from the motion state with its covariance; all other unknowns are fixed.
     explicit Prior(const MotionState& state) : mean{state, {}, Deficit::Zero()} {
-      covariance.topLeftCorner<kMotion, kMotion>() = state.covariance;
+      covariance.topLeftCorner<kMotionSize, kMotionSize>() = state.covariance;
     }
   };
 };

@@ -33,7 +33,7 @@ struct ImuFinding {
     rate_unit,       ///< rates are possibly not in rad/s
     rest_force,      ///< the force at rest has another magnitude than gravity (RestGravity)
     gravity_turn,    ///< gravity does not turn as the gyro measures, or a sensor is frozen (ImuPlausibility)
-    flight,          ///< forces in flight contradict lever arm, axes or signs (FlightSense)
+    flight,          ///< forces in flight contradict lever arm, axes or signs (FlightSignCheck)
     turn_at_rests,   ///< the rates do not turn gravity from one rest to the next rest (RestGravity)
     turn_at_pivots,  ///< the rates do not turn the body about pivots (PivotCheck)
     frozen_axis,     ///< `axis` repeats one reading (FrozenAxes)
@@ -47,9 +47,9 @@ struct ImuFinding {
 /// Findings about an IMU, and the measured quantities of the checks that ran.
 struct ImuFindings {
   struct Readings {
-    double rest_force_share = 1.0;  ///< RestGravity::size_share
+    double rest_force_share = 1.0;  ///< RestGravity::magnitude_error_ratio
     double force_share = 1.0;       ///< the following members: see ImuPlausibility
-    double unexplained_share = 0.0;
+    double unexplained_rotation_ratio = 0.0;
     double rotation_slope = 1.0, rotation_agreement = 1.0;
     double frozen_s = 0.0;
     std::optional<AxisLabels> better_axis_labels;

@@ -30,7 +30,7 @@ struct MappingInput {
   /// Returns the odometer reading for a sweep that ends at `to_ns`, after a sweep that ended at `from_ns`; may be
   /// empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
-  std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::start_at()
+  std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
 };
 
 /// Result of one sweep.

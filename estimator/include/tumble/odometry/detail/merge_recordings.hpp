@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/attitude/detail/unit_senses.hpp"
+#include "tumble/attitude/detail/unit_sign_check.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -50,9 +50,9 @@ struct MergedRecordings {
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, body axes
   std::vector<Unit> units;                                ///< units in use
   std::vector<UnitFault> faults;
-  std::size_t readings_excluded = 0;                ///< readings that ImuMerge excluded
-  std::optional<double> arm_share;                  ///< ImuMerge::arm_share
-  std::optional<UnitSenses::Detected> other_sense;  ///< axes of the units that ImuMerge found mislabelled
+  std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
+  std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
+  std::optional<UnitSignCheck::Detected> mislabelled_axes;  ///< axes of the units that ImuMerge found mislabelled
 };
 
 /// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording.

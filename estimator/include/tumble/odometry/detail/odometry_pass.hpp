@@ -37,8 +37,8 @@ class OdometryPass {
 
   /// Processes a sample like RegimeStream::push, and passes the rate that becomes available to the mapper.
   Status add_imu(const ImuSample& sample);
-  /// Sets the pose at which the map starts; see LidarInertialOdometry::start_at().
-  void start_at(const Eigen::Isometry3d& T_WI) { mapper_.start_at(T_WI); }
+  /// Sets the pose at which the map starts; see LidarInertialOdometry::set_start_pose().
+  void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
   /// Sets the prior map; see LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
   void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
@@ -55,20 +55,20 @@ class OdometryPass {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const;
 
   /// Converts a time of the lidar's clock to the IMU's clock.
-  TimeNs needed_ns(TimeNs lidar_ns) const;
+  TimeNs oldest_needed_ns(TimeNs lidar_ns) const;
   /// Reports all rates up to the first sample at or after `time_ns`, even if the lag is not full.
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
-  void begin_rates(const RegimeStream::Params& rate);
+  void start_rate_estimation(const RegimeStream::Params& rate);
   /// Replaces the map and all dependent state by that of `other`, including the sample buffers. The rate estimation of
   /// this OdometryPass continues after the last sample of `other`. `other` must not be used afterwards.
-  void take_map(OdometryPass&& other);
+  void adopt_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
   /// Returns `out_of_range` if the magnitude of the force at rest contradicts gravity.
-  Status force_at_rest() const { return gravity_.size_verdict(gravity_state_); }
+  Status check_force_at_rest() const { return rest_gravity_.magnitude_verdict(rest_gravity_state_); }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
@@ -81,20 +81,20 @@ class OdometryPass {
   Status check_state() const;
 
  private:
-  void take_rate(const RateState& rate);
+  void process_rate(const RateState& rate);
 
   RegimeStream rates_;
   RegimeStream::State rate_state_;
   LidarInertialOdometry mapper_;
-  SweepScaleWatch scale_;
+  SweepScaleEstimator scale_;
   Localisation localisation_;
   double rate_sigma_max_rad_s_, time_offset_s_;
   Queue pending_;  ///< samples whose rates are not yet available
   std::optional<RateState> smoothed_;
   std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper
   std::size_t rejected_samples_ = 0;
-  RestGravity gravity_;
-  RestGravity::Size gravity_state_;
+  RestGravity rest_gravity_;
+  RestGravity::MagnitudeState rest_gravity_state_;
 };
 
 }  // namespace tumble

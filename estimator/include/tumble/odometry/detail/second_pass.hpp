@@ -81,11 +81,11 @@ class SecondPass {
   /// Runs the second pass to its end, if the second pass has started.
   void complete(OdometryPass& first);
   /// Clears the buffer and disables the second pass.
-  void give_up();
+  void abandon();
 
-  bool under_way() const { return pass_.has_value(); }
+  bool is_running() const { return pass_.has_value(); }
   /// Returns whether the first pass received the map of the second pass.
-  bool taken() const { return taken_; }
+  bool applied() const { return applied_; }
 
   /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
@@ -106,30 +106,31 @@ class SecondPass {
 
   /// Returns the time from which motion is counted: the start of the motion, or the start of the sweeps if the lidar
   /// starts later. The motion must have started.
-  TimeNs counts_from_ns() const;
+  TimeNs buffer_start_ns() const;
   bool is_due() const;
-  bool first_is_lost() const;
+  bool first_pass_lost() const;
   bool begin(const OdometryPass& first);
   void run(OdometryPass& first, std::size_t sweeps);
-  void take_over(OdometryPass& first);
-  RegimeStream::Params lagging_rate() const;
+  void replace_first_pass(OdometryPass& first);
+  RegimeStream::Params delayed_rate_params() const;
   RegimeStream::Params calibrated_rate(const OdometryPass& first) const;
   LidarInertialOdometry::Params calibrated_mapping(const OdometryPass& first) const;
 
   Params params_;
   RegimeStream::Params rate_;
   LidarInertialOdometry::Params mapping_;
-  bool wanted_, taken_ = false;
-  RestDetector rests_;  ///< rest detection with the mapper's parameters
+  bool enabled_, applied_ = false;
+  RestDetector rest_detector_;  ///< rest detection with the mapper's parameters
   RestDetector::State rest_;
-  std::optional<TimeNs> moves_ns_;  ///< end of the initial rest
+  std::optional<TimeNs> motion_start_ns_;  ///< end of the initial rest
   OdometryPass::Queue samples_;
   std::deque<Sweep> sweeps_;
   std::optional<OdometryPass> pass_;
   std::size_t next_sample_ = 0, next_sweep_ = 0;
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
-  bool lost_ = false;                   ///< the second pass rejected its last sweep
-  bool early_ = false, tried_ = false;  ///< started due to tracking failure; a pass of this kind was tried
+  bool last_sweep_rejected_ = false;  ///< the second pass rejected its last sweep
+  bool started_by_tracking_failure_ = false,
+       early_pass_tried_ = false;  ///< started due to tracking failure; a pass of this kind was tried
 };
 
 }  // namespace tumble

@@ -36,7 +36,7 @@ class StampOrder {
 
   /// Judges a stamp. On an error, which is `out_of_range` beyond kStampMax_ns, `time_order` or `gap`, the sample must
   /// not be used. Otherwise `verdict` states whether the run must restart with this sample.
-  Status judge(TimeNs stamp_ns, State& state, Verdict& verdict) const;
+  Status classify_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
 
   /// Records that the sample with this stamp was used.
   static void accept(TimeNs stamp_ns, State& state);

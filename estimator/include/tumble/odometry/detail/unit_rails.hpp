@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -16,8 +16,8 @@ namespace tumble {
 
 /// Detects the saturation levels of several IMUs (units) on one body from their readings, causally. UnitRails flags
 /// readings that a device clips without reporting saturation, before ImuMerge processes the readings. Each unit has a
-/// RailWatch with the rule of ConfirmedSaturation. ClippingFinder applies the rule of ConfirmedSaturation to whole
-/// recordings.
+/// StreamingClippingFinder with the rule of ConfirmedSaturation. ClippingFinder applies the rule of ConfirmedSaturation
+/// to whole recordings.
 ///
 /// A sample is classified by the saturation levels that earlier samples revealed. The first two to ten samples at a
 /// saturation level are therefore not flagged. UnitRails does not report sensing directions of the units to ImuMerge.
@@ -25,7 +25,7 @@ class UnitRails {
  public:
   /// State of one unit.
   struct Unit {
-    RailWatch::State rails;
+    StreamingClippingFinder::State rails;
     std::optional<ImuSample> before;  ///< last finite sample
   };
   using State = std::array<Unit, ImuMerge::kImus>;
@@ -40,7 +40,7 @@ class UnitRails {
 
   /// Copies `samples`, one per unit, to `out` and sets the flags of saturated axes. The function does not allocate.
   /// Samples that are not finite are copied unchanged.
-  void flag(std::span<const ImuSample> samples, const State& state, Samples& out) const;
+  void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
   /// Updates the state with raw samples. Cost: O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
@@ -49,11 +49,11 @@ class UnitRails {
   Status check_state(const State& state) const;
 
  private:
-  struct Watched {
-    RailWatch watch;
+  struct UnitDetector {
+    StreamingClippingFinder watch;
     ImuSheet sheet;
   };
-  std::vector<Watched> units_;
+  std::vector<UnitDetector> units_;
 };
 
 }  // namespace tumble

@@ -23,14 +23,14 @@ struct WaitingSweep {
 class WaitingReadings {
  public:
   /// Maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second.
-  static constexpr std::size_t kMost = 1024;
+  static constexpr std::size_t kReadingsMax = 1024;
   /// Time by which a reading may extend beyond its sweep, because clocks differ.
-  static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
+  static constexpr auto kExtrapolation_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
 
   /// Stores a reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end of the
   /// last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the reading's
   /// sweep is already registered, or `out_of_range` (too late, or more than `most` waiting readings).
-  Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kMost);
+  Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kReadingsMax);
 
   /// Returns the reading of the sweep from `from_ns` to `end_ns`. If the sweep has several readings, only the last
   /// reading is returned, because the errors of the readings are correlated. The function deletes all readings up to
@@ -41,7 +41,7 @@ class WaitingReadings {
   std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
   /// Returns the number of dropped readings that span two sweeps.
-  std::size_t straddling() const { return straddling_; }
+  std::size_t spanning_two_sweeps() const { return spanning_two_sweeps_; }
 
   /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
@@ -49,7 +49,7 @@ class WaitingReadings {
 
  private:
   std::deque<OdometerReading> waiting_;  ///< waiting readings in the order of their middle times
-  std::size_t straddling_ = 0;
+  std::size_t spanning_two_sweeps_ = 0;
 };
 
 }  // namespace tumble

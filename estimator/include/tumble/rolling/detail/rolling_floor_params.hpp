@@ -25,15 +25,15 @@ struct RollingContactParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
-                             "standard deviation of the contact velocity while gripping", Rank::first});
+                             "standard deviation of the contact velocity while gripping", FieldRank::basic});
     visit(p.grip_sigma_share,
           {"grip_sigma_share", "1", 1e-12, 1e3, "additional standard deviation, as a share of the rolling speed"});
     visit(p.vertical_sigma_m_s,
           {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of the vertical velocity while rolling"});
-    visit(
-        p.rough_share,
-        {"rough_share", "1", 1e-12, 1e3,
-         "standard deviation of the vertical velocity on a rough floor, as a share of the rolling speed", Rank::first});
+    visit(p.rough_share,
+          {"rough_share", "1", 1e-12, 1e3,
+           "standard deviation of the vertical velocity on a rough floor, as a share of the rolling speed",
+           FieldRank::basic});
     visit(p.rough_radius_walk_m_sqrts, {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0,
                                         "random walk of the effective rolling radius on a rough floor"});
     visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope when it begins"});
@@ -69,24 +69,25 @@ struct RollingModeParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.slip_begins_per_s,
-          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", Rank::first});
+          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", FieldRank::basic});
     visit(p.slip_ends_per_s,
-          {"slip_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slip to grip", Rank::first});
+          {"slip_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slip to grip", FieldRank::basic});
     visit(p.bump_begins_per_s,
-          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", Rank::first});
+          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", FieldRank::basic});
     visit(p.bump_ends_per_s,
-          {"bump_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from bump to grip", Rank::first});
+          {"bump_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from bump to grip", FieldRank::basic});
     visit(p.slip_bump_per_s,
           {"slip_bump_per_s", "1/s", 1e-12, 1e3, "rate of transitions between slip and bump, each way"});
-    visit(p.incline_begins_per_s,
-          {"incline_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from level floor to slope", Rank::first});
+    visit(p.incline_begins_per_s, {"incline_begins_per_s", "1/s", 1e-12, 1e3,
+                                   "rate of transitions from level floor to slope", FieldRank::basic});
     visit(p.incline_ends_per_s,
           {"incline_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slope to level floor"});
     visit(p.rough_begins_per_s,
           {"rough_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from smooth to rough floor"});
     visit(p.rough_ends_per_s,
           {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from rough to smooth floor"});
-    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "minimum duration of a slip or bump", Rank::first});
+    visit(p.event_shortest_s,
+          {"event_shortest_s", "s", 0.0, 10.0, "minimum duration of a slip or bump", FieldRank::basic});
     visit(p.uncertain_m,
           {"uncertain_m", "m", 1e-12, 1e3,
            "an event is reported as uncertain if the horizontal standard deviation grows by more than this"});

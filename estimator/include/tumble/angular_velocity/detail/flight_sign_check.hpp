@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "tumble/common/detail/imu_average.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro. FlightSignCheck is
+/// needed because mirrored forces (all three axes flipped, one axis flipped, two axes swapped) change neither gravity
+/// at rest nor its rotation.
+///
+/// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with the rate w and the
+/// angular acceleration a. FlightSignCheck compares the readings with the force of free flight, for the true sensor and
+/// for each alternative in `kAlternatives`. If an alternative agrees within `share` for `run_s`, the flight time of the
+/// alternative increases. On the ground, readings do not agree with free flight for `run_s`. If one axis of the gyro is
+/// saturated, the force along the lever arm determines the rate of the saturated axis. The force along the lever arm is
+/// -|w x t|^2 for any angular acceleration. The remaining two components of the force verify that the body is in
+/// flight.
+///
+/// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
+/// hand-held, FlightSignCheck therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated
+/// rates. FlightSignCheck does not detect wrong sensors if the body never flies while spinning, the IMU is at the
+/// centre of mass, or two gyro axes clip in all flights. A lever arm with the wrong sign looks like an inverted
+/// accelerometer.
+class FlightSignCheck {
+ public:
+  static constexpr double kMemory_s = 60.0;
+
+  /// Number of alternatives, and index of the gyro with half scale. Alternative 0 is the true sensor. Errors of the
+  /// accelerometer follow, then errors of the gyro: all axes flipped, one axis flipped, two axes swapped.
+  static constexpr std::size_t kAlternatives = 17, kHalfScaleGyro = 16;
+
+  enum class Body { may_be_hand_held, thrown };
+
+  struct Params {
+    Body body = Body::may_be_hand_held;
+    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the IMU, IMU axes
+    double gyro_range_rad_s = 0.0;                          ///< stated by the device; 0: not stated
+    double reading_s = 0.01;                                ///< averaging time of readings
+    double force_min_m_s2 = 2.5;                            ///< minimum force of free flight at the lever arm
+    double share = 0.25;                                    ///< tolerance as a fraction of the force of free flight
+    double run_s = 0.02;                                    ///< minimum duration of agreement
+    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor
+    double half_scale_flight_s = 0.3;                       ///< minimum total flight time of a half-scale gyro
+    double alternative_evidence_ratio = 4.0;  ///< minimum ratio of an alternative's flight time to the true sensor's
+    double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is not hand-held
+    double gap_max_s = 0.1;                   ///< a longer gap resets the current run
+
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.lever_arm_m,
+            {"lever_arm_m", "m", -1e3, 1e3, "lever arm: vector from the centre of mass to the IMU, IMU axes"});
+      visit(p.gyro_range_rad_s,
+            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
+      visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
+      visit(p.force_min_m_s2,
+            {"force_min_m_s2", "m/s^2", 1e-3, 1e6,
+             "minimum force that the rotation causes at the lever arm; readings with a smaller force are ignored"});
+      visit(p.share, {"share", "1", 1e-3, 0.9,
+                      "maximum difference between the measured force and the force predicted for flight, as a share of "
+                      "the predicted force"});
+      visit(p.run_s, {"run_s", "s", 0.0, 10.0, "minimum duration of a flight; shorter flights are ignored"});
+      visit(p.alternative_flight_s,
+            {"alternative_flight_s", "s", 0.0, 1e3,
+             "a fault is reported if another sensor orientation explains at least this much flight time"});
+      visit(p.half_scale_flight_s,
+            {"half_scale_flight_s", "s", 0.0, 1e3,
+             "a fault is reported if twice the measured rate explains at least this much flight time"});
+      visit(p.alternative_evidence_ratio, {"alternative_evidence_ratio", "1", 0.0, 1e6,
+                                           "minimum ratio for a fault: flight time explained by the other orientation "
+                                           "over that explained by the stated one"});
+      visit(p.thrown_evidence_ratio,
+            {"thrown_evidence_ratio", "1", 0.0, 1e6, "minimum ratio for a fault if the body is not hand-held"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap between two samples ends the flight"});
+    }
+  };
+  /// Reading is one averaged IMU reading.
+  struct Reading {
+    TimeNs time_ns = 0;
+    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
+    /// Sign of each saturated gyro axis; 0 for an unsaturated axis.
+    Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
+    bool known = false;  ///< false if an axis was saturated for a part of the window
+    bool operator==(const Reading&) const = default;
+  };
+  struct State {
+    ImuAverage average;
+    std::array<Reading, 2> before{};                        ///< last but one and last reading
+    int readings = 0;                                       ///< consecutive readings, at most two
+    std::array<double, kAlternatives> run_s{};              ///< current flight duration of each alternative
+    std::array<double, kAlternatives> flight_duration_s{};  ///< total flight duration of each alternative
+    TimeNs last_flight_end_ns = 0;                          ///< end of the last flight of an alternative
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit FlightSignCheck(const Params& params);
+
+  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
+  void step(const ImuSample& sample, State& state) const;
+
+  /// Returns `out_of_range` if the flights match a sensor with wrong signs, axes or scale.
+  Status verdict(const State& state) const;
+  /// Returns verdict() until the last flight of an alternative is kMemory_s old.
+  Status current_verdict(const State& state) const;
+
+ private:
+  Reading reading_of(const ImuSample& mean, double rate_peak_rad_s) const;
+  void process_reading(const Reading& now, State& state) const;
+
+  Params params_;
+};
+
+}  // namespace tumble

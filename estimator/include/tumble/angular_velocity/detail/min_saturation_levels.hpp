@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace tumble {
+
+/// MinSaturationLevels contains lower bounds of the saturation levels, per sensing element and sign. No reading exceeds
+/// its saturation level, see rails.md (R75).
+class MinSaturationLevels {
+ public:
+  void add(const Eigen::Vector3d& rate_rad_s);
+  /// Returns whether a reading of element `axis` is below any possible saturation level of the element for the sign of
+  /// the reading. The margin covers the tilt and the noise of saturation levels.
+  bool rules_out(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
+  bool operator==(const MinSaturationLevels&) const = default;
+
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit) {
+    visit("least_rails", s.rad_s_);
+  }
+
+ private:
+  std::array<Eigen::Vector3d, 2> rad_s_{Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero()};  // negative side, positive side
+};
+
+}  // namespace tumble

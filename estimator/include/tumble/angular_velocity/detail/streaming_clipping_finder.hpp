@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Detects saturation levels and planes of gyro and accelerometer from all readings so far. StreamingClippingFinder is
+/// the causal form of ClippingFinder.
+///
+/// For gyro and accelerometer, StreamingClippingFinder stores up to `readings_max` distinct readings each. The latest
+/// readings and readings near the extremes have priority. The search for saturation planes is that of ClippingFinder.
+/// StreamingClippingFinder searches after each segment of readings near an extreme. Within a segment,
+/// StreamingClippingFinder also searches whenever the number of readings near the extremes has grown by an eighth. A
+/// run of n readings at the extreme therefore needs O(log n) searches instead of n searches. A saturation plane remains
+/// valid after its readings were dropped, until readings contradict the plane. StreamingClippingFinder detects
+/// saturation some samples after the saturation first occurs, so users must classify the samples before the detection
+/// again. The limitations of RailPlaneFinder apply to StreamingClippingFinder.
+class StreamingClippingFinder {
+ public:
+  struct Params {
+    ClippingFinder::Params clipping;
+    int readings_max = 1024;
+
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.clipping);
+      visit(p.readings_max, {"readings_max", "1", 64, 65536, "maximum number of distinct readings stored per triad"});
+    }
+  };
+  /// Stored readings of one sensor (gyro or accelerometer), rad/s or m/s^2.
+  struct Memory {
+    std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
+    Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
+    std::size_t near = 0,
+                unsearched_near_extremes = 0;  ///< number of readings near the extremes; number not yet searched
+    std::size_t samples_since_search = 0;      ///< readings near the extremes since the last search
+    bool pruned = false;                       ///< readings were dropped
+    bool operator==(const Memory&) const = default;
+  };
+  struct State {
+    SaturationLevels known;
+    std::array<Memory, 2> memory;     ///< gyro and accelerometer
+    RailPlaneFinder::Workspace work;  ///< buffer, not part of the state
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit StreamingClippingFinder(const Params& params);
+
+  /// Returns the state before the first sample, with all memory that observe() needs.
+  State start() const;
+
+  /// Updates the state with one finite sample. Cost: O(1), sometimes a search. Returns whether the known saturation
+  /// levels or planes changed.
+  bool observe(const ImuSample& sample, State& state) const;
+
+  /// Classifies a finite sample by the saturation levels found so far and by the flags of the device. Cost: O(1).
+  /// `before` and `after` are the neighbours of the sample, null at the ends. The neighbours reveal saturation during a
+  /// part of the sample's window.
+  Clipping classify(const ImuSample* before, const ImuSample& sample, const State& state,
+                    const ImuSample* after = nullptr) const;
+
+  const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
+
+  /// Returns whether two states will give identical results, bit for bit.
+  static bool equal(const State& a, const State& b);
+
+  /// Returns whether a state that was loaded from a file fits into the preallocated memory.
+  bool has_room_for(const State& state) const;
+
+ private:
+  void store(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
+  bool is_near(const Eigen::Vector3d& reading, Triad triad, const Memory& memory, double share) const;
+  bool observe(const Eigen::Vector3d& reading, Triad triad, State& state) const;
+  RailPlanes search(Triad triad, State& state) const;
+
+  RailDetector axis_aligned_rails_;
+  std::array<std::array<RailPlaneFinder, 2>, 2> planes_;  // gyro and accelerometer, as in ClippingFinder
+  std::size_t readings_max_;
+};
+
+}  // namespace tumble

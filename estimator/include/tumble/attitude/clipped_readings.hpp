@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// ClippedReadings contains the clipped sensing elements of each sample of a recording, as input of HandHeldSmoother.
+/// The function to_clipped_readings() finds clipped elements from flags of the device, and from plateaus and tilted
+/// planes in the readings.
+struct ClippedReadings {
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements, one per row
+  std::vector<ClipSigns> signs;                        ///< one per sample
+  std::vector<std::uint8_t> near;                      ///< one per sample: bits of may_meet_rails()
+
+  ClippedElements clipped() const { return {rows, signs}; }
+
+  /// Treats unclipped gyro readings that may be saturated at an unknown level as lower bounds instead of measurements.
+  /// `axes` contains one byte per sample; bit j is set if the reading of axis j may be saturated.
+  void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
+
+  /// Marks a rate as a lower bound if its reading may have been saturated during a part of the averaging window.
+  /// `rates` contains one rate per sample.
+  void mark_partly_saturated(std::span<RateState> rates) const;
+};
+
+/// Converts the result of a ClippingFinder to the input of HandHeldSmoother. Cost: O(N).
+ClippedReadings to_clipped_readings(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
+
+}  // namespace tumble

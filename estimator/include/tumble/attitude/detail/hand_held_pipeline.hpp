@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
+#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. HandHeldPipeline detects
+/// the saturation levels that HandHeldStream needs as input. After each detection of a saturation level,
+/// HandHeldPipeline processes the window again. HandHeldPipeline does not model flight and contact; RegimeStream
+/// distinguishes flight and contact from hand-held motion.
+class HandHeldPipeline {
+ public:
+  struct Params {
+    HandHeldStream::Params stream;
+    StreamingClippingFinder::Params rails;
+
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.stream);
+      visit.group("clipping_", p.rails);
+    }
+  };
+  struct State {
+    HandHeldStream::State stream;
+    StreamingClippingFinder::State rails;
+    RepeatDetector::State repeat_state;
+    bool levels_changed = false;   ///< whether the last sample changed the known saturation levels
+    std::vector<ClipSigns> signs;  ///< buffer, not part of the state
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit HandHeldPipeline(const Params& params);
+
+  /// Returns the state before the first sample.
+  State start() const;
+
+  /// Processes one sample. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills.
+  /// On error (`non_finite`, `time_order`, `gap`) the saturation levels are unchanged and `out` is empty.
+  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
+
+  /// Appends the rates of all samples that are not yet reported to `out`, oldest first.
+  void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
+
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  Status check_state(const State& state) const;
+
+ private:
+  void classify_window(const ImuSample& next, State& state) const;
+
+  HandHeldStream stream_;
+  StreamingClippingFinder watch_;
+};
+
+}  // namespace tumble

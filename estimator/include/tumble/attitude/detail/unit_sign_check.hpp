@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace tumble {
+
+/// Detects wrong axes that all units share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
+/// UnitSignCheck compares force differences between units at different positions of one rigid body, summed over a whole
+/// run. See imu_merge.md (I9).
+struct UnitSignCheck {
+  static constexpr std::size_t kAlternatives =
+      12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
+  static constexpr double kEffectMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases
+  static constexpr double kExplainedRatioMin =
+      0.5;  ///< 1: the alternative explains all; -1: the unchanged axes explain all
+
+  std::array<double, kAlternatives> explained_m2_s3{}, effect_m2_s3{};
+
+  /// Adds the readings of one unit over `length_s`, in common axes. Cost: O(1), no allocation. `force_m_s2` and
+  /// `position_m` are the unit's force and position, both relative to the mean of all units.
+  void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
+           const Eigen::Vector3d& acceleration_rad_s2, double length_s);
+
+  struct Detected {
+    std::size_t sense = 0;
+    double share = 0.0;
+  };
+  /// Returns the alternative that explains most, if the alternative explains more than kExplainedRatioMin.
+  std::optional<Detected> detected() const;
+
+  bool operator==(const UnitSignCheck&) const = default;
+};
+
+}  // namespace tumble

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream uses
+/// the factors of HandHeldSmoother over a window of nodes, and makes one Gauss-Newton step per node.
+///
+/// The oldest node is marginalised into a Gaussian prior on the next node and on the device's constants. Each rate is
+/// reported when its sample is `lag_s` old. The window `window_s` is longer than the lag, so that nodes older than the
+/// lag are relinearised in each step. The lag `lag_s` is converted to a number of samples of `period_s`. If samples are
+/// further apart than `period_s`, a node may leave the window before its rate is reported; the rate is then stored. The
+/// function start() allocates all memory. A run that is split and continues from the State gives bit-identical results.
+///
+/// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
+/// for each fifth node only. The initial attitude comes from a single force reading, not from a filter. The density of
+/// the hand's acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
+/// Nodes in the window have no influence on the density of the hand's acceleration. HandHeldStream does not test
+/// whether a clipped segment has an additional full revolution. The rate covariance instead includes the error of one
+/// additional revolution (C42, C43 of carried.md). The counter `revolutions_ambiguous` counts segments that may contain
+/// an additional revolution. Readings that have left the window are not classified again when a saturation level is
+/// detected later. The prior from marginalised nodes uses the assumed jerk, but reported covariances use the increased
+/// jerk
+/// (`jerk_inflation`).
+///
+/// Cost: each new node costs one Gauss-Newton step, O(window).
+class HandHeldStream {
+ public:
+  struct Params {
+    HandHeldSmoother::Params body;  ///< `iterations_max` is not used here
+    double period_s = 0.01;         ///< nominal time between samples
+    double lag_s = 0.2;
+    double window_s = 0.6;
+
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.body);
+      visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
+      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
+                      "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
+                      "more accurate"});
+      visit(p.window_s,
+            {"window_s", "s", 1e-3, 20.0, "length of the sliding window; a longer window costs more computing time"});
+    }
+  };
+
+  /// Reading is one IMU sample of the window, with its clip signs.
+  struct Reading {
+    ImuSample sample;
+    ClipSigns signs;
+    double centre_s = 0.0, end_s = 0.0;  ///< centre and end of the sample's window, from the first sample's centre
+    std::int64_t node = 0;               ///< node closest to the centre
+    bool rest = false;
+    RepeatedReading gyro, accel;        ///< state of repeated readings
+    std::optional<RateState> smoothed;  ///< rate of a sample whose node has left the window, not yet reported
+  };
+  struct Knot {
+    hand_held::Node node;
+    hand_held::NodeReadings readings;
+  };
+  struct State {
+    std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
+    std::vector<Knot> window;       ///< oldest first
+    std::int64_t first_node = 0;    ///< number of the oldest node
+    Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+    hand_held::Constants constants;
+    hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
+    // Gaussian prior on the oldest node and on the constants, from all data that have left the window. The prior is
+    // linearised at `prior_node` and `prior_constants`.
+    hand_held::System::Block prior;
+    hand_held::System::Corner prior_corner;
+    hand_held::Node prior_node;
+    hand_held::Constants prior_constants;
+    double acceleration_power_ratio =
+        1.0;  ///< measured acceleration power of marginalised nodes, relative to the assumed power
+    RestDetector::State rests;
+    std::int64_t reported_node = -1;  ///< node of the last reported estimate, and its covariance
+    Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    std::int64_t start_ns = 0;
+    std::size_t samples = 0;
+    std::size_t failures = 0;  ///< number of Gauss-Newton steps skipped because the system was not positive definite
+    /// Duration of the current clipped segment of each gyro element up to the last reported sample, and integral of the
+    /// rate's standard deviation.
+    Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
+    std::size_t revolutions_ambiguous =
+        0;  ///< number of segments in which an additional revolution could not be excluded
+    std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit HandHeldStream(const Params& params);
+
+  /// Returns the state before the first sample, with all memory that push() needs.
+  State start() const;
+  /// Resets `state` to the state before the first sample, and reuses the allocated memory. The counters in `state` keep
+  /// their values.
+  void restart(State& state) const;
+
+  /// Processes one sample, and computes the rate of the sample that is `lag_s` old. `known` contains the current clip
+  /// signs of the newest samples; the last entry belongs to `sample`. Samples of the window whose clip signs changed
+  /// are processed again. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills,
+  /// or if `wanted` is false. If `wanted` is false, no rate is computed, which saves most of the computation.
+  /// `repeated` describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time
+  /// when the sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`,
+  /// `out_of_range` (no signs) or `degenerate` (sensing directions that do not span the axes). On error `state` is
+  /// unchanged and `out` is empty.
+  Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
+              bool wanted = true, const RepeatDetector::State& repeated = {}) const;
+
+  /// Appends the rates of all samples that are not yet reported to `out`, oldest first.
+  void flush(const State& state, std::vector<RateState>& out) const;
+
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  Status check_state(const State& state) const;
+
+ private:
+  Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
+  void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
+  void add(const Reading& reading, State& state) const;
+  bool reclassify(const ClippedElements& known, State& state) const;
+  void rebuild(State& state) const;
+  hand_held::Node begin(const State& state) const;
+  void predict(const hand_held::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
+  void predict_newest(State& state) const;
+  hand_held::ReadingNoise adapted_noise(const State& state) const;
+  std::size_t first_unreported(const State& state) const;
+  void store_oldest_rates(State& state) const;
+  void prune_output_samples(State& state) const;
+  void marginalise_oldest(State& state) const;
+  double hand(const State& state) const;
+  void add_prior(const State& state, hand_held::System::Block& block, hand_held::System::Corner& corner) const;
+  bool factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
+                 hand_held::System::BorderVector& step) const;
+  bool step(State& state) const;
+  void extend(State& state) const;
+  RateState compute_report(std::size_t at, bool due, bool factorised, State& state) const;
+  void report_rates(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
+  void count_revolutions(std::size_t at, const RateState& rate, State& state) const;
+  RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
+
+  Params params_;
+  RestDetector rest_detector_;
+  hand_held::Motion motion_, inflated_;
+  hand_held::ReadingNoise noise_;
+  Eigen::Vector3d g_W_m_s2_;
+  std::size_t nodes_max_, readings_max_, delay_;
+};
+
+}  // namespace tumble

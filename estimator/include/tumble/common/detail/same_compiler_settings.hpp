@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+/// A program must lay out Eigen's matrices and the standard library's containers as the compiled library does. If the
+/// layouts differ, program and library misread each other's memory. The CMake targets of the library ensure equal
+/// layouts. A program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or
+/// _GLIBCXX_DEBUG, does not link. The linker then reports SameCompilerSettings<...>::linked as missing, and the
+/// template arguments show the settings of the program.
+namespace tumble::detail {
+
+#ifdef _GLIBCXX_DEBUG
+inline constexpr bool kCheckedContainers = true;
+#else
+inline constexpr bool kCheckedContainers = false;
+#endif
+
+#ifdef EIGEN_DEFAULT_TO_ROW_MAJOR
+inline constexpr bool kRowMajor = true;
+#else
+inline constexpr bool kRowMajor = false;
+#endif
+
+template <int eigen_static_alignment, bool eigen_malloc_is_aligned, bool eigen_row_major, std::size_t eigen_index_bytes,
+          bool checked_containers>
+struct SameCompilerSettings {
+  static const char linked;
+};
+
+using CompiledHere = SameCompilerSettings<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0, kRowMajor,
+                                          sizeof(Eigen::Index), kCheckedContainers>;
+
+template <>
+const char CompiledHere::linked;  // a declaration; src/common/same_compiler_settings.cpp has the definition
+
+/// Each source file of the program has a separate reference to `linked`, so that the linker checks each source file.
+[[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::linked;
+
+}  // namespace tumble::detail

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/flight_sign_check.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
+
+namespace tumble {
+
+namespace {
+
+// Minimum duration of flight for the detection of a half-scale gyro. With doubled rates, hand-held motion can look like
+// flight for 0.05 s. Real flights last longer.
+constexpr double kHalfScaleRun_s = 0.08;
+constexpr double kAcross = 0.05;    // minimum squared lever arm across a saturated axis, as a fraction
+constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
+
+struct Axes {
+  std::array<int, 3> axis;
+  std::array<double, 3> factor;
+
+  Eigen::Vector3d of(const Eigen::Vector3d& reading) const {
+    return {factor[0] * reading[axis[0]], factor[1] * reading[axis[1]], factor[2] * reading[axis[2]]};
+  }
+};
+
+constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, kYFlipped{{0, 1, 2}, {1, -1, 1}},
+    kZFlipped{{0, 1, 2}, {1, 1, -1}}, kFlipped{{0, 1, 2}, {-1, -1, -1}}, kXYSwapped{{1, 0, 2}, {1, 1, 1}},
+    kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
+    kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
+
+/// Conversion of readings under a hypothesis about sign, axis order or scale of a sensor.
+struct Sense {
+  Axes force, rate;
+  const char* name;
+};
+
+constexpr std::array<Sense, FlightSignCheck::kAlternatives> kSensors = {{
+    {kAsRead, kAsRead, "flight time in s"},
+    {kFlipped, kAsRead, "flight time in s that a sign error of the accelerometer explains"},
+    {kXFlipped, kAsRead, "flight time in s that a sign error of accelerometer axis x explains"},
+    {kYFlipped, kAsRead, "flight time in s that a sign error of accelerometer axis y explains"},
+    {kZFlipped, kAsRead, "flight time in s that a sign error of accelerometer axis z explains"},
+    {kXYSwapped, kAsRead, "flight time in s that exchanged accelerometer axes x and y explain"},
+    {kYZSwapped, kAsRead, "flight time in s that exchanged accelerometer axes y and z explain"},
+    {kZXSwapped, kAsRead, "flight time in s that exchanged accelerometer axes z and x explain"},
+    {kAsRead, kFlipped, "flight time in s that a sign error of the gyro explains"},
+    {kAsRead, kXFlipped, "flight time in s that a sign error of gyro axis x explains"},
+    {kAsRead, kYFlipped, "flight time in s that a sign error of gyro axis y explains"},
+    {kAsRead, kZFlipped, "flight time in s that a sign error of gyro axis z explains"},
+    {kAsRead, kXYSwapped, "flight time in s that exchanged gyro axes x and y explain"},
+    {kAsRead, kYZSwapped, "flight time in s that exchanged gyro axes y and z explain"},
+    {kAsRead, kZXSwapped, "flight time in s that exchanged gyro axes z and x explain"},
+    {kAsRead, kHalf, "flight time in s that a gyro with twice the true scale explains"},
+    {kAsRead, kTwice, "flight time in s that a gyro with half the true scale explains"},
+}};
+
+/// Converts a reading to the reading of a sensor with the hypothetical sign, axis order or scale: imu_merge.md (I32).
+/// `known` is true if the centripetal equation |w x t|^2 = -f t determines the rate of a saturated axis, beyond the
+/// saturation level.
+FlightSignCheck::Reading as_read(const FlightSignCheck::Reading& reading, const Sense& sense,
+                                 const Eigen::Vector3d& t) {
+  FlightSignCheck::Reading out = reading;
+  out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
+  out.force_m_s2 = sense.force.of(reading.force_m_s2);
+  out.at_rail = sense.rate.of(reading.at_rail);
+  if (!reading.known || reading.at_rail.isZero(0.0)) return out;
+  int axis = 0;
+  out.at_rail.cwiseAbs().maxCoeff(&axis);
+  const double sign = out.at_rail[axis];
+  Eigen::Vector3d others = out.rate_rad_s;
+  others[axis] = 0.0;
+  const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis).cross(t), rest = others.cross(t);
+  const double a = unit.squaredNorm(), b = unit.dot(rest), c = rest.squaredNorm() + out.force_m_s2.dot(t);
+  const double root = b * b - a * c;
+  out.known = reading.at_rail.cwiseAbs().sum() == 1.0 && a >= kAcross * t.squaredNorm() && root >= 0.0;
+  if (!out.known) return out;
+  const double rate = (-b + (sign > 0.0 ? 1.0 : -1.0) * std::sqrt(root)) / a, read = out.rate_rad_s[axis];
+  out.known = rate * read > 0.0 && std::abs(rate) >= (1.0 - kBelowRail) * std::abs(read);
+  out.rate_rad_s[axis] = rate;
+  return out;
+}
+
+/// Returns whether the middle reading of three agrees with flight under a hypothesis about the sensor: imu_merge.md
+/// (I31).
+bool flies(const Sense& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
+           const FlightSignCheck::Params& params) {
+  const Eigen::Vector3d& t = params.lever_arm_m;
+  const FlightSignCheck::Reading first = as_read(readings[0], sense, t), middle = as_read(readings[1], sense, t),
+                                 last = as_read(readings[2], sense, t);
+  if (!first.known || !middle.known || !last.known) return false;
+  const double dt_s = seconds(last.time_ns - first.time_ns);
+  const Eigen::Vector3d &w = middle.rate_rad_s, alpha = (last.rate_rad_s - first.rate_rad_s) / dt_s;
+  const Eigen::Vector3d expected = alpha.cross(t) + w.cross(w.cross(t));
+  const double size = expected.norm();
+  return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
+}
+
+/// Returns whether the body's motion allows the test of a hypothesis about the sensor. For a body that may be
+/// hand-held, FlightSignCheck tests only the clearest hypotheses.
+bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
+  constexpr std::size_t kSound = 0, kFlippedForce = 1;
+  return body == FlightSignCheck::Body::thrown || sense == kSound || sense == kFlippedForce ||
+         sense == FlightSignCheck::kHalfScaleGyro;
+}
+
+}  // namespace
+
+FlightSignCheck::FlightSignCheck(const Params& params) : params_(params) {
+  require_valid_fields(params);
+}
+
+void FlightSignCheck::step(const ImuSample& sample, State& state) const {
+  if (!check_sample(sample).ok()) return;
+  if (state.started && sample.time_ns <= state.last_time_ns) return;
+  const double dt_s = state.started ? seconds(sample.time_ns - state.last_time_ns) : 0.0;
+  const bool follows = state.started && dt_s <= params_.gap_max_s;
+  state.started = true;
+  state.last_time_ns = sample.time_ns;
+  if (!follows) {
+    state.average = {};
+    state.readings = 0;
+    state.run_s = {};
+    return;
+  }
+  state.average.add(sample, dt_s);
+  if (!state.average.full(params_.reading_s, dt_s)) return;
+  const ImuSample& mean = state.average.mean;
+  process_reading(reading_of(mean, state.average.rate_peak_rad_s), state);
+  state.average = {};
+}
+
+FlightSignCheck::Reading FlightSignCheck::reading_of(const ImuSample& mean, double rate_peak_rad_s) const {
+  Reading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(), true};
+  const double rail = params_.gyro_range_rad_s == 0.0 ? kUnbounded : (1.0 - kNearRailRatio) * params_.gyro_range_rad_s;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool flagged = (mean.device_clip_flags & (kClipGyroX << axis)) != 0;
+    if (flagged || std::abs(out.rate_rad_s[axis]) >= rail) out.at_rail[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
+  }
+  const bool by_the_force = params_.body == Body::thrown && !out.at_rail.isZero(0.0);
+  out.known = by_the_force || (rate_peak_rad_s < rail && out.at_rail.isZero(0.0));
+  return out;
+}
+
+/// Classifies the reading before `now`. The neighbouring readings determine the angular acceleration at that reading.
+void FlightSignCheck::process_reading(const Reading& now, State& state) const {
+  const auto [first, middle] = state.before;
+  state.before = {middle, now};
+  if (state.readings < 2) {
+    ++state.readings;
+    return;
+  }
+  const double dt_s = seconds(now.time_ns - first.time_ns);
+  for (std::size_t sense = 0; sense < kAlternatives; ++sense) {
+    if (!is_tested(sense, params_.body)) continue;
+    if (!flies(kSensors[sense], {first, middle, now}, params_)) {
+      state.run_s[sense] = 0.0;
+      continue;
+    }
+    state.run_s[sense] += 0.5 * dt_s;
+    if (state.run_s[sense] < (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
+      continue;
+    state.flight_duration_s[sense] += 0.5 * dt_s;
+    if (sense != 0) state.last_flight_end_ns = now.time_ns;
+  }
+}
+
+Status FlightSignCheck::current_verdict(const State& state) const {
+  const bool old =
+      check_stamp_order(state.last_time_ns, state.last_flight_end_ns, kMemory_s).error_code == ErrorCode::gap;
+  return old ? Status{} : verdict(state);
+}
+
+Status FlightSignCheck::verdict(const State& state) const {
+  const bool thrown = params_.body == Body::thrown;
+  const double sound_s =
+      (thrown ? params_.thrown_evidence_ratio : params_.alternative_evidence_ratio) * state.flight_duration_s[0];
+  std::size_t longest = 0;
+  double most_s = 0.0;
+  for (std::size_t sense = 1; sense < kAlternatives; ++sense) {
+    const double bound_s =
+        std::max(sense == kHalfScaleGyro ? params_.half_scale_flight_s : params_.alternative_flight_s, sound_s);
+    if (state.flight_duration_s[sense] <= bound_s || state.flight_duration_s[sense] <= state.flight_duration_s[longest])
+      continue;
+    longest = sense;
+    most_s = bound_s;
+  }
+  if (longest == 0) return {};
+  return {ErrorCode::out_of_range, kSensors[longest].name, state.flight_duration_s[longest], most_s};
+}
+
+}  // namespace tumble

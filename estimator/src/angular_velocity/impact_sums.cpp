@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/impact_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+// `kStruckRate_rad_s` is the minimum rate of a moving body. `kCorrelationMin` is the minimum correlation for an
+// accepted delay. `kStruckSigma` is the standard deviation of the delay, as a fraction of the slower triad's period.
+constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
+constexpr double kStruckMin = 30.0;
+// `kStroke_m_s2` is the minimum specific force of an impact. `kFlying_m_s2` is the maximum specific force of free
+// flight. `kFlyingShareMin` is the minimum fraction of intervals in flight. A body with impacts that never flies is
+// hand-held.
+constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
+constexpr double kStrokesMin = 10.0;
+
+// Returns the correlation between the change of rate and the mean specific force: rate_smoother.md (R45).
+double correlation(const ImpactSums& sums, int i) {
+  const double n = sums.intervals, x = sums.acceleration_sum, xx = sums.acceleration_squared;
+  const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];
+  const double spread = (n * xx - x * x) * (n * yy - y * y);
+  return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
+}
+
+// Returns the correlation. If the body has no impacts or no flight, returns 0.
+double score(const ImpactSums& sums, int i) {
+  if (sums.impacts[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
+  return correlation(sums, i);
+}
+
+}  // namespace
+
+bool ImpactSums::counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s) {
+  return std::min(before_rad_s.norm(), after_rad_s.norm()) >= kStruckRate_rad_s;
+}
+
+void ImpactSums::add(double acceleration_rad_s2, const DelayGrid& force_m_s2) {
+  const double x = std::sqrt(acceleration_rad_s2);
+  intervals += 1.0;
+  acceleration_sum += x;
+  acceleration_squared += x * x;
+  for (int i = 0; i < kDelayCount; ++i) {
+    const double mean = force_m_s2[i], root = std::sqrt(std::max(0.0, mean));
+    impacts[i] += mean > kStroke_m_s2 ? 1.0 : 0.0;
+    flying[i] += mean < kFlying_m_s2 ? 1.0 : 0.0;
+    force[i] += root;
+    force_squared[i] += root * root;
+    product[i] += x * root;
+  }
+}
+
+void ImpactSums::decay(double share) {
+  for (double* const sum : {&intervals, &acceleration_sum, &acceleration_squared}) *sum *= share;
+  for (DelayGrid* const sum : {&force, &force_squared, &product, &impacts, &flying}) *sum *= share;
+}
+
+double ImpactSums::correlation_at(double delay_s, double period_s) const {
+  const double step = std::clamp<double>(delay_s * kDelaysPerSample / period_s, -kDelayMax, kDelayMax);
+  return correlation(*this, kDelayMax + static_cast<int>(std::lround(step)));
+}
+
+TriadDelay ImpactSums::estimate_delay(double period_s, double slower_s) const {
+  if (intervals < kStruckMin) return {};
+  int at = 0;
+  double best = -1.0;
+  for (int i = 0; i < kDelayCount; ++i) {
+    const double found = score(*this, i);
+    if (found > best) best = found, at = i;
+  }
+  if (best < kCorrelationMin || at == 0 || at == kDelayCount - 1) return {};
+  const double left = score(*this, at - 1), right = score(*this, at + 1), bend = left - 2.0 * best + right;
+  const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
+  return {(at - kDelayMax + part) * (period_s / kDelaysPerSample), kStruckSigma * slower_s};
+}
+
+}  // namespace tumble

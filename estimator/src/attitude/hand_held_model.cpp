@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/detail/hand_held_model.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::hand_held {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using so3::hat;
+
+using GyroRow = Eigen::Matrix<double, 1, 6>;              // derivative by rate and angular acceleration
+using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;  // derivative by the calibration constants
+using ForceState = Eigen::Matrix<double, 3, 12>;          // derivative by attitude, rate, and both accelerations
+using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
+
+// Returns the hazard phi(u)/Phi(u), which is the slope of log Phi(u): carried.md (C14). In the tail, phi and Phi
+// underflow, so the function uses the asymptotic series.
+double hazard(double u) {
+  if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
+  const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
+  return density / (0.5 * std::erfc(-u / std::numbers::sqrt2));
+}
+
+double minus_two_log_phi(double u) {
+  if (u < -12.0) return u * u + 2.0 * std::log(-u * std::sqrt(2.0 * std::numbers::pi));
+  return -2.0 * std::log(0.5 * std::erfc(-u / std::numbers::sqrt2));
+}
+
+void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, double slope, System::Block& block,
+                  System::Corner& corner) {
+  const GyroRow weighted = weight * state;
+  block.diagonal.block<6, 6>(kRate, kRate).noalias() += weighted.transpose() * state;
+  block.border.block<6, kBorderSize>(kRate, 0).noalias() += weighted.transpose() * border;
+  block.gradient.segment<6>(kRate).noalias() -= slope * state.transpose();
+  corner.matrix.noalias() += weight * border.transpose() * border;
+  corner.gradient.noalias() -= slope * border.transpose();
+}
+
+// `value` contains the derivatives of one sensing element's rate by the errors of the node's state. `slope` contains
+// the derivatives of the element's angular acceleration.
+struct GyroRows {
+  GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
+  BorderRow border = BorderRow::Zero();
+  double predicted = 0.0, predicted_slope = 0.0;
+};
+
+GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constants& constants) {
+  GyroRows rows;
+  const Vector3d& w = node.w_WI_I_rad_s;
+  const Vector3d& alpha = node.angular_acceleration_rad_s2;
+  rows.value.head<3>() = m;
+  rows.slope.tail<3>() = rows.value.head<3>();
+  rows.border.segment<3>(kGyroBias) = m;
+  rows.predicted = m.dot(w + constants.gyro_bias_rad_s);
+  rows.predicted_slope = m.dot(alpha);
+  return rows;
+}
+
+// Returns how much the estimated rate differs from the readings of clipped and unusable sensing elements. For a clipped
+// element, the difference is the saturation deficit. The result is the sum of the differences over all elements except
+// for element `except`.
+double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const ElementSums& element = readings.gyro[static_cast<std::size_t>(i)];
+    if (i == except) continue;
+    const double predicted = rows[static_cast<std::size_t>(i)].predicted;
+    const double beyond = element.clipped > 0.0 ? element.sign * (predicted - element.rail) : 0.0;
+    const double off = element.unusable_count > 0.0 ? std::abs(predicted - element.unusable_mean) : 0.0;
+    sum += std::max({0.0, beyond, off});
+  }
+  return sum;
+}
+
+// Replaces n readings at times t by two independent readings: the value at the mean time, and the slope, carried.md
+// (C13).
+double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
+                System::Corner& corner) {
+  const double mean_t = e.time_sum_s / e.count;
+  const double mean_z = e.reading_sum / e.count;
+  const GyroRow row = rows.value + mean_t * rows.slope;
+  const double error = rows.predicted + mean_t * rows.predicted_slope - mean_z;
+  add_gyro_row(row, rows.border, e.count * information, e.count * information * error, block, corner);
+  double cost = e.count * information * error * error;
+  const double spread = e.time_squared_sum_s2 - e.time_sum_s * mean_t;
+  if (e.count > 1.5 && spread > 1e-12) {
+    const double slope_error = rows.predicted_slope - (e.reading_time_sum - e.time_sum_s * mean_z) / spread;
+    add_gyro_row(rows.slope, BorderRow::Zero(), spread * information, spread * information * slope_error, block,
+                 corner);
+    cost += spread * information * slope_error * slope_error;
+  }
+  return cost;
+}
+
+// Adds the lower bound from the readings of a saturated sensing element: carried.md (C14).
+double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
+                 System::Corner& corner) {
+  const GyroRow row = rows.value + e.clipped_time_s * rows.slope;
+  const double u = e.sign * (rows.predicted + e.clipped_time_s * rows.predicted_slope - e.rail) / sigma;
+  const double h = hazard(u);
+  add_gyro_row(row, rows.border, share * h * (h + u) / (sigma * sigma), -e.sign * h / sigma, block, corner);
+  return minus_two_log_phi(u);
+}
+
+// Adds the information `w` that three states are zero. `i` is the index of the first state, and `value` contains the
+// current states.
+double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
+  block.diagonal.diagonal().segment<3>(i).array() += w;
+  block.gradient.segment<3>(i) -= w * value;
+  return w * value.squaredNorm();
+}
+
+// Adds information about `N` states of two consecutive nodes. The information is equal for each axis, and `first` is
+// the index of the first state.
+template <int N>
+double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
+                 const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
+  const Eigen::Matrix<double, 3, 2 * N> slope = scale * values * information;
+  for (int i = 0; i < N; ++i) {
+    const int row = first + 3 * i;
+    block.gradient.segment<3>(row) -= slope.col(i);
+    next.gradient.segment<3>(row) -= slope.col(N + i);
+    for (int j = 0; j < N; ++j) {
+      const int column = first + 3 * j;
+      block.diagonal.block<3, 3>(row, column).diagonal().array() += scale * information(i, j);
+      next.diagonal.block<3, 3>(row, column).diagonal().array() += scale * information(N + i, N + j);
+      block.coupling.block<3, 3>(row, column).diagonal().array() += scale * information(i, N + j);
+    }
+  }
+  return (slope.array() * values.array()).sum();
+}
+
+}  // namespace
+
+// Applies a step of the solver to the states of the node: carried.md (C1).
+void Node::move(const System::StateVector& step) {
+  q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
+  w_WI_I_rad_s += step.segment<3>(kRate);
+  angular_acceleration_rad_s2 += step.segment<3>(kAngularAcceleration);
+  a_W_m_s2 += step.segment<3>(kHandAcceleration);
+  v_W_m_s += step.segment<3>(kVelocity);
+  p_W_m += step.segment<3>(kPosition);
+}
+
+void Constants::move(const System::BorderVector& step) {
+  gyro_bias_rad_s += step.segment<3>(kGyroBias);
+  accel_bias_m_s2 += step.segment<3>(kAccelBias);
+  lever_arm_m += step.segment<3>(kLever);
+}
+
+double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const ReadingNoise& noise, const Node& node,
+                const Constants& constants, System::Block& block, System::Corner& corner) {
+  std::array<GyroRows, 3> elements;
+  for (int i = 0; i < 3; ++i) elements[static_cast<std::size_t>(i)] = gyro_rows(rows.row(i), node, constants);
+  const double variance = noise.gyro_rad_s * noise.gyro_rad_s + noise.window_rad_s * noise.window_rad_s;
+  double cost = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
+    const GyroRows& element = elements[static_cast<std::size_t>(i)];
+    if (e.count > 0.0) {
+      // All readings of a node have one common tilt error. The tilt error therefore does not average out.
+      const double tilt = noise.tilt_share * deficit(readings, elements, i);
+      cost +=
+          add_free(e, element,
+                   1.0 / (variance + e.count * (tilt * tilt + e.partial_saturation_sigma * e.partial_saturation_sigma)),
+                   block, corner);
+    }
+    if (e.clipped > 0.0) {
+      const double sigma = std::sqrt(variance / e.clipped + noise.rail_rad_s * noise.rail_rad_s);
+      cost += add_bound(e, element, sigma, noise.bound, block, corner);
+    }
+  }
+  return cost;
+}
+
+// Adds the residual of the specific force: carried.md (C16).
+double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
+                 const Constants& constants, System::Block& block, System::Corner& corner) {
+  if (!(readings.force_count > 0.0)) return 0.0;
+  const Vector3d& w = node.w_WI_I_rad_s;
+  const Vector3d& alpha = node.angular_acceleration_rad_s2;
+  const Vector3d& r = constants.lever_arm_m;
+  const double t = readings.force_time_s;
+  const Matrix3d later = so3::exp(-t * w).toRotationMatrix();
+  const Matrix3d R_IW = later * node.q_WI.toRotationMatrix().transpose();
+  const Vector3d push = R_IW * (node.a_W_m_s2 - g_W_m_s2);
+  const Vector3d predicted = push + alpha.cross(r) + w.cross(w.cross(r)) + constants.accel_bias_m_s2;
+  ForceState J;
+  J.block<3, 3>(0, kPhi) = hat(push) * later;
+  J.block<3, 3>(0, kRate) = t * hat(push) - hat(w.cross(r)) - hat(w) * hat(r);
+  J.block<3, 3>(0, kAngularAcceleration) = -hat(r);
+  J.block<3, 3>(0, kHandAcceleration) = R_IW;
+  ForceBorder B = ForceBorder::Zero();
+  B.block<3, 3>(0, kAccelBias).setIdentity();
+  B.block<3, 3>(0, kLever) = hat(alpha) + hat(w) * hat(w);
+
+  const double share = noise.accel_share * (readings.force_m_s2.norm() - g_W_m_s2.norm());
+  const double variance = noise.accel_m_s2 * noise.accel_m_s2 / readings.force_count + share * share +
+                          readings.force_timing_sigma_m_s2 * readings.force_timing_sigma_m_s2;
+  double cost = 0.0;
+  Vector3d weight, slope;
+  for (int i = 0; i < 3; ++i) {
+    const double error = predicted[i] - readings.force_m_s2[i];
+    if (readings.force_bound[i] != 0.0) {
+      const double sigma = std::sqrt(variance);
+      const double u = readings.force_bound[i] * error / sigma;
+      const double h = hazard(u);
+      weight[i] = noise.force_bound * h * (h + u) / variance;
+      slope[i] = -readings.force_bound[i] * h / sigma;
+      cost += minus_two_log_phi(u);
+    } else {
+      weight[i] = 1.0 / variance;
+      slope[i] = weight[i] * error;
+      cost += slope[i] * error;
+    }
+  }
+  const ForceState weighted = weight.asDiagonal() * J;
+  block.diagonal.topLeftCorner<12, 12>().noalias() += weighted.transpose() * J;
+  block.border.topRows<12>().noalias() += weighted.transpose() * B;
+  block.gradient.head<12>().noalias() -= J.transpose() * slope;
+  corner.matrix.noalias() += B.transpose() * weight.asDiagonal() * B;
+  corner.gradient.noalias() -= B.transpose() * slope;
+  return cost;
+}
+
+double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block) {
+  return add_zero(node.w_WI_I_rad_s, 1.0 / (noise.rest_rad_s * noise.rest_rad_s), kRate, block) +
+         add_zero(node.v_W_m_s, 1.0 / (noise.rest_m_s * noise.rest_m_s), kVelocity, block) +
+         add_zero(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHandAcceleration, block);
+}
+
+// Returns the rotation vector between two nodes: carried.md (C3).
+Vector3d turned(const Node& from, const Node& to, double h) {
+  const Vector3d& w0 = from.w_WI_I_rad_s;
+  const Vector3d& w1 = to.w_WI_I_rad_s;
+  return 0.5 * h * (w0 + w1) +
+         h * h / 12.0 * (from.angular_acceleration_rad_s2 - to.angular_acceleration_rad_s2 + w0.cross(w1));
+}
+
+Motion::Motion(const Params& params) : params_(params) {
+  const double h = params.step_s;
+  const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
+  // Q is the covariance of rate and angular acceleration after a step of white jerk: carried.md (C2). The covariance Q
+  // is conditional on rate and angular acceleration before the step.
+  Eigen::Matrix2d Q;
+  Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
+  Eigen::Matrix<double, 2, 4> J;
+  J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
+  jerk_ = J.transpose() * (q * Q).inverse() * J;
+  // Given rate and angular acceleration at both ends of a step, the rotation angle has the variance of a quintic's
+  // remainder: carried.md (C4).
+  phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
+
+  // white noise drives the acceleration of the point in the hand: carried.md (C6), (C7), (C8)
+  const double decay = std::exp(-h / params.hand_tau_s);
+  const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
+  Eigen::Matrix<double, 1, 6> row;
+  row << -decay, 0.0, 0.0, 1.0, 0.0, 0.0;
+  hand_ = row.transpose() * row / (density * h);
+  row << -0.5 * h, -1.0, 0.0, -0.5 * h, 1.0, 0.0;
+  kinematics_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
+  const double leak = std::exp(-h / params.position_leak_s);
+  row << 0.0, -0.5 * h, -leak, 0.0, -0.5 * h, 1.0;
+  kinematics_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
+}
+
+// Adds the residual of the attitude between two nodes: carried.md (C4), (C5).
+double Motion::add_attitude(const Node& from, const Node& to, double jerk, System::Block& block,
+                            System::Block& next) const {
+  const double h = params_.step_s;
+  const Vector3d omega = turned(from, to, h);
+  const Eigen::Quaterniond step = so3::exp(omega);
+  const Eigen::Quaterniond rotation = from.q_WI.conjugate() * to.q_WI;
+  const Vector3d error = so3::log(step.conjugate() * rotation);
+  const Matrix3d by_next = so3::left_jacobian_inverse(error).transpose();
+  const Matrix3d by_omega = -so3::left_jacobian_inverse(error) * so3::left_jacobian(omega).transpose();
+  Eigen::Matrix<double, 3, 9> J0, J1;
+  J0.leftCols<3>() = -by_next * rotation.toRotationMatrix().transpose();
+  J0.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() - h * h / 12.0 * hat(to.w_WI_I_rad_s));
+  J0.middleCols<3>(kAngularAcceleration) = h * h / 12.0 * by_omega;
+  J1.leftCols<3>() = by_next;
+  J1.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() + h * h / 12.0 * hat(from.w_WI_I_rad_s));
+  J1.middleCols<3>(kAngularAcceleration) = -h * h / 12.0 * by_omega;
+  const double error_2 = params_.rotation_error_sqrts * params_.rotation_error_sqrts * omega.squaredNorm() / h;
+  const double w = 1.0 / (jerk * jerk * phi_variance_ + error_2);
+  block.diagonal.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J0;
+  block.coupling.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J1;
+  next.diagonal.topLeftCorner<9, 9>().noalias() += w * J1.transpose() * J1;
+  block.gradient.head<9>().noalias() -= w * J0.transpose() * error;
+  next.gradient.head<9>().noalias() -= w * J1.transpose() * error;
+  return w * error.squaredNorm();
+}
+
+// Adds the motion between two nodes: carried.md (C2), (C4), (C6), (C7), (C8).
+double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
+                        double jerk) const {
+  double cost = add_attitude(from, to, jerk, block, next);
+  Eigen::Matrix<double, 3, 4> turn;
+  turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;
+  cost += add_chain<2>(jerk_, 1.0 / (jerk * jerk), kRate, turn, block, next);
+  Eigen::Matrix<double, 3, 6> ends;
+  ends << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
+  cost += add_chain<3>(hand_, 1.0 / hand, kHandAcceleration, ends, block, next);
+  cost += add_chain<3>(kinematics_, 1.0, kHandAcceleration, ends, block, next);
+  return cost;
+}
+
+// Adds the weak priors of velocity and position: carried.md (C9).
+double Motion::add_bounds(const Node& node, System::Block& block) const {
+  const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
+  const double position = params_.position_m * params_.position_m * params_.position_tau_s;
+  return add_zero(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
+         add_zero(node.p_W_m, params_.step_s / position, kPosition, block);
+}
+
+double Motion::add_initial_prior(const Node& node, System::Block& block) const {
+  const Vector3d up_I = node.q_WI.conjugate() * Vector3d::UnitZ();
+  block.diagonal.topLeftCorner<3, 3>() += 1e6 * up_I * up_I.transpose() + 0.1 * Matrix3d::Identity();
+  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, position = params_.position_m;
+  return add_zero(node.w_WI_I_rad_s, 1e-4, kRate, block) +
+         add_zero(node.angular_acceleration_rad_s2, 1e-6, kAngularAcceleration, block) +
+         add_zero(node.a_W_m_s2, 1.0 / (hand * hand), kHandAcceleration, block) +
+         add_zero(node.v_W_m_s, 1.0 / (velocity * velocity), kVelocity, block) +
+         add_zero(node.p_W_m, 1.0 / (position * position), kPosition, block);
+}
+
+}  // namespace tumble::hand_held

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/detail/hand_held_pipeline.hpp"
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+namespace {
+
+/// Returns the gyro's sensing directions. A sensing element without a known saturation plane gets the direction of its
+/// axis.
+Eigen::Matrix3d rows_of(const RailPlanes& planes) {
+  Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
+  for (int j = 0; j < 3; ++j) {
+    const std::optional<RailPlane>& plane = planes.element[static_cast<std::size_t>(j)];
+    if (plane) out.row(j) = plane->row.transpose();
+  }
+  return out;
+}
+
+}  // namespace
+
+HandHeldPipeline::HandHeldPipeline(const Params& params) : stream_(params.stream), watch_(params.rails) {}
+
+HandHeldPipeline::State HandHeldPipeline::start() const {
+  State state;
+  state.stream = stream_.start();
+  state.rails = watch_.start();
+  return state;
+}
+
+Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+  out.reset();
+  if (const Status status = check_sample(sample); !status.ok()) return status;
+  state.signs.clear();
+  classify_window(sample, state);
+  const ImuSample* const latest = state.stream.readings.empty() ? nullptr : &state.stream.readings.back().sample;
+  const Clipping judged = watch_.classify(latest, sample, state.rails);
+  state.signs.push_back(clip_signs(sample, judged));
+  RepeatDetector::State repeat_state = state.repeat_state;
+  RepeatDetector().observe(sample, (judged.gyro | judged.unusable_gyro) != 0, repeat_state);
+  const ClippedElements known{rows_of(state.rails.known.planes), state.signs};
+  const Status status = stream_.push(sample, known, state.stream, out, true, repeat_state);
+  if (!status.ok()) return status;
+  state.repeat_state = repeat_state;
+  state.levels_changed = watch_.observe(sample, state.rails);
+  watch_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);  // updates the hysteresis
+  return status;
+}
+
+/// Classifies the newest sample of the window with its neighbour `next`. If the saturation levels have changed,
+/// classifies all samples of the window.
+void HandHeldPipeline::classify_window(const ImuSample& next, State& state) const {
+  const std::vector<HandHeldStream::Reading>& window = state.stream.readings;
+  RailDetector::State& axis_aligned_rails = state.rails.known.axis_aligned_rails;
+  if (state.levels_changed) {
+    for (RailDetector::Channel& channel : axis_aligned_rails.channels) channel.clipped = false;
+  }
+  for (std::size_t k = state.levels_changed || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
+    const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
+    const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
+    state.signs.push_back(clip_signs(window[k].sample, watch_.classify(before, window[k].sample, state.rails, &after)));
+    if (state.levels_changed) watch_.axis_aligned_rails().classify(window[k].sample, axis_aligned_rails);
+  }
+}
+
+Status HandHeldPipeline::check_state(const State& state) const {
+  if (!watch_.has_room_for(state.rails)) return {ErrorCode::out_of_range, "rails.readings", 1.0, 0.0};
+  return stream_.check_state(state.stream);
+}
+
+}  // namespace tumble

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "hand_held_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tumble::hand_held {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude; for larger steps, the linearisation is invalid
+constexpr double kConverged = 1e-3;       // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
+constexpr int kFollowFirst = 3;           // iterations before the estimate of the hand's acceleration density
+constexpr int kFollowLast = 8;            // iterations after which the hand's density is fixed, for convergence
+constexpr double kHandMean_s = 0.25;      // averaging time of the hand's acceleration
+constexpr int kHalvings = 4;              // maximum number of times that a step is halved if the cost increases
+constexpr double kRises = 0.2;            // tolerated increase of the cost, corresponding to odds of 1.1
+constexpr ErrorCode kLost = ErrorCode::diverged;
+
+}  // namespace
+
+Motion::Params motion_params(const HandHeldSmoother::Params& p, double jerk) {
+  Motion::Params out;
+  out.step_s = p.expert.node_s;
+  out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
+  out.rotation_error_sqrts = p.expert.readings.rotation_error_sqrts;
+  out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
+  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
+  out.position_m = p.position_m, out.position_tau_s = p.expert.hand.position_tau_s,
+  out.position_leak_s = p.expert.hand.position_leak_s;
+  return out;
+}
+
+ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
+  const double root_rate = 1.0 / std::sqrt(period_s);
+  ReadingNoise out;
+  out.gyro_rad_s = p.gyro_noise_density * root_rate;
+  out.tilt_share = p.expert.readings.tilt_share;
+  out.rail_rad_s = p.expert.readings.rail_sigma_rad_s;
+  out.accel_m_s2 = p.accel_noise_density * root_rate;
+  out.accel_share = p.expert.readings.accel_error_share;
+  out.rest_rad_s = p.expert.still.rest_sigma_rad_s;
+  out.rest_m_s = p.expert.still.rest_sigma_m_s;
+  out.rest_m_s2 = p.expert.still.rest_sigma_m_s2;
+  return out;
+}
+
+namespace {
+
+// Returns the reading noise for the computation of covariances. A lower bound contains no information about how far the
+// rate is beyond the bound. The mean over a window P differs from the rate at the window's centre. For white jerk of
+// density q, the difference has the variance q P^3/320: carried.md (C26).
+ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
+  noise.bound = 0.0;
+  noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
+  return noise;
+}
+
+}  // namespace
+
+Problem::Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+                 std::vector<Node> nodes)
+    : params_(params),
+      rows_(rows),
+      readings_(collected.nodes),
+      jerk_seen_(collected.jerk),
+      motion_(motion_params(params)),
+      period_s_(collected.rates.windows.period_s),
+      noise_(reading_noise(params, period_s_)),
+      g_W_m_s2_(0.0, 0.0, -params.gravity_m_s2),
+      nodes_(std::move(nodes)),
+      jerk_(nodes_.size(), 1.0),
+      hand_(nodes_.size(), 1.0),
+      hand_power_(nodes_.size() + 1, 0.0),
+      blocks_(nodes_.size()) {}
+
+double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
+                const Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
+                System::Block& block, System::Corner& corner) {
+  double cost = add_gyro(readings, rows, noise, node, constants, block, corner);
+  cost += add_force(readings, g_W_m_s2, noise, node, constants, block, corner);
+  cost += motion.add_bounds(node, block);
+  if (readings.rest) cost += add_rest(noise, node, block);
+  return cost;
+}
+
+// Adds the prior of the calibration constants: carried.md (C1).
+double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner) {
+  double cost = 0.0;
+  const auto prior = [&](const Vector3d& value, double sigma, int at) {
+    const double information = 1.0 / (sigma * sigma);
+    corner.matrix.diagonal().segment<3>(at).array() += information;
+    corner.gradient.segment<3>(at) -= information * value;
+    cost += information * value.squaredNorm();
+  };
+  prior(constants.gyro_bias_rad_s, params.gyro_bias_sigma_rad_s, kGyroBias);
+  prior(constants.accel_bias_m_s2, params.accel_bias_sigma_m_s2, kAccelBias);
+  prior(constants.lever_arm_m, params.lever_arm_sigma_m, kLever);
+  return cost;
+}
+
+double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
+  ReadingNoise noise = noise_;
+  noise.window_rad_s *= jerk_[i];
+  return hand_held::add_node(readings_[i], rows_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block, corner);
+}
+
+double Problem::linearise() {
+  std::fill(blocks_.begin(), blocks_.end(), System::Block{});
+  corner_ = {};
+  double cost =
+      part_ ? part_->before.add(nodes_.front(), blocks_.front()) + part_->after.add(nodes_.back(), blocks_.back())
+            : motion_.add_initial_prior(nodes_[0], blocks_[0]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    cost += add_node(i, blocks_[i], corner_);
+    if (i + 1 < nodes_.size())
+      cost += motion_.add_step(nodes_[i], nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1], jerk_[i]);
+  }
+  if (part_) {
+    corner_ = {};
+    corner_.matrix.setIdentity();
+    for (System::Block& block : blocks_) block.border.setZero();
+    return cost;
+  }
+  cost += add_constants_prior(params_, constants_, corner_);
+  return cost;
+}
+
+// Eliminates the nodes from the normal equations and solves for the calibration constants: carried.md (C17), (C18).
+bool Problem::eliminate(System::BorderVector& step) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
+    if (!System::eliminate(blocks_[i], next, corner_)) return false;
+  }
+  return System::solve_corner(corner_, step, constants_covariance_);
+}
+
+// Makes one Gauss-Newton step: carried.md (C19).
+bool Problem::step(double& largest) {
+  if (!eliminate(border_step_)) return false;
+  // the steps overwrite the gradients, because the solver no longer needs the gradients
+  steps_.resize(blocks_.size());
+  double turn = 0.0;
+  largest = 0.0;
+  for (std::size_t i = blocks_.size(); i-- > 0;) {
+    const System::StateVector* const next = i + 1 < blocks_.size() ? &steps_[i + 1] : nullptr;
+    steps_[i] = System::back_substitute(blocks_[i], next, border_step_).eval();
+    const double moved = steps_[i].segment<3>(kPhi).norm();
+    turn = std::max(turn, moved);
+    largest = std::max({largest, moved, 0.1 * steps_[i].segment<3>(kRate).norm()});
+  }
+  if (!std::isfinite(turn)) return false;
+  const double share = turn > kRotationMax_rad ? kRotationMax_rad / turn : 1.0;
+  for (System::StateVector& each : steps_) each *= share;
+  border_step_ *= share;
+  go(1.0);
+  return true;
+}
+
+// Moves the nodes from their current states by a fraction of the last step.
+void Problem::go(double share) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
+  constants_.move(share * border_step_);
+}
+
+// Adapts the assumed acceleration noise of the hand to the recent acceleration of the hand. The assumed acceleration
+// noise has a lower limit: carried.md (C10).
+void Problem::adapt_process_noise() {
+  const std::size_t count = nodes_.size();
+  const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
+  for (std::size_t i = 0; i < count; ++i)
+    hand_power_[i + 1] = hand_power_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
+  const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand.hand_window_s / params_.expert.node_s);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
+    const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
+    hand_[i] =
+        std::max(params_.expert.hand.hand_floor, 1.0 + params_.expert.hand.hand_noise_adaptation * (local - 1.0));
+  }
+}
+
+void Problem::restore(Answer answer) {
+  nodes_ = std::move(answer.nodes);
+  constants_ = answer.constants;
+  constants_covariance_ = answer.constants_covariance;
+  hand_ = std::move(answer.hand);
+  covariances_ = std::move(answer.covariances);
+}
+
+// Iterates Gauss-Newton steps until the solution converges: carried.md (C19), (C20).
+Status Problem::solve(HandHeldSmoother::Report& report) {
+  std::optional<Iterate> before;
+  report.converged = false;
+  for (int k = 0; k < params_.expert.iterations_max; ++k) {
+    if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_noise_adaptation > 0.0) {
+      adapt_process_noise();
+      before.reset();  // costs for different process noise are not comparable
+    }
+    report.cost = linearise();
+    if (before && !descend_from(*before, report.cost)) break;
+    before = Iterate{nodes_, constants_, report.cost};
+    double largest = 0.0;
+    if (!step(largest))
+      return {kLost, "iteration of the smoother for hand-held motion", k + 1.0, static_cast<double>(k)};
+    report.iterations = k + 1;
+    report.converged = largest < kConverged;
+    if (report.converged && k > kFollowFirst) break;
+  }
+  if (before && !report.converged) {
+    // checks the cost after the last step
+    report.cost = linearise();
+    (void)descend_from(*before, report.cost);
+  }
+  report.constants = constants_;
+  report.hand_acceleration_ratio = hand_acceleration_ratio();
+  return {};
+}
+
+// If the last step increased the cost, tries shorter steps. If no shorter step decreases the cost, restores the nodes,
+// linearises again, and returns false.
+bool Problem::descend_from(const Iterate& before, double& cost) {
+  const auto goes_down = [&] { return cost < before.cost + kRises; };
+  for (int k = 0; k < kHalvings && !goes_down(); ++k) {
+    nodes_ = before.nodes;
+    constants_ = before.constants;
+    go(std::ldexp(1.0, -k - 1));
+    cost = linearise();
+  }
+  if (goes_down()) return true;
+  nodes_ = before.nodes;
+  constants_ = before.constants;
+  cost = linearise();
+  return false;
+}
+
+// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). A lower bound
+// contributes no information about how far a rate is beyond the bound.
+Status Problem::covariances(HandHeldSmoother::Report& report) {
+  for (std::size_t i = 0; i < jerk_.size(); ++i)
+    jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
+  const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
+  (void)linearise();
+  noise_ = assumed;
+  std::fill(jerk_.begin(), jerk_.end(), 1.0);
+  System::BorderVector unused;
+  if (!eliminate(unused)) return {kLost, "covariance of the smoother for hand-held motion", report.cost, 0.0};
+  report.constants_covariance = constants_covariance_;
+  covariances_.resize(nodes_.size());
+  System::Conditional here, next;
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    here = System::back_conditional(blocks_[i], i + 1 < nodes_.size() ? &next : nullptr);
+    const Eigen::Matrix<double, 9, kBorderSize> rows = here.jacobian_border.topRows<9>();
+    covariances_[i] = here.state.topLeftCorner<9, 9>();
+    covariances_[i].noalias() += rows * constants_covariance_ * rows.transpose();
+    next = here;
+  }
+  return {};
+}
+
+// Compares the hand's mean acceleration over windows with the model: carried.md (C30). The model is a process with
+// standard deviation s and correlation time tau. Its mean over a window T has the variance s^2 2 tau/T (1 - tau/T (1 -
+// exp(-T/tau))).
+double Problem::hand_acceleration_ratio() const {
+  const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
+  const double span = static_cast<double>(window) * params_.expert.node_s,
+               ratio = params_.expert.hand.hand_tau_s / span;
+  const double variance =
+      params_.hand_m_s2 * params_.hand_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
+  double largest = 0.0;
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    sum += nodes_[i].a_W_m_s2;
+    if (i >= window) sum -= nodes_[i - window].a_W_m_s2;
+    if (i + 1 >= window) largest = std::max(largest, (sum / static_cast<double>(window)).norm());
+  }
+  return largest / std::sqrt(variance);
+}
+
+}  // namespace tumble::hand_held

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/hand_held_stream.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hand_held_problem.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+using Eigen::Vector3d;
+using hand_held::Node;
+using hand_held::System;
+
+namespace {
+
+constexpr double kRotationMax_rad = 0.8;
+constexpr int kFirstNodes = 100;  // number of first nodes, during which the attitude still converges
+
+System::BorderVector moved(const hand_held::Constants& from, const hand_held::Constants& to) {
+  System::BorderVector out;
+  out << to.gyro_bias_rad_s - from.gyro_bias_rad_s, to.accel_bias_m_s2 - from.accel_bias_m_s2,
+      to.lever_arm_m - from.lever_arm_m;
+  return out;
+}
+
+bool anything_clips(const HandHeldStream::State& state) {
+  return std::any_of(state.window.begin(), state.window.end(),
+                     [](const auto& knot) { return hand_held::clips(knot.readings); });
+}
+
+bool same(const ClipSigns& a, const ClipSigns& b) {
+  return a.gyro == b.gyro && a.accel == b.accel;
+}
+
+}  // namespace
+
+HandHeldStream::HandHeldStream(const Params& params)
+    : params_((HandHeldSmoother(params.body), params)),
+      rest_detector_(params.body.expert.rest),
+      motion_(hand_held::motion_params(params.body)),
+      inflated_(hand_held::motion_params(params.body, params.body.expert.jerk_inflation)),
+      noise_(hand_held::reading_noise(params.body, params.period_s)),
+      g_W_m_s2_(0.0, 0.0, -params.body.gravity_m_s2) {
+  require_valid_fields(params);
+  require_within("lag_s", params.lag_s, 2.0 * params.period_s, 10.0);
+  require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
+  nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
+  delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
+  // The buffer can store readings of twice the nominal sample rate. At higher sample rates, the stream drops the oldest
+  // readings.
+  readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
+}
+
+Status HandHeldStream::check_state(const State& state) const {
+  const auto size_of = [](const auto& all) { return double(all.size()); };
+  if (state.window.size() > nodes_max_)
+    return {ErrorCode::out_of_range, "carried.window", size_of(state.window), double(nodes_max_)};
+  if (state.readings.size() > readings_max_)
+    return {ErrorCode::out_of_range, "carried.readings", size_of(state.readings), double(readings_max_)};
+  if (state.samples == 0) {
+    if (state.window.empty() && state.readings.empty() && state.first_node == 0) return {};
+    return {ErrorCode::out_of_range, "carried.samples", 0.0, 1.0};
+  }
+  if (state.window.empty() || state.readings.empty()) return {ErrorCode::empty, "carried.window", 0.0, 1.0};
+  for (std::size_t k = 0; k < state.readings.size(); ++k) {
+    const Reading* const before = k > 0 ? &state.readings[k - 1] : nullptr;
+    if (const Status status = check_reading(state.readings[k], before, state.start_ns); !status.ok()) return status;
+  }
+  const std::int64_t last = state.readings.back().node, nodes = static_cast<std::int64_t>(state.window.size());
+  if (state.first_node >= 0 && state.first_node <= last && last - state.first_node + 1 == nodes) return {};
+  return {ErrorCode::out_of_range, "carried.first_node", double(state.first_node), double(last + 1 - nodes)};
+}
+
+Status HandHeldStream::check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const {
+  const TimeNs time_ns = reading.sample.time_ns;
+  if (before != nullptr) {
+    const Status status = check_stamp_order(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  // The type is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
+  const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
+  if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
+    return {ErrorCode::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
+  if (reading.end_s != seconds(static_cast<TimeNs>(since_ns)) + 0.5 * params_.period_s)
+    return {ErrorCode::out_of_range, "reading.end_s", reading.end_s, seconds(time_ns)};
+  if (!(reading.centre_s <= reading.end_s && reading.centre_s >= reading.end_s - params_.period_s))
+    return {ErrorCode::out_of_range, "reading.centre_s", reading.centre_s, reading.end_s};
+  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.expert.node_s);
+  const bool falls = before != nullptr && reading.node < before->node;
+  const bool stays = before != nullptr && reading.node == before->node;
+  const bool near = reading.node >= nearest - 1 && reading.node <= nearest + 1;
+  if (reading.node >= 0 && !falls && (stays || near)) return {};
+  return {ErrorCode::out_of_range, "reading.node", double(reading.node), double(nearest)};
+}
+
+HandHeldStream::State HandHeldStream::start() const {
+  State state;
+  state.readings.reserve(readings_max_ + 1);
+  state.window.reserve(nodes_max_ + 1);
+  state.work.resize(nodes_max_ + 1);
+  return state;
+}
+
+void HandHeldStream::restart(State& state) const {
+  State fresh;
+  fresh.readings.swap(state.readings);
+  fresh.window.swap(state.window);
+  fresh.work.swap(state.work);
+  fresh.readings.clear();
+  fresh.window.clear();
+  fresh.failures = state.failures;
+  fresh.revolutions_ambiguous = state.revolutions_ambiguous;
+  state = std::move(fresh);
+}
+
+Status HandHeldStream::push(const ImuSample& sample, const ClippedElements& known, State& state,
+                            std::optional<RateState>& out, bool wanted, const RepeatDetector::State& repeated) const {
+  out.reset();
+  if (const Status status = check_sample(sample); !status.ok()) return status;
+  if (state.samples > 0) {
+    const TimeNs before_ns = state.readings.back().sample.time_ns;
+    const Status status = check_stamp_order(sample.time_ns, before_ns, params_.body.expert.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  if (known.signs.empty()) return {ErrorCode::out_of_range, "signs", 0.0, 1.0};
+  const double determinant = std::abs(known.rows.determinant());
+  if (!(determinant > hand_held::kRowsMin)) return {ErrorCode::degenerate, "rows", determinant, hand_held::kRowsMin};
+
+  append(sample, repeated, state);
+  if (reclassify(known, state)) rebuild(state);
+  const Reading& latest = state.readings.back();
+  const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
+  const bool begun = latest.node >= end();
+  while (latest.node > end()) {  // creates nodes without samples
+    extend(state);
+    predict_newest(state);
+  }
+  if (begun) extend(state);
+  add(latest, state);
+  if (begun) predict_newest(state);
+  // While the gyro is unsaturated, the predicted nodes are already accurate. While the gyro is unsaturated, occasional
+  // steps are sufficient for attitude and calibration constants.
+  const bool due =
+      begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
+  const bool factorised = due && step(state);
+  if (due && !factorised) ++state.failures;
+  if (wanted && state.readings.size() > delay_) {
+    const std::size_t at = state.readings.size() - 1 - delay_;
+    out = compute_report(at, due, due && factorised, state);
+    count_revolutions(at, *out, state);
+  }
+  return {};
+}
+
+void HandHeldStream::extend(State& state) const {
+  if (state.window.size() == nodes_max_) marginalise_oldest(state);
+  state.window.emplace_back();
+}
+
+// Initialises the newest node by its prediction and its readings.
+void HandHeldStream::predict_newest(State& state) const {
+  Knot& newest = state.window.back();
+  if (state.window.size() == 1) {
+    newest.node = begin(state);
+  } else {
+    predict(state.window[state.window.size() - 2].node, state.rows, newest);
+  }
+}
+
+// Adds a sample to the window. After a drop-out, the averaging window of a reading has its usual length.
+void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
+  Reading reading;
+  reading.sample = sample;
+  reading.gyro = repeated.of(Triad::gyro);
+  reading.accel = repeated.of(Triad::accelerometer);
+  const double period_s = params_.period_s;
+  if (state.samples == 0) {
+    state.start_ns = sample.time_ns;
+    state.rests = {};
+  }
+  const double since_s = state.samples == 0 ? period_s : seconds(sample.time_ns - state.readings.back().sample.time_ns);
+  reading.end_s = seconds(sample.time_ns - state.start_ns) + 0.5 * period_s;
+  reading.centre_s = reading.end_s - 0.5 * std::min(since_s, 1.5 * period_s);
+  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.expert.node_s);
+  reading.node = std::max(nearest, state.samples == 0 ? 0 : state.readings.back().node);
+  reading.rest = rest_detector_.observe(sample, state.rests);
+  if (state.readings.size() == readings_max_) state.readings.erase(state.readings.begin());
+  state.readings.push_back(reading);
+  ++state.samples;
+}
+
+// Updates saturation signs and sensing directions. Returns whether samples in the window have changed.
+bool HandHeldStream::reclassify(const ClippedElements& known, State& state) const {
+  bool changed = state.rows != known.rows;
+  state.rows = known.rows;
+  const std::size_t count = std::min(known.signs.size(), state.readings.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    Reading& reading = state.readings[state.readings.size() - 1 - k];
+    const ClipSigns& signs = known.signs[known.signs.size() - 1 - k];
+    changed = changed || (k > 0 && !same(reading.signs, signs));
+    reading.signs = signs;
+  }
+  return changed;
+}
+
+// Rebuilds the readings of all nodes, except for the newest reading, which push() adds.
+void HandHeldStream::rebuild(State& state) const {
+  for (Knot& knot : state.window) knot.readings = {};
+  for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
+}
+
+// Adds an IMU reading to the nodes of the window, unless the reading is a repetition. The reading of a slow sensor
+// averages over a window with the length of the sensor's period. The averaging window ended at an unknown time since
+// the previous sample: rate_stream.md (R95). For an accelerometer, the length of the averaging window is also unknown:
+// carried.md (C12).
+void HandHeldStream::add(const Reading& reading, State& state) const {
+  const double node_s = params_.body.expert.node_s;
+  const auto readings_at = [&](std::int64_t node) -> hand_held::NodeReadings* {
+    const std::int64_t at = node - state.first_node;
+    const bool inside = at >= 0 && at < static_cast<std::int64_t>(state.window.size());
+    return inside ? &state.window[static_cast<std::size_t>(at)].readings : nullptr;
+  };
+  const auto centre = [&](const RepeatedReading& repeated, double share) {
+    const double back = repeated.age_samples + share * repeated.period_samples;
+    return repeated.is_slower_than_log() ? reading.end_s - back * params_.period_s : reading.centre_s;
+  };
+  const auto node_of = [&](const RepeatedReading& repeated, double centre_s) {
+    return repeated.is_slower_than_log() ? std::min(reading.node, std::int64_t{std::llround(centre_s / node_s)})
+                                         : reading.node;
+  };
+  const double rate_s = centre(reading.gyro, 0.5), force_s = centre(reading.accel, 0.25);
+  const std::int64_t rate_node = node_of(reading.gyro, rate_s), force_node = node_of(reading.accel, force_s);
+  hand_held::NodeReadings* const rates = reading.gyro.repeats ? nullptr : readings_at(rate_node);
+  hand_held::NodeReadings* const forces = reading.accel.repeats ? nullptr : readings_at(force_node);
+  if (rates != nullptr) {
+    const double share =
+        reading.gyro.is_slower_than_log() ? hand_held::kAge_samples / reading.gyro.period_samples : 0.0;
+    const Vector3d open_rad_s = share * (state.rows * reading.gyro.change).cwiseAbs();
+    hand_held::add_rate(reading.sample, state.rows, reading.signs, rate_s - static_cast<double>(rate_node) * node_s,
+                        open_rad_s, *rates);
+  }
+  if (forces != nullptr) {
+    const double share = reading.accel.is_slower_than_log()
+                             ? std::hypot(hand_held::kOpenShare, hand_held::kAge_samples / reading.accel.period_samples)
+                             : 0.0;
+    hand_held::add_force(reading.sample, reading.signs, force_s - static_cast<double>(force_node) * node_s, *forces);
+    forces->force_timing_sigma_m_s2 = std::max(forces->force_timing_sigma_m_s2, share * reading.accel.change.norm());
+  }
+  if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
+}
+
+// Returns the noise of the readings. If the log repeats readings, the noise refers to the gyro's own period.
+hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
+  const RepeatedReading& gyro = state.readings.back().gyro;
+  return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)
+                                   : noise_;
+}
+
+Node HandHeldStream::begin(const State& state) const {
+  const ImuSample& sample = state.readings.front().sample;
+  Node out;
+  out.q_WI = so3::shortest_arc(sample.specific_force_m_s2.normalized(), Vector3d::UnitZ());
+  out.w_WI_I_rad_s = sample.angular_velocity_rad_s;
+  out.a_W_m_s2 = out.q_WI * sample.specific_force_m_s2 + g_W_m_s2_;
+  return out;
+}
+
+// Predicts a new node from the previous node. Each unsaturated sensing element provides one component of the rate. For
+// clipped elements, the predicted rate is beyond the saturation level.
+void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
+  const double h = params_.body.expert.node_s;
+  Node& node = knot.node;
+  node = before;
+  Vector3d elements = rows * (before.w_WI_I_rad_s + h * before.angular_acceleration_rad_s2);
+  for (int j = 0; j < 3; ++j) {
+    const hand_held::ElementSums& e = knot.readings.gyro[static_cast<std::size_t>(j)];
+    if (e.clipped > 0.0) {
+      const double rail = std::abs(e.rail);
+      elements[j] = e.sign * std::clamp(e.sign * elements[j], rail, hand_held::kFillMost * rail);
+    } else if (e.count > 0.0) {
+      elements[j] = e.reading_sum / e.count;
+    }
+  }
+  node.w_WI_I_rad_s = rows.inverse() * elements;
+  node.q_WI = (before.q_WI * so3::exp(hand_held::turned(before, node, h))).normalized();
+  node.v_W_m_s += h * before.a_W_m_s2;
+  node.p_W_m += h * before.v_W_m_s;
+  if (knot.readings.force_count > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
+}
+
+// Returns the noise density of the hand's acceleration: carried.md (C41).
+double HandHeldStream::hand(const State& state) const {
+  return std::max(params_.body.expert.hand.hand_floor,
+                  1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
+}
+
+// Adds the prior from marginalised nodes: rate_stream.md (R91).
+void HandHeldStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
+  if (state.first_node == 0) {
+    (void)motion_.add_initial_prior(state.window.front().node, block);
+    (void)hand_held::add_constants_prior(params_.body, state.constants, corner);
+    return;
+  }
+  const System::StateVector x = hand_held::moved(state.prior_node, state.window.front().node);
+  const System::BorderVector c = moved(state.prior_constants, state.constants);
+  block.diagonal += state.prior.diagonal;
+  block.border += state.prior.border;
+  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border * c;
+  corner.matrix += state.prior_corner.matrix;
+  corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
+}
+
+// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The noise density of the hand's
+// acceleration follows from carried.md (C41).
+void HandHeldStream::marginalise_oldest(State& state) const {
+  store_oldest_rates(state);
+  const Knot& oldest = state.window[0];
+  const Node& next = state.window[1].node;
+  System::Block block, after;
+  System::Corner corner;
+  add_prior(state, block, corner);
+  (void)hand_held::add_node(oldest.readings, state.rows, adapted_noise(state), g_W_m_s2_, motion_, oldest.node,
+                            state.constants, block, corner);
+  (void)motion_.add_step(oldest.node, next, hand(state), block, after);
+  if (System::eliminate(block, &after, corner)) {
+    state.prior = after;
+    state.prior_corner = corner;
+  } else {
+    // if the prior from marginalised nodes is unusable, the stream restarts from the initial prior
+    state.prior = {};
+    state.prior_corner = {};
+    (void)motion_.add_initial_prior(next, state.prior);
+    (void)hand_held::add_constants_prior(params_.body, state.constants, state.prior_corner);
+    ++state.failures;
+  }
+  state.prior_node = next;
+  state.prior_constants = state.constants;
+  const double assumed = 3.0 * params_.body.hand_m_s2 * params_.body.hand_m_s2;
+  const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.hand_window_s);
+  state.acceleration_power_ratio +=
+      share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.acceleration_power_ratio);
+  ++state.first_node;
+  state.window.erase(state.window.begin());
+  prune_output_samples(state);
+}
+
+// Deletes readings whose node has left the window and whose rate has been reported.
+void HandHeldStream::prune_output_samples(State& state) const {
+  std::size_t gone = 0;
+  const std::size_t given = first_unreported(state);
+  while (gone < given && state.readings[gone].node < state.first_node) ++gone;
+  state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
+}
+
+// Eliminates the nodes of the window and solves for the calibration constants: carried.md (C17), (C18).
+bool HandHeldStream::factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
+                               System::BorderVector& step) const {
+  const std::size_t count = state.window.size();
+  const double lively = hand(state);
+  System::Corner corner;
+  state.work[0] = {};
+  add_prior(state, state.work[0], corner);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Knot& knot = state.window[i];
+    System::Block& block = state.work[i];
+    const bool last = i + 1 == count;
+    (void)hand_held::add_node(knot.readings, state.rows, noise, g_W_m_s2_, motion, knot.node, state.constants, block,
+                              corner);
+    if (!last) {
+      state.work[i + 1] = {};
+      (void)motion.add_step(knot.node, state.window[i + 1].node, lively, block, state.work[i + 1]);
+    }
+    if (!System::eliminate(block, last ? nullptr : &state.work[i + 1], corner)) return false;
+  }
+  return System::solve_corner(corner, step, state.constants_covariance);
+}
+
+// Makes one Gauss-Newton step over the window: carried.md (C19).
+bool HandHeldStream::step(State& state) const {
+  System::BorderVector border;
+  if (!factorise(motion_, adapted_noise(state), state, border)) return false;
+  double turn = 0.0;
+  for (std::size_t i = state.window.size(); i-- > 0;) {
+    System::StateVector* const next = i + 1 < state.window.size() ? &state.work[i + 1].gradient : nullptr;
+    state.work[i].gradient = System::back_substitute(state.work[i], next, border).eval();
+    turn = std::max(turn, state.work[i].gradient.segment<3>(hand_held::kPhi).norm());
+  }
+  if (!std::isfinite(turn)) return false;
+  const double share = turn > kRotationMax_rad ? kRotationMax_rad / turn : 1.0;
+  for (std::size_t i = 0; i < state.window.size(); ++i) state.window[i].node.move(share * state.work[i].gradient);
+  state.constants.move(share * border);
+  return true;
+}
+
+}  // namespace tumble

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/detail/compiled_alike.hpp"
-
-namespace tumble::detail {
-
-template <>
-const char CompiledHere::linked = 0;
-
-}  // namespace tumble::detail

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/detail/same_compiler_settings.hpp"
+
+namespace tumble::detail {
+
+template <>
+const char CompiledHere::linked = 0;
+
+}  // namespace tumble::detail

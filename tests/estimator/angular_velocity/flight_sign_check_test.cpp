@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/flight_sign_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tumble {
+namespace {
+
+constexpr double kFlightPeriod_s = 0.01;
+const Eigen::Vector3d kFlightArm_m(0.06, -0.05, 0.08);
+
+ImuSample flight_sample(int k, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
+  ImuSample out;
+  out.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+  out.angular_velocity_rad_s = rate_rad_s;
+  out.specific_force_m_s2 = force_m_s2;
+  return out;
+}
+
+/// A body of three unlike moments that flies without torque for a second (Euler's equations, small steps) after half a
+/// second of rest, with a sheet's noise.
+std::vector<ImuSample> thrown_flight() {
+  constexpr int kSteps = 100;
+  const Eigen::Vector3d inertia(2.2, 1.6, 1.0);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  std::vector<ImuSample> out;
+  for (int k = 0; k < 50; ++k) out.push_back(flight_sample(k, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.81}));
+  Eigen::Vector3d w(8.0, 3.0, 4.0);
+  for (int k = 50; k < 150; ++k) {
+    Eigen::Vector3d alpha;
+    for (int step = 0; step < kSteps; ++step) {
+      alpha = (inertia.cwiseProduct(w).cross(w)).cwiseQuotient(inertia);
+      w += kFlightPeriod_s / kSteps * alpha;
+    }
+    out.push_back(flight_sample(k, w, alpha.cross(kFlightArm_m) + w.cross(w.cross(kFlightArm_m))));
+  }
+  for (ImuSample& sample : out) {
+    for (int axis = 0; axis < 3; ++axis) {
+      sample.angular_velocity_rad_s[axis] += 0.005 * noise(random);
+      sample.specific_force_m_s2[axis] += 0.05 * noise(random);
+    }
+  }
+  return out;
+}
+
+/// Swung about a hand, gravity left out, at 4 rad/s and more: the arm from the hand is not that from the mass centre.
+std::vector<ImuSample> swung(const Eigen::Vector3d& arm_m) {
+  std::vector<ImuSample> out;
+  for (int k = 0; k < 150; ++k) {
+    const double t = k * kFlightPeriod_s;
+    const Eigen::Vector3d w(4.0 + 2.0 * std::sin(3.0 * t), 5.0 * std::cos(2.0 * t), 3.0),
+        alpha(6.0 * std::cos(3.0 * t), -10.0 * std::sin(2.0 * t), 0.0);
+    out.push_back(flight_sample(k, w, alpha.cross(arm_m) + w.cross(w.cross(arm_m))));
+  }
+  return out;
+}
+
+FlightSignCheck::Params flight_params(FlightSignCheck::Body body, double range_rad_s) {
+  FlightSignCheck::Params params;
+  params.body = body;
+  params.lever_arm_m = kFlightArm_m;
+  params.gyro_range_rad_s = range_rad_s;
+  return params;
+}
+
+std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::Body body, double range_rad_s,
+                       const std::function<void(ImuSample&)>& harm) {
+  const FlightSignCheck sense(flight_params(body, range_rad_s));
+  FlightSignCheck::State state;
+  for (ImuSample& sample : samples) {
+    harm(sample);
+    for (double& rate : sample.angular_velocity_rad_s) rate = std::clamp(rate, -range_rad_s, range_rad_s);
+    sense.step(sample, state);
+  }
+  const Status status = sense.verdict(state);
+  return status.ok() ? "" : std::string(status.field).substr(std::string("flight time in s").size());
+}
+
+const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& other_senses() {
+  static const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>> all = {
+      {" that a sign error of the accelerometer explains", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
+      {" that a sign error of accelerometer axis x explains", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
+      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
+      {" that exchanged accelerometer axes x and y explain",
+       [](ImuSample& s) { std::swap(s.specific_force_m_s2.x(), s.specific_force_m_s2.y()); }},
+      {" that exchanged accelerometer axes z and x explain",
+       [](ImuSample& s) { std::swap(s.specific_force_m_s2.z(), s.specific_force_m_s2.x()); }},
+      {" that a sign error of gyro axis y explains", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
+      {" that exchanged gyro axes y and z explain",
+       [](ImuSample& s) { std::swap(s.angular_velocity_rad_s.y(), s.angular_velocity_rad_s.z()); }},
+      {" that a gyro with half the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
+      {" that a gyro with twice the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
+  return all;
+}
+
+TEST(FlightSignCheck, EachOtherSensorIsToldByItsName) {
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, 100.0, [](ImuSample&) {}), "");
+  for (const auto& [name, harm] : other_senses())
+    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, 100.0, harm), name);
+}
+
+// The rate of the axis that clips comes of the force, and what is left of the force tells the sense.
+TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
+  constexpr double kRange_rad_s = 6.5;
+  std::size_t clipped = 0;
+  for (const ImuSample& sample : thrown_flight())
+    clipped += (sample.angular_velocity_rad_s.array().abs() > kRange_rad_s).count() == 1 ? 1 : 0;
+  ASSERT_GT(clipped, 30U) << "nothing clips";
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, [](ImuSample&) {}), "");
+  for (const auto& [name, harm] : other_senses()) {
+    if (name.find("gyro") == std::string::npos) {
+      EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, harm), name);
+    }
+  }
+}
+
+// Swung about a point on the other side of the mass centre, or about one with x on the other side, a body feels what a
+// mirrored sensor would in flight.
+TEST(FlightSignCheck, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
+  const auto nothing = [](ImuSample&) {};
+  const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));
+  const auto x_flipped = [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; };
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::may_be_hand_held, 100.0, x_flipped), "");
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::may_be_hand_held, 100.0, other_senses()[0].second),
+            other_senses()[0].first);
+  EXPECT_EQ(sense_told(swung(mirrored), FlightSignCheck::Body::may_be_hand_held, 100.0, nothing), "");
+  EXPECT_EQ(sense_told(swung(kFlightArm_m), FlightSignCheck::Body::thrown, 100.0, nothing), "");
+  EXPECT_NE(sense_told(swung(-kFlightArm_m), FlightSignCheck::Body::thrown, 100.0, nothing), "")
+      << "the lever arm's own sense";
+}
+
+TEST(FlightSignCheck, OfABodyAtRestOrWithoutALeverArmNothingIsSaid) {
+  std::vector<ImuSample> rest;
+  for (int k = 0; k < 500; ++k) rest.push_back(flight_sample(k, {0.001, 0.0, 0.0}, {0.0, 0.0, -9.81}));
+  EXPECT_EQ(sense_told(rest, FlightSignCheck::Body::thrown, 100.0, [](ImuSample&) {}), "");
+  FlightSignCheck::Params params = flight_params(FlightSignCheck::Body::thrown, 100.0);
+  params.lever_arm_m.setZero();
+  const FlightSignCheck sense(params);
+  FlightSignCheck::State state;
+  for (const ImuSample& sample : thrown_flight()) sense.step(sample, state);
+  EXPECT_TRUE(sense.verdict(state).ok());
+}
+
+}  // namespace
+}  // namespace tumble
