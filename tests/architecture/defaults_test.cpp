@@ -38,13 +38,15 @@ std::string digits_of(const std::string& number) {
   return out;
 }
 
-/// Numbers that somebody measured on a robot or read in a data sheet: of three digits and more, but gravity.
+/// Numbers that somebody measured on a robot or read in a data sheet: of three digits and more, except gravity and
+/// powers of two, which are sizes of arrays too.
 std::set<double> distinctive(const std::vector<std::string>& numbers) {
   constexpr double kGravity_m_s2 = 9.80665;
   std::set<double> out;
   for (const std::string& number : numbers) {
     const double value = std::abs(std::stod(number));
-    if (digits_of(number).size() >= 3 && value != kGravity_m_s2) out.insert(value);
+    const bool power_of_two = value > 0.0 && std::exp2(std::round(std::log2(value))) == value;
+    if (digits_of(number).size() >= 3 && value != kGravity_m_s2 && !power_of_two) out.insert(value);
   }
   return out;
 }

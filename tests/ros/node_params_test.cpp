@@ -48,7 +48,7 @@ TEST(NodeParams, ReadsPosesBoxesAndSheets) {
   EXPECT_EQ(ros::imu_sheet("").rate_hz, ImuSheet{}.rate_hz);
   EXPECT_EQ(ros::lidar_sheet("rs16").range_min_m, 0.2);
   try {
-    ros::imu_sheet("mti3");
+    ros::imu_sheet("mti300");
     FAIL() << "an unknown sheet";
   } catch (const InvalidParams& error) {
     EXPECT_NE(std::string(error.what()).find("mti30, vn100"), std::string::npos) << error.what();

@@ -177,7 +177,8 @@ TEST(Run, WhereNothingIsLearntOfTheRigItIsSaid) {
       run_program({"run", "stroll", "--seed", "1", "--method", "rate/tumble_lag", "--learnt", file.string()});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_FALSE(fs::exists(file));
-  EXPECT_THAT(ended.err, HasSubstr("rig.json: not written: the run produced no calibration of the rig"));
+  EXPECT_THAT(ended.err,
+              HasSubstr("rig.json: the file was not written, because the run produced no calibration of the rig"));
 }
 
 TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {

@@ -77,7 +77,7 @@ TEST(ErrorCode, FilesOfAnotherKindAreNotReplaced) {
   kept("a.csv", {"import", (folder / "imu.csv").string(), "-o"}, "must end in .h5 or .hdf5");
   kept("a.h5", {"bench", "rate/raw", "-o"}, "must end in .jsonl");
   kept("a.h5", {"export", recording, "--format", "tum", "-o"}, "choose another output name that ends in .tum or .txt");
-  kept("a.tum", {"export", recording, "--format", "mcap", "-o"}, "ending in .mcap");
+  kept("a.tum", {"export", recording, "--format", "mcap", "-o"}, "ends in .mcap");
 }
 
 TEST(ErrorCode, ABagForARecordingPointsToImport) {

@@ -213,10 +213,10 @@ TEST_F(ExternalMethod, StampsInAnotherUnitAreNamedWithTheFirstThatIsOutside) {
   };
   EXPECT_GT(run(in("0")).poses.size(), 100u);
   EXPECT_THAT(refused(in("9")),
-              ::testing::AllOf(HasSubstr("poses.tum:1: stamp"),
+              ::testing::AllOf(HasSubstr("poses.tum:1: the stamp is"),
                                HasSubstr("must be in seconds; the values seem to be in nanoseconds")));
-  EXPECT_THAT(refused(in("6", "position")), HasSubstr("the values look like microseconds"));
-  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the values look like milliseconds"));
+  EXPECT_THAT(refused(in("6", "position")), HasSubstr("the values seem to be in microseconds"));
+  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the values seem to be in milliseconds"));
   EXPECT_THAT(refused(in("-3")), HasSubstr("must be in seconds"));
 }
 

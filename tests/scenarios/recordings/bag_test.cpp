@@ -208,14 +208,15 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in rad/s"));
   reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);
-  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("caution: gravity's rotation")));
+  EXPECT_THAT(read().notes,
+              testing::Contains(HasSubstr("caution: gravity rotates -1 times as far in the accelerometer axes")));
 }
 
 TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // a gyro alone
   write();
   EXPECT_THAT(complaint_of(), testing::AllOf(HasSubstr("topic /imu_reference:"),
-                                             HasSubstr("(--imu-topic selects which topics are read")));
+                                             HasSubstr("(--imu-topic selects the topics to read)")));
   reading_.imu_topics = {"/imu"};
   EXPECT_EQ(complaint_of(), "");
 }

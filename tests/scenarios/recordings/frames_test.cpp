@@ -125,7 +125,7 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
   EXPECT_THAT(held.notes,
               Contains(testing::AllOf(HasSubstr("/lidar/points: caution: /tf_static gives its pose in 'body' as"),
-                                      HasSubstr("but the given pose is (0.5 "))));
+                                      HasSubstr("but your option gives the pose (0.5 "))));
   // the same place said twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
   EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));

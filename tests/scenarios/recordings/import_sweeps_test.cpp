@@ -105,7 +105,8 @@ TEST_F(ImportSweeps, PointsInMillimetresAreRefusedWithoutASheetToo) {
   replaced("1 2 3\n", "1000 2000 3000\n");
   put("1.ply", text);
   put("2.ply", text);
-  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points are farther than 1000 m, twice the range of any robot lidar"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("6 of 6 points are farther than 1000 m, which is twice the range of any robot lidar"));
   replaced("1000 2000 3000\n", "100 200 300\n");  // far, and no more
   put("1.ply", text);
   put("2.ply", text);
@@ -219,8 +220,8 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("times.txt", "1.0\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt: contains 1 time stamps, but there are 2 sweeps"));
   put("times.txt", "# s\n1.1\n1.0\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase, because the "
-                                        "previous time stamp is 1100000000"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase; the "
+                                        "previous one is 1100000000 ns"));
   put("times.txt", "1.0\n1.1x\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a time"));
   put("times.txt", "1.0\n1.1\n");

@@ -56,7 +56,8 @@ TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
 TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
   EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 7.854),
               testing::AllOf(HasSubstr("100 % of them exceed 15.7 rad/s"), HasSubstr("The rates may be in deg/s")));
-  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 0.0), HasSubstr("beyond 100 rad/s, more than any robot rotates"));
+  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 0.0),
+              HasSubstr("exceed 100 rad/s, which is more than any robot rotates"));
   EXPECT_THAT(complaint_of(rolled(5.0, 7505.0), 7.854), HasSubstr("The rates may be in raw counts of the sensor"));
   EXPECT_EQ(complaint_of(rolled(5.0, 1.0), 7.854), "");
 }

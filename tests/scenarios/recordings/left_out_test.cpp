@@ -224,7 +224,7 @@ TEST_P(OddBag, ManyFaultyCloudsAreRefused) {
   change_cloud_ = [](int k, ros::PointCloud2& cloud) {
     if (k % 3 == 0) cloud.data.resize(cloud.data.size() / 2);
   };
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("message 0 of /points: "), HasSubstr("5 of 15 clouds are faulty")));
+  EXPECT_THAT(complaint(), AllOf(HasSubstr("message 0 of /points: "), HasSubstr("5 of 15 clouds have errors")));
 }
 
 TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
@@ -252,7 +252,7 @@ TEST_P(OddBag, EqualPointTimesMeanSweepsThatAreNotSkewed) {
 TEST_P(OddBag, PointTimesThatRunBackwardsAreACaution) {
   EXPECT_THAT(read().notes, Not(Contains(HasSubstr("points that are stored later have earlier times"))));
   for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset = 780'000u * (kPoints - 1) - offset;
-  EXPECT_THAT(read().notes, Contains(HasSubstr("/points: caution: the point times run backwards")));
+  EXPECT_THAT(read().notes, Contains(HasSubstr("/points: caution: points that are stored later have earlier times")));
 }
 
 TEST_P(OddBag, PointTimesOfAnotherClockCountFromTheFirstPoint) {
@@ -266,7 +266,9 @@ TEST_P(OddBag, PointTimesOfAnotherClockCountFromTheFirstPoint) {
     EXPECT_EQ(lidar.sweep_start_ns[k] + imported.info.origin_ns,
               kFirstStamp_ns + 100 * kMilli_ns * static_cast<int>(k));
   EXPECT_NEAR(lidar.offset_ns[kPoints - 1], 780'000.0 * (kPoints - 1), 1e3);
-  EXPECT_THAT(imported.notes, Contains(HasSubstr("/points: caution: the point times belong to another clock")));
+  EXPECT_THAT(imported.notes,
+              Contains(HasSubstr(
+                  "/points: caution: the point times and the time stamps of the sweeps come from different clocks")));
 }
 
 TEST_P(OddBag, CloudsWithPointTimesAreThePrimaryLidar) {
@@ -298,8 +300,9 @@ TEST_P(OddBag, PartsAreReadTogetherByTime) {
   EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 150u);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
   EXPECT_EQ(imported.info.origin_ns, kFirstStamp_ns);
-  EXPECT_THAT(imported.notes, Contains(AnyOf(HasSubstr("read together as parts of one recording: a.bag z.bag"),
-                                             HasSubstr("metadata.yaml does not list these files"))));
+  EXPECT_THAT(imported.notes,
+              Contains(AnyOf(HasSubstr("the import reads these bags as parts of one recording: a.bag z.bag"),
+                             HasSubstr("metadata.yaml does not list these files"))));
   if (std::string(GetParam().name) == "Ros2") {
     EXPECT_THAT(imported.notes, Contains(HasSubstr("parts_1.db3")));
     EXPECT_THAT(imported.notes, Contains(HasSubstr("the import reads the files in the order of time")));
@@ -349,7 +352,7 @@ TEST_F(OddTable, OneFaultyFileCostsOneSweep) {
   source.folder = folder_;
   source.format = "ply";
   fixture::put(folder_ / "times.txt", times);
-  EXPECT_THAT(fixture::complaint([&] { import_sweeps(source); }), HasSubstr("2 of 10 clouds are faulty"));
+  EXPECT_THAT(fixture::complaint([&] { import_sweeps(source); }), HasSubstr("2 of 10 clouds have errors"));
   fixture::put(folder_ / "4.PLY", head + "1 2 3\n1 2 4\n");
   const Imported imported = import_sweeps(source);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 9u);

@@ -146,7 +146,7 @@ TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
     lidar.T_BL.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
   });
   EXPECT_THAT(text,
-              AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("check the mounting")));
+              AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("Check the mounting")));
   // told by both: nothing to say
   EXPECT_THAT(text_of([](sim::ImuRecord& imu, sim::LidarRecord& lidar) {
                 imu.T_BI.linear() = lidar.T_BL.linear() =

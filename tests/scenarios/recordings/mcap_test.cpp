@@ -86,7 +86,7 @@ TEST_F(Mcap, MessagesOfRos1AreReadToo) {
 
 TEST_F(Mcap, OtherEncodingsAreNamed) {
   shape_.channel.message_encoding = "json";
-  EXPECT_THAT(complaint_of(shape_), HasSubstr("has no topic of type sensor_msgs/Imu"));
+  EXPECT_THAT(complaint_of(shape_), HasSubstr("there is no topic of type sensor_msgs/Imu"));
   fixture::put(file(), fixture::mcap_bytes(shape_));
   BagReading reading;
   reading.imu_topics = {"/imu"};

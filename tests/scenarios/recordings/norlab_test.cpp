@@ -164,7 +164,8 @@ TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
   EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: is a binary file"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"), HasSubstr("a.vtk:7: '5,5' is not a number"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"), HasSubstr("a.vtk:5: states 4000000000 points"));
-  EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"), HasSubstr("a.vtk:5: states 9 times 3 numbers, but 7"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"),
+              HasSubstr("a.vtk:5: states 9 times 3 numbers, but only 7 bytes"));
   EXPECT_THAT(complaint_of(head_ + points_ + points_), HasSubstr("a.vtk:8: POINTS occurs twice"));
   EXPECT_THAT(complaint_of(head_ + points_ + "POINT_DATA 3\n"), HasSubstr("POINT_DATA has 3 points, but POINTS has 2"));
   EXPECT_THAT(complaint_of(head_ + points_ + "POLYGONS 1 4\n"),

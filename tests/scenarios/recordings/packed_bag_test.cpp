@@ -119,9 +119,13 @@ TEST_F(PackedBag, MessagesAreUnpacked) {
   EXPECT_THAT(complaint(), HasSubstr("bag: message 0 of /tf_static: its Zstandard frame ends before"));
   const std::string bomb = packed_by_zstd(std::string(72u << 20, '\0'));
   pack_messages([&](std::string_view) { return bomb; });
-  EXPECT_THAT(complaint(), HasSubstr("message 0 of /tf_static: is not a Zstandard frame with a stated size"));
+  EXPECT_THAT(
+      complaint(),
+      HasSubstr("message 0 of /tf_static: is not a valid Zstandard frame; its stated size must be at most 64 MiB"));
   pack_messages([](std::string_view) { return std::string("plain"); });
-  EXPECT_THAT(complaint(), HasSubstr("message 0 of /tf_static: is not a Zstandard frame with a stated size"));
+  EXPECT_THAT(
+      complaint(),
+      HasSubstr("message 0 of /tf_static: is not a valid Zstandard frame; its stated size must be at most 64 MiB"));
 }
 
 TEST_F(PackedBag, OtherWaysOfPackingAreNamed) {

@@ -52,13 +52,13 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.imus[1].time_ns.back() = 1700000000000000000; }, "time_ns is 1700000000000000000 in row 69"},
       {[](auto& s) { s.imus[0].name = "a\xff\xfe"; },
        "sensors/imus/0: name must be UTF-8 text without control characters"},
-      {[](auto& s) { s.imus[0].device = "\x1b[31m"; }, "device is not plain text"},
-      {[](auto& s) { s.lidars[0].name = "\xc3"; }, "name is not plain text"},
+      {[](auto& s) { s.imus[0].device = "\x1b[31m"; }, "device must be UTF-8 text without control characters"},
+      {[](auto& s) { s.lidars[0].name = "\xc3"; }, "name must be UTF-8 text without control characters"},
       {[](auto& s) { s.lidars[0].sweep_start_ns[0] = std::numeric_limits<std::int64_t>::min(); },
        "sweep_start_ns is -9"},
       {[nan](auto& s) { s.imus[0].stated_gyro_range_rad_s = nan; }, "stated_gyro_range_rad_s is nan"},
-      {[](auto& s) { s.imus[0].T_BI.linear() *= 1.001; }, "T_BI is not a rotation"},
-      {[](auto& s) { s.imus[0].T_BI.linear() *= -1.0; }, "T_BI is not a rotation"},
+      {[](auto& s) { s.imus[0].T_BI.linear() *= 1.001; }, "T_BI is not a rigid transform"},
+      {[](auto& s) { s.imus[0].T_BI.linear() *= -1.0; }, "T_BI is not a rigid transform"},
       {[nan](auto& s) { s.imus[0].T_BI.translation().x() = nan; }, "T_BI is not finite"},
       {[nan](auto& s) { s.gravity_m_s2 = nan; }, "gravity_m_s2 is nan"},
       {[](auto& s) { s.sphere_radius_m = -1; }, "sphere_radius_m"},
@@ -83,7 +83,7 @@ TEST(RecordingCheck, NamesWhatContradicts) {
        "quantities/1: the name must consist of letters, digits and _, and must not be empty"},
       {[](auto& s) { s.series[0].quantities[1].name = ""; },
        "the name must consist of letters, digits and _, and must not be empty"},
-      {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit is not plain text"},
+      {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit must be UTF-8 text without control characters"},
       {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/1: the name is used twice"},
       {[](auto& s) {
          s.series[0].constants.push_back({"ground_pressure_pa", 1.0});
@@ -92,9 +92,10 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.series[0].constants[0].name = "a b"; },
        "constants/0: the name must consist of letters, digits and _, and must not be empty"},
       {[nan](auto& s) { s.series[0].constants[0].value = nan; }, "constants/0: the value is not finite"},
-      {[](auto& s) { s.series[0].kind = "\xff"; }, "sensors/series/0: kind is not plain text"},
+      {[](auto& s) { s.series[0].kind = "\xff"; },
+       "sensors/series/0: kind must be UTF-8 text without control characters"},
       {[](auto& s) { s.series[0].period_ns = 0; }, "sensors/series/0: period_ns is 0"},
-      {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX is not a rotation"},
+      {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX is not a rigid transform"},
       {[](auto& s) { s.series[0].time_ns.back() = 1700000000000000000; }, "time_ns is 1700000000000000000 in row 4"}};
   for (const Case& each : cases) {
     sim::Sensors sensors = fixture::recording().sensors;
@@ -130,7 +131,7 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.imus[0].accel_element_offset_m_s2.y() = std::nan(""); },
        "truth/imus/0: accel_element_offset_m_s2 is not finite"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
-      {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX is not a rotation"},
+      {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX is not a rigid transform"},
       {[](auto& t) { t.series[0].quantities[1].name = " "; },
        "truth/series/0: quantities/1: the name must consist of letters, digits and _, and must not be empty"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};

@@ -86,7 +86,7 @@ TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   ASSERT_TRUE(imported.reference.has_value());
   EXPECT_EQ(imported.reference->p_WB_m.at(1).x(), 1.0);
   EXPECT_THAT(imported.notes, testing::Contains(testing::HasSubstr("the stamps of the reference count from zero; "
-                                                                   "1000000000 s are added to them")));
+                                                                   "1000000000 s are added to these times")));
 }
 
 }  // namespace

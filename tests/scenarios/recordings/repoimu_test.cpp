@@ -232,7 +232,7 @@ TEST_F(Repoimu, BadInputHasFileLineValueAndBound) {
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "")),
               HasSubstr("csv:6: column IMU Gyroscope must be a number; it is ''"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "1.000,5")), HasSubstr("must be a number; it is '1.000,5'"));
-  EXPECT_THAT(complaint_of(good + row("0.02")), HasSubstr("csv:6: Time decreases: 0.02 s after 0.03 s"));
+  EXPECT_THAT(complaint_of(good + row("0.02")), HasSubstr("csv:6: Time decreases: 0.02 s follows 0.03 s"));
   EXPECT_THAT(complaint_of(good + row("0.0405") + row("0.0405")), HasSubstr("Time must increase"));
   EXPECT_THAT(complaint_of(good + row("-1")), HasSubstr("csv:6: Time is -1 s; it must be within 0 and"));
   EXPECT_THAT(complaint_of(header + row("0.01", "0.7") + row("0.02", "0.7")),

@@ -159,7 +159,9 @@ TEST(ColumnLidar, ElevationsShiftFromSweepToSweep) {
   sensor.values.set("elevation_shift_share", 0.25);
   const Cast out = cast(room(), sensor, resting(0.5));
   const auto lowest_rad = [&](std::size_t sweep) {
-    const Eigen::Vector3d p = out.record.position_L_m[out.record.sweep_first[sweep]].cast<double>();
+    std::size_t i = out.record.sweep_first[sweep];
+    while (out.record.ring[i] != 0) ++i;  // a sweep may start with another bank of rings
+    const Eigen::Vector3d p = out.record.position_L_m[i].cast<double>();
     return std::asin(p.z() / p.norm());
   };
   const double spacing_rad = 45.0 / 63.0 * M_PI / 180.0;

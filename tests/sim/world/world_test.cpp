@@ -129,7 +129,8 @@ TEST(Hill, ACrowdedForestIsRefusedInOneLine) {
     compose_world("hill", 1, values);
     FAIL() << "300 trunks found room";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("no room for another trunk"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("the area has no space left; reduce the number of objects of the kind trunk"));
   }
 }
 
