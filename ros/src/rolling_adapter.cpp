@@ -49,7 +49,7 @@ void RollingAdapter::publish_diagnostics(TimeNs time_ns) {
   out.message = !health.ok() ? health.message() : newest && newest->uncertain ? "position is uncertain" : "ok";
   if (!newest) out.message = "no pose yet";
   add_input(out, "imu", imu_);
-  add(out, "restarts after a gap or a step of the clock", odometry_.gaps());
+  add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());
   publisher_.diagnostics(time_ns, out);
 }

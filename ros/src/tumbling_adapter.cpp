@@ -161,7 +161,7 @@ void TumblingAdapter::publish_diagnostics() {
   out.message = !health.ok() ? health.message() : last_ ? "ok" : "no registered sweep yet";
   add_input(out, "imu", imu_);
   add_input(out, "clouds", clouds_);
-  add(out, "restarts after a gap or a step of the clock", odometry_.gaps());
+  add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());
   add(out, "dropped sweeps", odometry_.dropped_sweeps());
   add(out, "sweeps before the first IMU sample", odometry_.early_sweeps());

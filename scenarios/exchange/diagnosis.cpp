@@ -201,12 +201,12 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
                    fmt::format("{} of {} sweeps are registered ({}, minimum {})", registered, sweeps,
                                percent_text(share), percent_text(kRegisteredShareMin)),
                    "check --T-body-lidar and the other findings"});
-  const auto moved = estimate.health.find("lidar_calibration_mahalanobis");
-  if (moved != estimate.health.end() && moved->second > StatedCalibration::kDistanceMax_sigmas)
+  const double moved_sigmas = estimate.lidar_calibration_sigmas.value_or(0.0);
+  if (moved_sigmas > StatedCalibration::kDistanceMax_sigmas)
     out.push_back({"odometry",
                    fmt::format("the estimated pose or clock of the lidar is {} standard deviations from the stated one "
                                "(limit {})",
-                               rounded(moved->second), rounded(StatedCalibration::kDistanceMax_sigmas)),
+                               rounded(moved_sigmas), rounded(StatedCalibration::kDistanceMax_sigmas)),
                    "--T-body-lidar with the measured pose of the lidar"});
   return out;
 }

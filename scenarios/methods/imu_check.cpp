@@ -44,7 +44,7 @@ void report_quantities(const ImuFindings& findings, Estimate& estimate) {
   }
   if (!findings.pivots) return;
   estimate.health["pivot_evidence"] = findings.pivots->evidence;
-  estimate.health["pivot_segments"] = static_cast<double>(findings.pivots->counted);
+  estimate.health["pivot_segments"] = static_cast<double>(findings.pivots->compared_segments);
   if (!std::isfinite(findings.pivots->scale_sigma)) return;
   estimate.health["pivot_scale"] = findings.pivots->scale;
   estimate.health["pivot_scale_sigma"] = findings.pivots->scale_sigma;

@@ -113,6 +113,7 @@ class Collector {
     const double moved = given_.deviations(odometry.mapper().calibration());
     const RecordingEstimate* const whole = odometry.recording();
     const bool off = whole ? whole->mapped.calibration_is_off() : moved > StatedCalibration::kDistanceMax_sigmas;
+    estimate_.lidar_calibration_sigmas = moved;
     estimate_.health["lidar_calibration_mahalanobis"] = moved;
     scenarios::conclude(odometry.mapper(), off, localisation_, &odometry.sweep_scale(), estimate_);
   }

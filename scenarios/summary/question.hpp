@@ -10,7 +10,7 @@
 #include "scenarios/sweep/results.hpp"
 
 /// Stops a sweep early. While simulated runs complete, the functions test whether one method is better than another
-/// (docs/maths/statistics.md, "Stopping when the question is answered").
+/// (docs/maths/statistics.md, "Sequential test").
 namespace tumble::scenarios {
 
 /// Key of the note that stores the question as text, written by `describe`.

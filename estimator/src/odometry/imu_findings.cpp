@@ -83,7 +83,7 @@ ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> sam
     plausibility.step(sample, state);
   }
   ImuFindings out;
-  out.readings = {gravity.magnitude_error_ratio(at_rest),         plausibility.force_share(state),
+  out.readings = {gravity.magnitude_error_ratio(at_rest),         plausibility.force_ratio(state),
                   plausibility.unexplained_rotation_ratio(state), plausibility.rotation_slope(state),
                   plausibility.rotation_agreement(state),         plausibility.frozen_s(state),
                   plausibility.better_axis_labels(state)};

@@ -125,7 +125,7 @@ Status TumblingOdometry::add_motion(const MotionReading& motion) {
 
 Status TumblingOdometry::add_reading(const OdometerReading& reading) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
-  const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kMost;
+  const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
   return readings_.add(reading, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }

@@ -40,7 +40,8 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
                       RecordingEstimate& out) {
   const RegimeSmoother smoother(odometry::recording_rate_params(params));
   if (Status status = smoother.estimate(samples, out.rates, out.report); !status.ok()) return status;
-  const std::optional<double> hand_held = out.report.judged ? std::optional(out.report.shares.hand_held) : std::nullopt;
+  const std::optional<double> hand_held =
+      out.report.judged ? std::optional(out.report.probabilities.hand_held) : std::nullopt;
   out.findings = check_recording(checked_imu(params), samples, out.rates, hand_held);
   out.suspect_rad2_s2 = suspect_covariance(out.findings, samples, out.rates);
   for (std::size_t k = 0; k < out.suspect_rad2_s2.size(); ++k)

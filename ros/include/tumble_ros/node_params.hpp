@@ -63,7 +63,7 @@ template <class Params, class Each>
 void visit_parameters(Params& params, Each each) {
   const auto derived = std::remove_cv_t<Params>::derived_fields();
   visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
-    if (!is_among(std::string_view(name), derived)) each(name, value, field);
+    if (!matches_any(std::string_view(name), derived)) each(name, value, field);
   });
 }
 

@@ -48,7 +48,7 @@ struct ImuFinding {
 struct ImuFindings {
   struct Readings {
     double rest_force_share = 1.0;  ///< RestGravity::magnitude_error_ratio
-    double force_share = 1.0;       ///< the following members: see ImuPlausibility
+    double force_ratio = 1.0;       ///< the following members: see ImuPlausibility
     double unexplained_rotation_ratio = 0.0;
     double rotation_slope = 1.0, rotation_agreement = 1.0;
     double frozen_s = 0.0;
