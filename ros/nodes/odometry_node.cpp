@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry_node.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace tumble::ros {

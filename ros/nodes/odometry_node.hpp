@@ -4,6 +4,9 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <type_traits>
 
 #include <chrono>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>

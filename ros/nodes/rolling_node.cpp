@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
 #include <rclcpp_components/register_node_macro.hpp>
+#include <span>
 
 #include "odometry_node.hpp"
 #include "tumble_ros/rolling_adapter.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <rclcpp_components/register_node_macro.hpp>

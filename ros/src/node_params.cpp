@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble_ros/node_params.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string>
+#include <utility>
 
 namespace tumble::ros {
 

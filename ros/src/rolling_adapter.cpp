@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble_ros/rolling_adapter.hpp"
 
+#include <optional>
+
 #include "adapter_values.hpp"
 
 namespace tumble::ros {

@@ -3,6 +3,9 @@
 #include "tumble_ros/node_params.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
 
 #include <set>
 

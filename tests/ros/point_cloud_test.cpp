@@ -3,6 +3,7 @@
 #include "tumble_ros/point_cloud.hpp"
 
 #include <gtest/gtest.h>
+#include <cstdint>
 
 #include <limits>
 

@@ -3,6 +3,9 @@
 #include "tumble_ros/publisher.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cstring>
 
 #include <cmath>
 #include <random>

@@ -5,6 +5,7 @@
 /// nodes are checked for errors against these declarations and the real messages, because PyPI has no rclcpp.
 #include <builtin_interfaces/msg/time.hpp>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <geometry_msgs/msg/transform_stamped.hpp>

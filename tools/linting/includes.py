@@ -24,8 +24,8 @@ _HEADERS = {
     "cctype": "isalnum isalpha isdigit islower tolower toupper",
     "charconv": "from_chars to_chars",
     "chrono": "chrono milli",
-    "cmath": """acos asin atan atan2 atanh cbrt ceil comp_ellint_1 copysign cos ellint_1 erfc exp expm1 floor fmax fmod hypot
-        isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nan nanf nextafter pow round signbit sin sqrt tan
+    "cmath": """acos asin atan atan2 atanh cbrt ceil comp_ellint_1 copysign cos ellint_1 erfc exp exp2 expm1 floor fmax fmin fmod hypot
+        isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nan nanf nextafter pow remainder round signbit sin sqrt tan
         tanh""",
     "complex": "complex norm polar",
     "concepts": "same_as unsigned_integral",
@@ -36,7 +36,7 @@ _HEADERS = {
     "cstring": "memcmp memcpy strcmp strerror strlen",
     "ctime": "clock clock_t strftime time time_t tm",
     "deque": "deque",
-    "exception": "exception_ptr rethrow_exception",
+    "exception": "current_exception exception_ptr rethrow_exception",
     "filesystem": "filesystem",
     "fstream": "ifstream ofstream",
     "functional": "function identity",
@@ -75,7 +75,7 @@ _ANY_OF = {
     "errc": ["charconv", "system_error"], "error_code": ["filesystem", "system_error"], "generic_category": ["system_error"],
     "make_error_code": ["system_error"], "system_error": ["system_error", "filesystem"],
     "exception": ["exception", "stdexcept", "filesystem", "new", "functional", "memory"],
-    "getline": ["string"], **dict.fromkeys("ios ios_base istream ostream streamoff streamsize ws".split(), _STREAMS),
+    "getline": ["string"], "ssize": ["iterator", "span", "string", "vector"], "showpoint": ["ios", "iostream", "sstream"], **dict.fromkeys("ios ios_base istream ostream streamoff streamsize ws".split(), _STREAMS),
     "stod": ["string"], "stoll": ["string"], "string": ["string"], "to_string": ["string"],
     "string_view": ["string_view", "string"],
     "less": ["functional", "map", "set"],

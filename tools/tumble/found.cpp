@@ -2,6 +2,7 @@
 #include "tools/tumble/found.hpp"
 
 #include <fmt/format.h>
+#include <cmath>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -2,6 +2,7 @@
 #include "tools/tumble/sweeping.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "tools/tumble/progress.hpp"
 

@@ -243,8 +243,7 @@ TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s); }),
               HasSubstr("The rates may be in rad/s"));
   fixture::put(folder_ / "sign.csv", turning(1.0, -1.0));
-  EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0),
-              HasSubstr("caution: gravity rotates -1 times as far in the accelerometer axes"));
+  EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity rotates -1 times"));
   EXPECT_THAT(import(kHeader + line("1,0") + line("1,10000000")).notes,
               testing::Contains(HasSubstr("rates are read in rad/s, with unchanged signs and axes")));
 }
@@ -307,8 +306,7 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
   EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: contains a zero byte"));
   std::string returns = good;
   std::replace(returns.begin(), returns.end(), '\n', '\r');
-  EXPECT_THAT(complaint_of(returns),
-              HasSubstr("csv: the lines end in a carriage return; they must end in a line feed"));
+  EXPECT_THAT(complaint_of(returns), HasSubstr("csv: the lines end in a carriage return; they must end in a"));
 }
 
 // to open it for reading waits for who writes to it
