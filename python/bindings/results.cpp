@@ -195,7 +195,7 @@ void bind_map(nb::module_& m) {
           "Returns the map that save() stored. Raises TumbleError if the bytes are damaged or of another kind.")
       .def_static(
           "from_positions",
-          [](nb::handle position) {
+          [](const ArrayLike& position) {
             const nb::object rows = as_array(position, "position");
             const auto count = nb::len(rows);
             const std::vector<double> numbers = numbers_of(rows.attr("reshape")(-1), "position", 3 * count);

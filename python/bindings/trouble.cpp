@@ -16,14 +16,15 @@ nb::object error_class() {
   return nb::module_::import_("tumble.errors").attr("TumbleError");
 }
 
-/// Raises TumbleError from a message of InvalidParams: "FIELD is VALUE, must be BOUND".
+/// Raises TumbleError from a message of InvalidParams: "FIELD is VALUE; it must be BOUND".
 void set_invalid(const std::string& message) {
-  const std::size_t is = message.find(" is "), must = message.find(", must be ");
+  constexpr std::string_view kMust = "; it must be ";
+  const std::size_t is = message.find(" is "), must = message.find(kMust);
   nb::object field = nb::none(), value = nb::none(), bound = nb::none();
   if (is != std::string::npos && must != std::string::npos && is < must) {
     field = nb::str(message.substr(0, is).c_str());
     value = nb::float_(nb::str(message.substr(is + 4, must - is - 4).c_str()));
-    bound = nb::str(message.substr(must + 10).c_str());
+    bound = nb::str(message.substr(must + kMust.size()).c_str());
   }
   const nb::object type = error_class();
   const nb::object error = type(message.c_str(), "out_of_range", field, value, bound);
