@@ -8,16 +8,32 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <fstream>
+#include <memory>
+#include <vector>
 
 #include "scenarios/sweep/small_catalogue.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
+/// Takes the memory that earlier tests have freed and that malloc still holds. Otherwise a worker that is forked from
+/// this process could serve itself from it, whatever its limit.
+std::vector<std::unique_ptr<char[]>> freed_memory() {
+  malloc_trim(0);
+  std::vector<std::unique_ptr<char[]>> out;
+  out.reserve(1u << 20);
+  for (const std::size_t size : {65536u, 4096u, 512u}) {
+    const auto held = mallinfo2().arena;
+    while (out.size() < out.capacity() && mallinfo2().arena == held && mallinfo2().fordblks > size)
+      out.push_back(std::make_unique<char[]>(size));
+  }
+  return out;
+}
+
 /// Enough for the process as it is, too little for a world: what it has of data now, and a little.
 double too_little_mib() {
-  malloc_trim(0);  // what earlier tests have freed would serve the worker
   std::ifstream file("/proc/self/statm");
   double pages[6] = {};
   for (double& each : pages) file >> each;
@@ -100,6 +116,7 @@ TEST_F(DrawWorkerTest, MemoryIsLimited) {
   const DataRoot data{folder_};
   const SweepPlan plan(data, suite_, options_, folder_ / "a.db");
   const Results none(folder_ / "a.db", Results::Mode::create_or_append);
+  const auto taken = freed_memory();
   DrawWorker worker({data, plan, suite_.timeout_s, too_little_mib()});
   ASSERT_TRUE(worker.give(plan.next(none), now_s() + 60.0));
   std::size_t outcomes = 0;
