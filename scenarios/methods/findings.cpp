@@ -58,29 +58,29 @@ bool is_said(HealthFinding::About about, double value) {
 
 auto place_of(const std::string& row, std::vector<HealthFinding>& findings) {
   return std::lower_bound(findings.begin(), findings.end(), row,
-                          [](const HealthFinding& doubt, const std::string& name) { return row_of(doubt) < name; });
+                          [](const HealthFinding& finding, const std::string& name) { return row_of(finding) < name; });
 }
 
 }  // namespace
 
-std::string row_of(const HealthFinding& doubt) {
-  return doubt.unit + row_name(doubt.about);
+std::string row_of(const HealthFinding& finding) {
+  return finding.unit + row_name(finding.about);
 }
 
-void add_finding(const HealthFinding& doubt, Estimate& estimate) {
-  const std::string row = row_of(doubt);
+void add_finding(const HealthFinding& finding, Estimate& estimate) {
+  const std::string row = row_of(finding);
   const auto at = place_of(row, estimate.findings);
   if (at != estimate.findings.end() && row_of(*at) == row) {
-    *at = doubt;
+    *at = finding;
   } else {
-    estimate.findings.insert(at, doubt);
+    estimate.findings.insert(at, finding);
   }
-  estimate.health[row] = doubt.value;
+  estimate.health[row] = finding.value;
 }
 
-bool has_finding(const HealthFinding& doubt, const Estimate& estimate) {
+bool has_finding(const HealthFinding& finding, const Estimate& estimate) {
   return std::any_of(estimate.findings.begin(), estimate.findings.end(), [&](const HealthFinding& known) {
-    return known.about == doubt.about && known.unit == doubt.unit;
+    return known.about == finding.about && known.unit == finding.unit;
   });
 }
 

@@ -47,14 +47,14 @@ inline constexpr std::array kAllFindings = {
 
 /// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. No other
 /// function defines keys of failed checks.
-std::string row_of(const HealthFinding& doubt);
+std::string row_of(const HealthFinding& finding);
 
 /// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. A failed check with an
 /// equal key is replaced.
-void add_finding(const HealthFinding& doubt, Estimate& estimate);
+void add_finding(const HealthFinding& finding, Estimate& estimate);
 
-/// Returns true if the estimate already has a failed check with the same key as `doubt`.
-bool has_finding(const HealthFinding& doubt, const Estimate& estimate);
+/// Returns true if the estimate already has a failed check with the same key as `finding`.
+bool has_finding(const HealthFinding& finding, const Estimate& estimate);
 
 /// Adds an entry to the health which states that the check `about` passed.
 void report_no_findings(HealthFinding::About about, Estimate& estimate);

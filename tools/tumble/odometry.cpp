@@ -119,8 +119,8 @@ double imu_duration_s(const sim::ImuRecord& imu) {
 std::string health_text(const Estimate& estimate) {
   if (!estimate.status.ok()) return "failed";
   std::string text;
-  for (const scenarios::HealthFinding& doubt : estimate.findings)
-    text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", row_of(doubt), doubt.value);
+  for (const scenarios::HealthFinding& finding : estimate.findings)
+    text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", row_of(finding), finding.value);
   return text.empty() ? "ok" : text;
 }
 

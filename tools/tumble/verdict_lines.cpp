@@ -54,9 +54,9 @@ const char* meaning(scenarios::HealthFinding::About about) {
 
 std::vector<std::string> verdict_lines(const scenarios::Estimate& estimate) {
   std::vector<std::string> out;
-  for (const scenarios::HealthFinding& doubt : estimate.findings) {
-    const char* const said = meaning(doubt.about);
-    if (said != nullptr) out.push_back(fmt::format("{} {:.6g}: {}", row_of(doubt), doubt.value, said));
+  for (const scenarios::HealthFinding& finding : estimate.findings) {
+    const char* const said = meaning(finding.about);
+    if (said != nullptr) out.push_back(fmt::format("{} {:.6g}: {}", row_of(finding), finding.value, said));
   }
   return out;
 }
