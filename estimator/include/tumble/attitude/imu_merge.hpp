@@ -35,7 +35,7 @@ struct ImuMergeParams {
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});

@@ -36,7 +36,7 @@ class RegimeStream {
     double carried_min = 0.02;         ///< minimum probability of hand-held motion for which HandHeldStream runs
     double near_s = 0.1;               ///< clipped samples within this time of each other form one segment
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);

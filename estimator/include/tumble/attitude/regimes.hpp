@@ -46,7 +46,7 @@ class RegimeEvidence {
     double contacts_hz = 5.0;      ///< rate of changes between flight and contact
     double throws_hz = 0.02;       ///< rate of changes between hand-held motion and flight or contact
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

@@ -18,7 +18,7 @@ class Strapdown {
   struct Params {
     double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s,

@@ -48,7 +48,7 @@ struct VqfParams {
   using Expert = VqfExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,

@@ -79,7 +79,7 @@ struct OdometryParams {
   using Expert = OdometryExpertParams;
   Expert expert;  ///< parameters that few users change
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s,

@@ -34,7 +34,7 @@ struct PlaneBounds {
   /// or through a room's corner lies in its own plane.
   int off_line_min = 2;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});

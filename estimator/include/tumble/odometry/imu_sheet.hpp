@@ -19,7 +19,7 @@ struct ImuSheet {
   double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
   double accel_noise_m_s2_sqrt_hz = 5.9e-4;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", FieldRank::basic});

@@ -13,7 +13,7 @@ struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m,

@@ -75,7 +75,7 @@ class RollingOdometry {
     /// level floor, because the accelerometer bias of such an IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", FieldRank::basic});

@@ -61,7 +61,7 @@ struct RollingParams {
   using Expert = RollingExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});

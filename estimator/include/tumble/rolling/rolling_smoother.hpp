@@ -46,7 +46,7 @@ class RollingSmoother {
     /// means that no distance was measured.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);

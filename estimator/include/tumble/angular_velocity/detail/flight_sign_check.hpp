@@ -53,7 +53,7 @@ class FlightSignCheck {
     double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is not hand-held
     double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,

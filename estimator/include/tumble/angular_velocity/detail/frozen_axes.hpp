@@ -37,7 +37,7 @@ class FrozenAxes {
     double rail_stationary_s = 1.5;  ///< duration of rest on all other axes while an axis is saturated
     double rail_repeated_s = 5.0;    ///< longest saturated repetition of a working axis in motion
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,

@@ -29,7 +29,7 @@ class StreamingClippingFinder {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);

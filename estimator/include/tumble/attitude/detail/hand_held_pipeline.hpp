@@ -22,7 +22,7 @@ class HandHeldPipeline {
     HandHeldStream::Params stream;
     StreamingClippingFinder::Params rails;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);

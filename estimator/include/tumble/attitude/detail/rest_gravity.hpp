@@ -46,7 +46,7 @@ class RestGravity {
     double gap_max_s = 0.1;           ///< a longer gap separates rests, as an impact may change the rate
     double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

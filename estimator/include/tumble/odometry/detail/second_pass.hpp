@@ -42,7 +42,7 @@ class SecondPass {
     double inflation = 4.0;
     double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
