@@ -14,16 +14,16 @@
 namespace tumble {
 
 /// AuxiliaryAccelerometer contains the readings of a second accelerometer on the same rigid body as the primary IMU.
-/// The readings are in the primary IMU's axes and at the time stamps of its samples. The readings of two accelerometers
-/// on one rigid body differ only by the effect of the body's rotation.
+/// The readings of the second accelerometer are in the axes and at the time stamps of the primary IMU. The readings of
+/// two accelerometers on one rigid body differ only by the effect of the body's rotation.
 struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in its axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one reading per sample of the primary IMU; NaN: no reading
 };
 
 /// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the same rigid body as the primary IMU.
-/// The estimator does not estimate the biases and mounting errors of an additional IMU. Instead, the standard
-/// deviations of the readings include the errors of bias and mounting.
+/// The estimator does not estimate the biases and mounting errors of an additional IMU. The standard deviations of an
+/// additional IMU's readings include the errors of bias and mounting.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
@@ -38,8 +38,8 @@ struct AuxiliaryImu {
 
 /// AuxiliaryReading is the reading of an additional IMU at the time of a sample of the primary IMU. The rate and force
 /// are in the axes of the additional IMU, and NaN marks an axis without a valid reading. While a sensing element clips,
-/// AuxiliaryReading stores the components along the unsaturated sensing elements instead of the axes. The reason is
-/// that the device's misalignment compensation spreads the saturation error over all axes.
+/// AuxiliaryReading stores the components along the unsaturated sensing elements instead of the axes. The device's
+/// misalignment compensation spreads the error of a saturated sensing element over all axes.
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;

@@ -22,8 +22,8 @@ struct SaturationLevels {
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
   /// Returns the saturation planes that are used to classify readings as clipped. If the device clips its output after
-  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. The result then contains
-  /// planes only for sensing elements without a known saturation limit.
+  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. For such a device, the
+  /// function returns planes only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
   /// Returns the sensing directions of the three sensing elements of the gyro or the accelerometer. The argument
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
@@ -100,7 +100,8 @@ class ClippingFinder {
                          bool& clips_after_compensation) const;
 
   RailDetector axis_aligned_rails_;
-  // index 0: gyro, index 1: accelerometer; inner index 1: finder for readings that exceed the stated range
+  // first index: 0 for the gyro, 1 for the accelerometer; second index: 1 for a finder for readings that exceed the
+  // stated range
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;
 };

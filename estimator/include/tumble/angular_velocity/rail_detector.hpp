@@ -132,19 +132,18 @@ class RailDetector {
   /// Returns the clipped axes of one finite sample, according to the current saturation limits. Cost: O(1). The
   /// argument `state` also stores the hysteresis of the classification.
   Clipping classify(const ImuSample& sample, State& state) const;
-  /// Classifies all samples of a recording with the saturation limits of the whole recording. Cost: O(N). The clipped
-  /// samples include the edges on both sides of each plateau.
+  /// Classifies all samples of a recording with the saturation limits of the whole recording. Cost: O(N). The samples
+  /// at both edges of a plateau of saturated readings count as clipped.
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
   /// Adds the axes on the rising edge of a plateau to `clipping`. An axis is on the rising edge if `sample` is near the
-  /// saturation limit and `next` is clipped. The rising edge uses the same distance from the saturation limit as the
-  /// falling edge.
+  /// saturation limit and `next` is clipped. The threshold is equal for the rising and the falling edge.
   void add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                        Clipping& clipping) const;
 
-  /// Returns the saturation limit of channel c (0-5). The limit comes from a plateau of the channel, else from the
-  /// largest plateau of another axis of the same sensor, else from the stated range. A limit from another axis or from
-  /// the stated range applies only while all readings of channel c are below the limit.
+  /// Returns the saturation limit of channel c (0-5). The saturation limit comes from a plateau of channel c, or else
+  /// from the largest plateau on another axis, or else from the stated range. A saturation limit from another axis or
+  /// from the stated range applies only while all readings of channel c are below the limit.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns whether a plateau or a larger reading contradicts the stated range of channel c.
   bool disagrees(const State& state, int c) const;

@@ -36,7 +36,7 @@ struct RailPlane {
   double margin_rad_s(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
-  /// Returns whether a reading is at or beyond the plane with the sign `sign`. Returns false if no saturation of this
+  /// Returns whether a reading is at or beyond the plane with the sign `sign`. Returns false if no saturation with this
   /// sign was observed.
   bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return seen(sign) && margin_rad_s(reading_rad_s, sign) <= tolerance_rad_s;

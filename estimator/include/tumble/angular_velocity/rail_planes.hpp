@@ -53,8 +53,8 @@ class RailPlaneFinder {
     double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
     double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
     double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses the known planes from the
-    /// start of a run until readings contradict them. Planes of one device change by a fraction of a percent between
+    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
+    /// of a run until readings contradict the planes. Planes of one device change by a fraction of a percent between
     /// runs. A new plane near a known plane has a higher prior probability.
     RailPlanes known = {};
 

@@ -28,7 +28,8 @@ struct RateModelParams {
   /// Prior standard deviation of each cross-axis sensitivity of the gyro (RigConstants::elements), before the device's
   /// compensation.
   double element_sigma = 0.03;
-  /// Calibration from an earlier run. The calibration replaces `nominal` and its five standard deviations.
+  /// Calibration from an earlier run. The calibration replaces the prior mean `nominal` and the five prior standard
+  /// deviations.
   std::optional<RigCalibration> calibration = std::nullopt;
 
   /// Additional IMUs on the body, at most kAuxiliaryImusMax. Each call that adds a sample must also pass the readings
@@ -43,8 +44,9 @@ struct RateModelParams {
   double accel_noise_density = 5.9e-4;
   /// Known sensor errors, which the estimator subtracts from the readings.
   SensorErrors errors = {};
-  /// Largest possible angular rate and angular acceleration of the body. Both maxima limit the estimate while the gyro
-  /// is clipped. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the angular acceleration.
+  /// Largest possible angular rate and angular acceleration of the body. The maximum rate and acceleration limit the
+  /// estimate while the gyro is clipped. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the
+  /// angular acceleration.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 

@@ -27,7 +27,7 @@ struct RateSmootherParams {
   RailDetector::Params rails = {};
   double recovered_sigma_rad_s = 0.5;  ///< clipped rates with a smaller standard deviation count as recovered
   /// Largest accepted Mahalanobis distance of the estimated rig constants from their prior
-  /// (RateReport::calibration_mahalanobis). If the distance exceeds this maximum, RateSmoother estimates the run again
+  /// (RateReport::calibration_mahalanobis). If the distance exceeds the maximum, RateSmoother estimates the run again
   /// with the rig constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
   /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). RateSmoother uses the earlier sensor
@@ -72,7 +72,7 @@ struct RateReport {
   std::array<bool, 6> rail_observed{};        ///< the limit was observed on this axis, not inferred from another axis
   RailPlanes planes;                          ///< saturation planes of the gyro's sensing elements, where observed
   RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's sensing elements, in m/s^2
-  /// Estimated sensor errors with their covariance.
+  /// Estimated sensor errors and the covariance of the estimate.
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to gyro and accelerometer [s]. The standard deviation of the common delay is

@@ -25,21 +25,22 @@ namespace tumble {
 /// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the
 /// measurement models of RateSmoother over a sliding window of fixed length. RateStream makes one Gauss-Newton step per
 /// sample, or one step every 5 ms if samples are closer together. When a sample leaves the window, RateStream
-/// marginalises the sample into a Gaussian prior on the next sample and on RigConstants.
+/// marginalises the sample into a Gaussian prior on the next sample and on the rig constants.
 ///
-/// push() returns the estimate of a sample that is `lag_s` old, and newest() returns a provisional estimate of the
-/// newest sample. A step costs O(window). Above a sample rate of 200 Hz, the cost per second grows linearly with the
-/// sample rate; below 200 Hz, it grows quadratically. RateStream allocates no memory after the State is created.
+/// The function push() returns the estimate of a sample that is `lag_s` old. The function newest() returns a
+/// provisional estimate of the newest sample. A step costs O(window). The cost per second grows linearly with sample
+/// rates above 200 Hz, and quadratically with sample rates below 200 Hz. RateStream allocates no memory after the State
+/// is created.
 ///
-/// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After it detects a new
-/// saturation limit, RateStream classifies the samples in the window again. RateStream therefore treats a clipped
+/// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After the detection of a
+/// new saturation limit, RateStream classifies the samples in the window again. RateStream therefore treats a clipped
 /// sample as unclipped only if the sample left the window before the detection. With the calibration of an earlier run,
 /// the rate error of RateStream is 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99
 /// % of the rate errors are within three standard deviations. If RateStream estimates the calibration during the
-/// tumble, its rate error is 1.6 times that of RateSmoother, or 1.2 times with a lag of 0.5 s. The measured error
-/// ratios are in docs/maths/rate_stream.md. The errors of the samples of one flight are correlated. RateStream
-/// therefore increases the covariance of calibration and rates until enough flight samples are processed. The
-/// limitations of RateSmoother also apply to RateStream.
+/// tumble, the rate error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of 0.5 s. The measured error
+/// ratios are in docs/maths/rate_stream.md. The rate errors during one flight are correlated. RateStream therefore
+/// increases the covariance of calibration and rates until enough flight samples are processed. The limitations of
+/// RateSmoother also apply to RateStream.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -69,9 +70,9 @@ class RateStream {
   /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Returns whether the IMU's readings are currently plausible. The error is `out_of_range` with the name of a frozen
-  /// axis, or of an accelerometer with inverted sign. While a gyro axis is frozen, the standard deviation of its rate
-  /// is the largest rate measured so far.
+  /// Returns whether the IMU's readings are currently plausible. The error `out_of_range` names a frozen axis, or an
+  /// accelerometer with inverted sign. While a gyro axis is frozen, the standard deviation of its rate is the largest
+  /// rate measured so far.
   Status health(const State& state) const;
 
   /// Returns the estimated rig constants and their covariance.

@@ -11,12 +11,12 @@
 
 namespace tumble {
 
-/// Detects when an IMU is stationary. RestDetector detects rest if three conditions hold for a minimum time. The rate
-/// is within a plausible gyro bias, the force is large enough to be gravity, and both are constant up to noise.
-/// RestDetector first averages the readings over `reading_s`, so its parameters do not depend on the sample rate. White
-/// noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging. Set each spread
-/// parameter to at least five standard deviations of the averaged noise. A steady rotation about the vertical slower
-/// than `rate_max_rad_s` also counts as rest.
+/// Detects when an IMU is stationary. RestDetector detects rest if three conditions hold for a minimum time. The
+/// measured rate is within a plausible gyro bias, the force is large enough to be gravity, and rate and force are
+/// constant up to noise. RestDetector first averages the readings over `reading_s`, so that the parameters do not
+/// depend on the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s)
+/// after averaging. Set each spread parameter to at least five standard deviations of the averaged noise. A steady
+/// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 ///
 /// Each class that uses RestDetector has its own default parameters, as docs/design.md explains.
 class RestDetector {

@@ -17,11 +17,11 @@ namespace tumble {
 /// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped.
 ///
 /// Saave implements a published method in two stages (Deschenes et al., "Saturation-Aware Angular Velocity Estimation",
-/// ICRA 2024, eqs 5-7). The recursive stage processes the samples in order and assumes that the rotation axis equals
-/// that of the last accepted sample. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the axis
+/// ICRA 2024, eqs 5-7). The recursive stage processes the samples in order and assumes that the rotation axis of the
+/// last accepted sample is still valid. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the axis
 /// direction e and the lever arm t. In free flight, the component of the specific force along l is |l| |w|^2, where w
-/// is the rate. Saave computes the clipped axis of the rate from this force component and the two unclipped axes. In
-/// the smoothing stage, Saave smooths the rates of all samples with a white-noise-on-jerk prior.
+/// is the rate. Saave computes the clipped axis of the rate from the force component along l and the two unclipped
+/// axes. In the smoothing stage, Saave smooths the rates of all samples with a white-noise-on-jerk prior.
 ///
 /// Saave recovers at most one clipped axis per sample, the first in the order x, y, z. Saave assigns the variance of an
 /// unclipped reading to the other clipped axes. The published method assumes free flight, an unclipped accelerometer,

@@ -21,8 +21,8 @@ struct SensorErrors {
   Eigen::Matrix3d g_sensitivity_s_m = Eigen::Matrix3d::Zero();
   /// Delay of the accelerometer relative to the gyro [s].
   double accel_delay_s = 0.0;
-  /// Variance of the time weights of an accelerometer reading minus that of a gyro reading [s^2]. The variance
-  /// difference is negative if the gyro averages over a longer time than the accelerometer.
+  /// Variance of the averaging window of an accelerometer reading, minus the variance of the averaging window of a gyro
+  /// reading [s^2]. The variance difference is negative if the gyro averages over a longer time than the accelerometer.
   double accel_filter_time_variance_s2 = 0.0;
 
   Vector vector() const;
@@ -96,9 +96,9 @@ struct SensorErrorEvidence {
 
 /// Multiplies the information by `share` in the directions of sensor errors that free motion of a body does not
 /// determine; see rate_smoother.md (R39). The unobservable directions are a scale common to all axes of a sensor, and a
-/// common rotation of gyro and accelerometer. In these directions, residuals of the motion model wrongly appear as
-/// information about the sensor errors. The wrong information grows with the number of samples, because smaller motions
-/// have smaller residuals.
+/// common rotation of gyro and accelerometer. In the unobservable directions, residuals of the motion model wrongly
+/// appear as information about the sensor errors. The wrong information grows with the number of samples, because
+/// smaller motions have smaller residuals.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
 /// SensorErrorFit contains the sensor errors estimated from readings and prior.
@@ -111,10 +111,10 @@ struct SensorErrorFit {
 /// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. Each model assumes
 /// calibrated, uncalibrated or intermediate standard deviations for scale and misalignment, for g-sensitivity, and for
 /// sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood of
-/// the readings. The result is the mean and covariance of the mixture of all models. If the readings fit the data
-/// sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet. Cost: O(1), about 30
-/// systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for earlier runs of the
-/// device, and has full weight.
+/// the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If the readings
+/// fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet. Cost: O(1),
+/// about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for earlier
+/// runs of the device, and has full weight.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 

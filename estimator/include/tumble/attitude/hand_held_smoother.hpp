@@ -17,8 +17,8 @@
 
 namespace tumble {
 
-/// ClipSigns contains the clipping of each sensing element of an IMU in one sample: -1 at the negative limit, 1 at the
-/// positive limit, 0 if unsaturated. The value kMissing marks an invalid gyro reading that has overflowed.
+/// ClipSigns states which sensing elements of an IMU are clipped in one sample: -1 at the negative limit, 1 at the
+/// positive limit, 0 if unsaturated. The value kMissing marks a gyro reading that is invalid because of an overflow.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
@@ -43,11 +43,11 @@ struct ClippedElements {
 ///
 /// Hand-held motion is bounded: accelerations are short, and the velocity and displacement of the hand return to zero.
 /// The specific force is therefore the sum of gravity, the centripetal and tangential force at the lever arm, and a
-/// bounded remainder. The measured gravity vector rotates in sensor axes, and this rotation determines the rate while
-/// the gyro is saturated. HandHeldSmoother estimates attitude, rate, angular acceleration and hand motion at equal time
-/// steps, called nodes. HandHeldSmoother also estimates the biases and the lever arm of the IMU. A Gauss-Newton solver
-/// uses the arrow structure of the normal equations, and their inverse gives the covariances. Memory (about 7 kB per
-/// node) and computation grow in proportion to the duration, whatever the IMU's sample rate.
+/// bounded remainder. The rotation of the measured gravity vector in sensor axes determines the rate while the gyro is
+/// saturated. HandHeldSmoother estimates attitude, rate, angular acceleration and hand motion at equal time steps,
+/// called nodes. HandHeldSmoother also estimates the biases and the lever arm of the IMU. A Gauss-Newton solver uses
+/// the arrow structure of the normal equations, and their inverse gives the covariances. Memory (about 7 kB per node)
+/// and computation grow in proportion to the duration, whatever the IMU's sample rate.
 ///
 /// HandHeldSmoother assumes that the body is not thrown (see `hand_acceleration_ratio`) and has no hard contact. The
 /// biases are constant, and the heading is relative to the start.
@@ -82,8 +82,9 @@ class HandHeldSmoother {
   /// Estimates one rate and one attitude per sample. The output `rates` contains the angular velocity of each sample,
   /// in sensor axes [rad/s]. The output `attitudes` contains the rotation from sensor axes to the world at each sample,
   /// with heading 0 at the start. Returns `ok`, `empty`, `non_finite`, `time_order`, `gap`, `out_of_range` or
-  /// `diverged`. On error, the outputs are empty. The error `out_of_range` means that the input sizes differ or that a
-  /// covariance is invalid. The error `diverged` means that the normal equations are not positive definite.
+  /// `diverged`. On error, the outputs are empty. The error `out_of_range` means that the input arrays have different
+  /// sizes or that a covariance is invalid. The error `diverged` means that the normal equations are not positive
+  /// definite.
   Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 

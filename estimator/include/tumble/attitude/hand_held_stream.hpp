@@ -16,17 +16,17 @@ namespace tumble {
 /// the model of HandHeldSmoother over a sliding window of nodes, and makes one Gauss-Newton step per node.
 ///
 /// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
-/// push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag, so that each
-/// step also relinearises nodes older than the lag. start() allocates all memory. A run that is continued from a saved
-/// State gives bit-identical results.
+/// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
+/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory. A run that
+/// is continued from a saved State gives bit-identical results.
 ///
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
 /// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
 /// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
 /// HandHeldStream does not test whether a clipped segment has an additional full revolution. Instead, the rate
-/// covariance includes the error of one additional revolution (C42, C43 of carried.md). When HandHeldStream detects a
-/// new saturation limit, it classifies only the readings in the window again. The prior from marginalised nodes uses
-/// the assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
+/// covariance includes the error of one additional revolution (C42, C43 of carried.md). After the detection of a new
+/// saturation limit, HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes
+/// uses the assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
 ///
 /// Cost: each new node costs one Gauss-Newton step, O(window).
 class HandHeldStream {
@@ -50,7 +50,7 @@ class HandHeldStream {
     }
   };
 
-  /// Reading is one IMU sample of the window, with its clip signs.
+  /// Reading is one IMU sample of the sliding window, with its clipped sensing elements.
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
@@ -105,7 +105,7 @@ class HandHeldStream {
   /// Processes one sample, and computes the rate `out` of the sample that is `lag_s` old. The argument `known` contains
   /// the current clip signs of the newest samples, and its last entry belongs to `sample`. If the clip signs of a
   /// sample in the window changed, push() processes the sample again. The output `out` is empty while the window fills,
-  /// or if `wanted` is false. With `wanted` false, push() saves most of the computation. The argument `repeated`
+  /// or if `wanted` is false. If `wanted` is false, push() skips most of the computation. The argument `repeated`
   /// describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time when the
   /// sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range`
   /// (no signs) or `degenerate` (sensing directions that do not span the axes). On error, `state` is unchanged and

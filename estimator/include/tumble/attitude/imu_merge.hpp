@@ -68,8 +68,8 @@ struct ImuMergeParams {
 /// ImuMerge excludes an IMU with a saturated accelerometer from the mean force. ImuMerge also excludes an IMU that
 /// disagrees with the others and may have been saturated during a part of the sample. If most IMUs may be saturated,
 /// the merged force is flagged as clipped. If the gyros are saturated, ImuMerge computes the rate from the force
-/// differences between three or more IMUs. If this rate recovery fails, the merged sample has clip flags. With one or
-/// two IMUs, ImuMerge excludes an IMU with a clipped gyro while the other IMU is unsaturated. If all gyros are
+/// differences between three or more IMUs. If the computation of the rate fails, the merged sample has clip flags. With
+/// one or two IMUs, ImuMerge excludes an IMU with a clipped gyro while the other IMU is unsaturated. If all gyros are
 /// saturated, ImuMerge flags every axis of C to which a clipped axis contributes. ImuMerge treats a reading as clipped
 /// if the reading is flagged or beyond the stated range. The caller must flag readings at lower saturation limits and
 /// at tilted planes beforehand (ClippingFinder).

@@ -63,10 +63,11 @@ struct ImuPlausibilityParams {
 /// is constant although the body rotates.
 ///
 /// A gyro or an accelerometer is frozen if it repeats one reading bit for bit for long enough. The repetition must last
-/// a second, and ten times longer than any earlier repetition. ImuPlausibility applies this rule only to a sensor whose
-/// readings have changed before. Sensors whose readings often repeat do not count as frozen, for example sensors with
-/// coarse quantisation at rest. A gyro whose readings never changed is frozen if gravity rotates, or if forces differ
-/// from gravity for long enough. An accelerometer that always reads 0 is frozen if the gyro measures motion.
+/// a second, and ten times longer than any earlier repetition. ImuPlausibility tests for repeated readings only if the
+/// readings of the sensor have changed before. Sensors whose readings often repeat do not count as frozen, for example
+/// sensors with coarse quantisation at rest. ImuPlausibility reports a gyro with constant readings as frozen if gravity
+/// rotates, or if forces differ from gravity for long enough. ImuPlausibility reports an accelerometer that always
+/// reads 0 as frozen if the gyro measures motion.
 ///
 /// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate.
 /// ImuPlausibility detects no error while the body is pushed. ImuPlausibility does not detect an accelerometer whose

@@ -58,7 +58,7 @@ class RegimeSmoother {
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }
-  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). With additional IMUs,
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). If there are additional IMUs,
   /// HandHeldSmoother does not run and `report.judged` is false.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;

@@ -22,11 +22,11 @@ namespace tumble {
 /// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
 /// RateStream resets its calibration in more than half of the steps of its lag, clipped samples do not change the
 /// probabilities. HandHeldStream pauses while the probability of hand-held motion is below `carried_min`, and then
-/// restarts. Rates of unclipped samples are those of RateStream.
+/// restarts. RegimeStream reports RateStream's rate for each unclipped sample.
 ///
-/// RateStream fits its angular accelerations to the measured force, so they can wrongly explain gravity in gentle
-/// hand-held motion. RegimeStream therefore estimates the probabilities with the time derivative of the rates instead
-/// of RateStream's angular accelerations.
+/// RateStream fits angular accelerations to the measured force, which can wrongly explain gravity in gentle hand-held
+/// motion. RegimeStream therefore estimates the probabilities with the time derivative of the rates instead of
+/// RateStream's angular accelerations.
 class RegimeStream {
  public:
   struct Params {

@@ -22,9 +22,9 @@ struct RegimeProbabilities {
 /// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
 ///
 /// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
-/// arm. Here f is the specific force, w the rate, a the angular acceleration and r the lever arm. The residual force e
-/// is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In contact,
-/// the residual force can have any magnitude; the prior density of the logarithm of its magnitude is uniform. A Markov
+/// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. The residual
+/// force e is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In
+/// contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform prior. A Markov
 /// chain connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or
 /// caught. The Markov chain prevents RegimeEvidence from mistaking an impact or a quiet moment of rolling for hand-held
 /// motion. Readings within `memory_s` are correlated and count as one reading. Readings without rotation do not change
@@ -95,8 +95,8 @@ class RegimeEvidence {
   Params params_;
 };
 
-/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
-/// of the more probable estimate and the covariance of the mixture of both estimates.
+/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The combined rate has
+/// the mean of the more probable estimate and the covariance of the mixture of both estimates.
 RateState mix_rates(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

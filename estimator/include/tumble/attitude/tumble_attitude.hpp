@@ -62,18 +62,18 @@ struct TumbleAttitudeParams {
 /// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
 ///
 /// TumbleAttitude integrates the gyro to an attitude, exactly for a rate that is constant over a sample. TumbleAttitude
-/// rotates the specific force to the world and integrates it to a horizontal velocity and displacement, which decay
-/// slowly. A tilt error would let the integrated velocity and displacement grow without bound. Weak pseudo-measurements
-/// of zero velocity and zero displacement therefore correct the tilt and the gyro bias. Accelerations that later
-/// reverse average out. A Kalman filter of nine states (tilt, bias, velocity, displacement) processes the
-/// pseudo-measurements every `node_s`. The Kalman filter acts like the low-pass of VQF in an inertial frame, with a
-/// corner frequency that adapts to the sensor's errors. When the body is at rest, its velocity and rate are zero up to
-/// noise. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant, so that noise changes neither
-/// tilt nor heading.
+/// integrates the specific force in world axes to a horizontal velocity and displacement, which decay slowly. A tilt
+/// error would let the integrated velocity and displacement grow without bound. Weak pseudo-measurements of zero
+/// velocity and zero displacement therefore correct the tilt and the gyro bias. Accelerations that later reverse
+/// average out. A Kalman filter of nine states (tilt, bias, velocity, displacement) processes the pseudo-measurements
+/// every `node_s`. The Kalman filter acts like the low-pass of VQF in an inertial frame, with a corner frequency that
+/// adapts to the sensor's errors. When the body is at rest, its velocity and rate are zero up to noise. At rest,
+/// TumbleAttitude measures the gyro bias and keeps the attitude constant, so that noise changes neither tilt nor
+/// heading.
 ///
 /// The size of the motion is not known in advance: a few centimetres, or the way down a hill. TumbleAttitude accepts a
-/// large velocity or displacement as real motion if the tilt variance cannot explain it. The assumed standard deviation
-/// of velocity or displacement then increases for `motion_tau_s`.
+/// large velocity or displacement as real motion if the tilt variance cannot explain the value. The assumed standard
+/// deviation of velocity or displacement then increases for `motion_tau_s`.
 ///
 /// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
@@ -85,8 +85,8 @@ struct TumbleAttitudeParams {
 /// In a gap longer than `gap_least_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. The Kalman filter
 /// is no longer valid if a gap increases the tilt's standard deviation to `gap_lost_tilt_rad`. A coarse alignment then
-/// searches for the vertical in parallel. The covariance keeps its value after the gap until the alignment succeeds. If
-/// the Kalman filter and the coarse alignment disagree, the filter restarts from the alignment.
+/// searches for the vertical in parallel. Until the coarse alignment succeeds, the covariance is constant. If the
+/// Kalman filter and the coarse alignment disagree, the filter restarts from the alignment.
 ///
 /// TumbleAttitude has no heading reference. TumbleAttitude assumes an accelerometer without bias and scale errors,
 /// which would cause a tilt error at rest.

@@ -17,8 +17,8 @@
 /// be const. The function `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of
 /// the struct. The function `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct.
 ///
-/// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter them as plain
-/// numbers. The bounds of a Field are constants. Constructors check conditions that relate two parameters.
+/// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter poses and planes as
+/// plain numbers. The bounds of a Field are constants. Constructors check conditions that relate two parameters.
 namespace tumble {
 
 /// FieldRank sets the order of parameters in a listing. The rank `basic` marks the parameters that users usually set

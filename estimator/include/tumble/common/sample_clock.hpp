@@ -24,14 +24,14 @@ namespace tumble {
 /// the jitter of the time stamps, where T is the sample period. A constant delay of the host is not observable. Dropped
 /// samples count as samples in the fit.
 ///
-/// SampleClock returns the first 32 time stamps unchanged. Later time stamps are unchanged if their jitter is below
-/// `jitter_min` of the period, because the sensor's own clock then assigned them. Time stamps are also unchanged if the
-/// sample period varies: the jitter exceeds `jitter_max`, or successive errors are correlated.
+/// SampleClock returns the first 32 time stamps unchanged. Later time stamps are unchanged if the jitter is below
+/// `jitter_min` of the period, which indicates time stamps of the sensor's own clock. Time stamps are also unchanged if
+/// the jitter exceeds `jitter_max` or successive errors are correlated, which indicates a varying sample period.
 ///
 /// An estimated sample time differs from the time stamp by at most half a period.
 ///
-/// SampleClock assumes that the sensor itself triggers its samples. If a host computer triggers the samples at
-/// irregular times, set `jitter_max` to 0 to keep its exact time stamps unchanged.
+/// SampleClock assumes that the sensor triggers the samples. Set `jitter_max` to 0 if a host computer triggers the
+/// samples at irregular times and assigns exact time stamps.
 class SampleClock {
  public:
   struct Params {

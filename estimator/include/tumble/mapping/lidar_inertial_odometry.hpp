@@ -29,10 +29,10 @@ class StateLayout;
 /// by k-nearest-neighbour point-to-plane distances, and then inserts the sweep into the map. The registration refines
 /// position, attitude and velocity at the start of a sweep together. The refined velocity also improves the deskewing.
 ///
-/// The world frame has its z axis up, according to the specific force at rest. The earliest sweep with `matches_min`
-/// points starts the map. If the map starts within half a second, the first IMU sample defines origin and yaw of the
-/// world. If the map starts later, its first sweep defines origin and yaw, and dead reckoning from the first IMU sample
-/// gives velocity and tilt. Pass IMU samples in time order, and pass each sweep after the IMU samples up to its end.
+/// The z axis of the world frame points upwards, along the specific force at rest. The earliest sweep with
+/// `matches_min` points starts the map. If the map starts within half a second, the first IMU sample defines origin and
+/// yaw of the world. If the map starts later, the first sweep of the map defines origin and yaw, and dead reckoning
+/// gives velocity and tilt. Pass IMU samples in time order. Pass each sweep after the IMU samples that cover the sweep.
 /// LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
 /// LidarInertialOdometry estimates the lidar's mounting, its time offset and gravity if their standard deviations are
@@ -41,8 +41,8 @@ class StateLayout;
 /// map points of the refined sweeps. Map points of older sweeps keep their positions. For a consistent map, process the
 /// recording a second time, starting from calibration().
 ///
-/// The reported covariances propagate the errors through the gains of the filter. The contribution of the registration
-/// follows from its residuals (Registration::Result::score_covariance).
+/// The reported covariances propagate the errors through the gains of the filter. The residuals of the registration
+/// determine the covariance of the registered pose (Registration::Result::score_covariance).
 ///
 /// Tracking has failed if the registration rejects several consecutive sweeps. After a tracking failure,
 /// LidarInertialOdometry continues with inertial prediction, and with zero velocity while the IMU is at rest. Until
@@ -78,8 +78,8 @@ class LidarInertialOdometry {
   /// set, use_map() also calls set_start_pose(). The prior map is kept as a whole, also beyond map_radius_m. Returns
   /// the errors of check_prior_map(), or `time_order` after the first sweep. On error, the state is unchanged.
   Status use_map(PriorMap map);
-  /// Uses the prior map of another object, if any, with its parameters. The localisation restarts from the pose of
-  /// set_start_pose(), or else from the pose in the prior map.
+  /// Uses the prior map and the prior map's parameters of another object, if any. The localisation restarts from the
+  /// pose of set_start_pose(), or else from the pose in the prior map.
   void use_map_of(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set and the robot is not localised in the prior map, and otherwise `ok`.
   Status localised() const;
@@ -124,12 +124,13 @@ class LidarInertialOdometry {
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose,
                  Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 
-  /// Returns the current calibration and the covariance of its errors. Values that are not estimated have covariance 0.
+  /// Returns the current calibration and the covariance of its errors. Calibration values that are not estimated have
+  /// covariance 0.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
-  /// Returns the covariance that weights the current calibration against the next sweep. This covariance is larger than
-  /// the covariance of the errors, because correlated points have reduced weights. A second run over the recording
-  /// starts with this covariance.
+  /// Returns the prior covariance of the calibration for the registration of the next sweep. The prior covariance is
+  /// larger than the covariance of the errors, because correlated points have reduced weights. A second run over the
+  /// recording starts with the prior covariance.
   SweepCalibration::Covariance calibration_weighting_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, and otherwise `ok`. A
@@ -152,9 +153,9 @@ class LidarInertialOdometry {
   /// later sweeps saw through, for example points on people who have walked away.
   std::vector<MapPoint> map() const;
 
-  /// Saves or loads the complete state, except `parallel_for`. The loading object must have the same parameters as the
-  /// saving object, and then continues with bit-identical results. The saved state includes the mounting, the time
-  /// offset and their standard deviations. If loading fails, the StateReader reports an error and the loading object is
+  /// Saves or loads the complete state, except `parallel_for`. The loading object must have the parameters of the
+  /// saving object, and continues with bit-identical results. The saved state includes the mounting, the time offset
+  /// and their standard deviations. If loading fails, the StateReader reports an error and the loading object is
   /// unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);

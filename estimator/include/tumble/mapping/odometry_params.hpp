@@ -16,10 +16,10 @@ namespace tumble {
 /// OdometryExpertParams contains the rarely changed parameters of LidarInertialOdometry, grouped by topic.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Standard deviation of gravity's horizontal part. The value 0 fixes the direction of gravity.
+  /// Standard deviation of gravity's horizontal part. If gravity_sigma_m_s2 is 0, the direction of gravity is fixed.
   double gravity_sigma_m_s2 = 0.0;
-  /// Number of newest sweeps that the fixed-lag smoother refines together (see SweepReport::smoothed). The value 1
-  /// disables smoothing.
+  /// Number of newest sweeps that the fixed-lag smoother refines together (see SweepReport::smoothed). If window_sweeps
+  /// is 1, smoothing is disabled.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -62,7 +62,8 @@ struct OdometryExpertParams {
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
-  /// Standard deviations of T_IL and of the time offset. The value 0 marks an exact quantity, which is not estimated.
+  /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact quantity, which is
+  /// not estimated.
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
@@ -100,8 +101,8 @@ struct OdometryParams {
   }
 };
 
-/// Checks all parameters of LidarInertialOdometry, also those without a Field. Returns `out_of_range` for the first
-/// invalid parameter.
+/// Checks all parameters of LidarInertialOdometry, including poses. Returns `out_of_range` for the first invalid
+/// parameter.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

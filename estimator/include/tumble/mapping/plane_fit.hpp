@@ -17,16 +17,16 @@ struct PlaneFit {
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
   float thickness_variance_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
-  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation is
-  /// that of a linear regression whose residuals equal the thickness of the plane.
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The function fit_plane()
+  /// computes the normal's error as in a linear regression whose residuals equal the thickness of the plane.
   Eigen::Matrix<float, 3, 2> normal_sigma_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// Neighbours are collinear if l1 is below this fraction of l2. Collinear neighbours would give a wrong normal, for
-  /// example on one ring of a lidar at rest.
+  /// Neighbours are collinear if l1 is below the fraction collinear_share of l2. Collinear neighbours would give a
+  /// wrong normal, for example on one ring of a lidar at rest.
   double collinear_share = 0.03;
   double rough_share = 0.1;  ///< neighbours are not a plane if l0 exceeds this fraction of l1
   /// Minimum number of neighbours outside the most frequent scan line. With fewer neighbours outside, the fitted plane

@@ -21,10 +21,10 @@ struct RegistrationExpertParams {
   double cluster_m = 1.0;          ///< edge of a cube whose points have correlated errors
   double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
-  /// `matched_share_min`. The large default disables this exception.
+  /// `matched_share_min`. The large default of agreeing_min disables the exception for agreeing registrations.
   std::size_t agreeing_min = 1'000'000'000;
   /// Minimum fraction of matches whose residual is within three standard deviations. A registration with a smaller
-  /// fraction is rejected.
+  /// fraction of fitting matches is rejected.
   double fitting_share_min = 0.6;
   PlaneBounds plane;
 

@@ -41,8 +41,8 @@ struct RegistrationResult {
   /// matrix. The translation part of the normal matrix has trace 1.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
-  /// Standard deviation of the pose in its least constrained direction, from the surfaces alone. This standard
-  /// deviation excludes the apparent information from noise of the normals.
+  /// Standard deviation of the pose in its least constrained direction, from the surfaces alone. The standard deviation
+  /// least_constrained_sigma_m excludes the apparent information from noise of the normals.
   double least_constrained_sigma_m = std::numeric_limits<double>::infinity();
 };
 

@@ -49,10 +49,11 @@ struct MotionState {
 /// evaluate the motion at any time of the segment.
 ///
 /// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The attitude is exact if the rate is
-/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). Here p_0 and v_0 are
-/// position and velocity at the start, g is gravity, and S is the double integral of the specific force. The mean force
-/// over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and left Jacobian
-/// J_l. The mean force is exact if the force is constant in body axes, for example the centripetal force of a spin.
+/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). The vectors p_0 and
+/// v_0 are position and velocity at the start, g is gravity, and S is the double integral of the specific force. The
+/// mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and
+/// left Jacobian J_l. The mean force is exact if the force is constant in body axes, for example the centripetal force
+/// of a spin.
 ///
 /// The saturation deficit e is the true rate minus the clipped reading, and corrects the clipped axes. The saturation
 /// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
@@ -102,8 +103,8 @@ class SweepTrajectory {
   /// call, and speeds up calls in time order. Any hint in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point x. The result equals that of at(), bit for bit. For
-  /// several points, lever_arm_vectors() is faster than at().
+  /// Computes the lever arm vector S(t) + R(t) x of each point x. The function lever_arm_vectors() returns exactly the
+  /// same values as at(), and is faster for several points.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }

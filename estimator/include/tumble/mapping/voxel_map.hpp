@@ -72,8 +72,8 @@ class VoxelMap {
   /// the point unchanged.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
-  /// Counts a sweep that saw through the position of a point (`through`), or else observed the point again. The two
-  /// kinds of observations cancel each other.
+  /// Counts a sweep whose beam passed through the position of a point (`through` is true) or hit the point again
+  /// (`through` is false). A passing beam and a hitting beam cancel each other.
   void count_observation(std::uint32_t index, bool through);
 
   /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Points of a cell at equal distances are in order
@@ -93,16 +93,16 @@ class VoxelMap {
   /// Returns the memory in use [bytes].
   std::size_t bytes() const;
 
-  /// Saves the points and the occupied cubes: 25 bytes per point and 8 bytes per cube. load() rebuilds the search
-  /// structure.
+  /// Saves the points and the occupied cubes: 25 bytes per point and 8 bytes per cube. The function load() rebuilds the
+  /// search structure.
   void save(StateWriter& out) const;
-  /// Replaces the contents of the map with a saved map. Both maps must have equal parameters. The reader reports
-  /// `out_of_range` for impossible positions.
+  /// Replaces the contents of the map with a saved map. The saved map and the loading map must have equal parameters.
+  /// The reader reports `out_of_range` for impossible positions.
   void load(StateReader& in);
   static void describe(StateLayout& out);
 
   std::size_t size() const { return sigma_m_.size() - free_slots_; }
-  /// Returns the upper limit of the point indices in use. An index for which exists() is false is unused.
+  /// Returns the upper limit of the point indices in use. Indices for which exists() returns false are unused.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
   bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
   Eigen::Vector3f position_W_m(std::uint32_t index) const;

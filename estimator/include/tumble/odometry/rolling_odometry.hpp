@@ -30,8 +30,8 @@ namespace tumble {
 /// RollingOdometry flags saturated readings, merges the IMUs to one (ImuMerge), and estimates the motion of the sphere
 /// (RollingFilter, RollingSmoother).
 ///
-/// The world frame has its z axis up. The first sample defines its origin, at the sphere's centre, and its yaw. The
-/// sphere should be at rest for one second at the start.
+/// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
+/// is the sphere's centre. The sphere should be at rest for one second at the start.
 ///
 /// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag.
 /// RollingOdometry computes poses in blocks of RollingSmoother::Params::block_s. After start-up, a sample inside a
@@ -55,7 +55,7 @@ class RollingOdometry {
     /// estimates this distance.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    /// Lag of the poses that take() returns. With a lag of 0, the poses are live. With kWholeRecording, add_imus()
+    /// Lag of the poses that take() returns. If the lag is 0, the poses are live. With kWholeRecording, add_imus()
     /// stores the readings, newest() returns nothing, and finish() estimates all poses from the whole recording.
     double lag_s = 0.0;
 
@@ -68,11 +68,11 @@ class RollingOdometry {
     } expert;
 
     /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
-    /// RollingOdometry ignores user values of these parameters.
+    /// RollingOdometry ignores user values of computed parameters.
     static std::span<const char* const> derived_fields();
 
     /// Widens the priors for IMUs without data sheet and calibration, mounted anywhere in the sphere. The function also
-    /// assumes a level floor, because the accelerometer bias of such an IMU resembles a slope.
+    /// assumes a level floor, because the accelerometer bias of an uncalibrated IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -134,8 +134,8 @@ class RollingOdometry {
 
   /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
   /// resamples the IMUs to common times, at most 0.05 s late. An IMU without readings is absent. Returns the errors of
-  /// add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, this function rejects samples
-  /// until reset().
+  /// add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu() rejects samples until
+  /// reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
@@ -152,8 +152,8 @@ class RollingOdometry {
   /// Starts a new run at the origin and at rest. Poses that take() has not yet returned remain available, and counters
   /// keep their values.
   void reset();
-  /// Starts a new run at a known pose of the sphere, like reset(). Position and heading are those of `T_WG`; the tilt
-  /// comes from gravity at rest. Covariances are relative to `T_WG`.
+  /// Starts a new run at a known pose of the sphere, like reset(). The pose `T_WG` sets position and heading, and
+  /// gravity at rest determines the tilt. Covariances are relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
   /// Returns whether the readings of the IMUs are currently plausible. The error `out_of_range` names a frozen axis
@@ -161,8 +161,8 @@ class RollingOdometry {
   /// frozen IMU. If all IMUs with readings are frozen, add_imus() rejects the sample.
   Status health() const;
 
-  /// Returns the estimated centre and radius of the sphere. With a lag, the estimates are those of the newest smoothed
-  /// pose.
+  /// Returns the estimated centre and radius of the sphere. If `lag_s` is above 0, the centre and radius are the
+  /// estimates at the newest smoothed pose.
   Calibration calibration() const;
 
   /// Returns the number of bridged gaps between samples, and the longest gap [s].
@@ -178,7 +178,7 @@ class RollingOdometry {
   std::size_t rejected_readings() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the jitter of the time stamps [s], while SampleClock corrects them.
+  /// Returns the jitter of the time stamps [s], while SampleClock corrects the time stamps.
   std::optional<double> estimated_jitter_s() const;
 
   /// Save the state, load a saved state, and read saved parameters, like the functions of TumblingOdometry. A saved

@@ -31,8 +31,8 @@ std::vector<std::byte> save_state(const typename Stream::Params& params, const t
 /// Replaces `state` with the state that save_state() wrote. On error, `state` is unchanged, and the returned status
 /// names the field, the stored value and the bound. The error `too_few` means that the bytes are truncated. The errors
 /// `non_finite`, `time_order`, `gap` and `out_of_range` mean that the stored state is invalid. If the stored parameters
-/// differ from `params`, the status contains the first different parameter, its stored value and its value in `params`.
-/// The function also rejects damaged bytes, and bytes of another estimator or library version.
+/// differ from `params`, the status contains the first different parameter with the stored and the expected value. The
+/// function also rejects damaged bytes, and bytes of another estimator or library version.
 ///
 /// Throws InvalidParams if `params` contains a value out of bounds.
 template <SavedStream Stream>

@@ -44,10 +44,10 @@ struct RecordingEstimate;
 /// sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
-/// map from the whole recording. finish() estimates the rates with RegimeSmoother, checks the IMU, and repeats the
-/// mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
-/// returns all sweeps after finish(). A gap of more than a second or a step of the clock ends the recording. finish()
-/// needs more stack and memory than other calls.
+/// map from the whole recording. The function finish() estimates the rates with RegimeSmoother, checks the IMU, and
+/// repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and
+/// take() returns all sweeps after finish(). A gap of more than a second or a step of the clock ends the recording. The
+/// function finish() needs more stack and memory than other functions.
 ///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, a sample
 /// that ends no sweep allocates no memory. While SecondPass runs, a sweep costs up to four registrations. The end of
@@ -75,9 +75,9 @@ class TumblingOdometry {
 
   /// Sets the map of an earlier run, in which TumblingOdometry then localises the robot. Call use_map() before the
   /// first sweep. Until the robot is localised, poses are in a local frame, and health() reports the missing
-  /// localisation. After localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map.
-  /// reset() keeps the prior map and localises the robot again; the argument of reset(pose) is a pose in the prior map.
-  /// Returns the errors of LidarInertialOdometry::use_map().
+  /// localisation. After localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map. The
+  /// function reset() keeps the prior map and localises the robot again. The argument of reset(pose) is a pose in the
+  /// prior map. Returns the errors of LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
   /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
@@ -93,12 +93,12 @@ class TumblingOdometry {
   /// is outside the sweep, or that the end is a second after the newest IMU sample. The function also returns
   /// `out_of_range` if a time stamp exceeds 109 years or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
-  /// registered, which happens `lag_s` after the end of the sweep. If a sweep has several odometer readings,
+  /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
+  /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
   /// TumblingOdometry uses only the last reading. On error, the state is unchanged. Returns `empty` (no IMU sample
   /// yet), `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. The error `out_of_range`
-  /// means that the standard deviation is not above 0, the time stamp is a second ahead of the newest sample, or 1024
-  /// readings wait.
+  /// means an invalid standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting
+  /// readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
@@ -109,16 +109,17 @@ class TumblingOdometry {
   /// calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
-  /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// the errors of RateSmoother::estimate(), for example `too_few`, or the error of a sample in the mapper. Without
-  /// kWholeRecording, finish() returns `ok`. finish() calls `on_sweep` before each sweep with the numbers of processed
-  /// sweeps and of all sweeps, for a progress display. Each pass over the recording starts again at 0 processed sweeps.
+  /// reset(). The function take() then returns all sweeps with their final poses in `report.pose` and
+  /// `report.trajectory`. Returns the errors of RateSmoother::estimate(), for example `too_few`, or the error of a
+  /// sample in the mapper. Without kWholeRecording, finish() returns `ok`. The function finish() calls `on_sweep`
+  /// before each sweep with the numbers of processed sweeps and of all sweeps, for a progress display. Each pass over
+  /// the recording starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. Sweeps that take() has not yet returned remain
   /// available, and counters keep their values.
   void reset();
-  /// Starts a new run at a known pose of the IMU, like reset(). Position and heading are those of `T_WI`; the tilt
-  /// comes from gravity at rest. Covariances are relative to `T_WI`.
+  /// Starts a new run at a known pose of the IMU, like reset(). The pose `T_WI` sets position and heading, and gravity
+  /// at rest determines the tilt. Covariances are relative to `T_WI`.
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
@@ -128,10 +129,9 @@ class TumblingOdometry {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Returns whether the inputs and the pose are currently plausible. Estimation continues after any finding, and a
   /// finding ends at most a minute after its cause. The function returns `ok`, or `out_of_range` with one finding.
-  /// Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong accelerometer unit
-  /// (RestGravity), and a wrong scale of the lidar's ranges (SweepScale). Findings about the pose are an uncertain
-  /// vertical, a missing localisation in the prior map, tracking failure, and an implausible change of the lidar's
-  /// calibration.
+  /// Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong accelerometer unit, and a
+  /// wrong scale of the lidar's ranges. Findings about the pose are an uncertain vertical, a missing localisation in
+  /// the prior map, tracking failure, and an implausible change of the lidar's calibration.
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;

@@ -23,8 +23,8 @@ namespace tumble {
 /// of rates and of the map.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The same maximum
-  /// applies to sweeps that wait for take(); if more sweeps wait, TumblingOdometry drops the oldest sweep.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. TumblingOdometry
+  /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
   /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration,
@@ -40,7 +40,7 @@ struct TumblingExpertParams {
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
-  /// stands for all names with that prefix. TumblingOdometry ignores user values of these parameters.
+  /// stands for all names with that prefix. TumblingOdometry ignores user values of computed parameters.
   static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>
@@ -65,8 +65,8 @@ struct TumblingParams {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset, which TumblingOdometry estimates. The value 0 marks an
-  /// exact quantity.
+  /// Standard deviations of T_IL and of the lidar's time offset, which TumblingOdometry estimates. A standard deviation
+  /// of 0 marks an exact quantity.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;

@@ -16,24 +16,26 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a level or sloped
 /// floor.
 ///
-/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. This velocity determines
-/// tilt, biases, scale, misalignment, delay and lever arm of the IMU. RollingFilter can then integrate the calibrated
-/// IMU through several seconds without grip. RollingFilter also estimates the contact mode, for example grip or slip.
-/// Each hypothesis about the past contact modes has a separate error-state Kalman filter, until later data decide
-/// between the hypotheses. The state of each Kalman filter contains the position. Grip after a slip or bump therefore
-/// also corrects the displacement during the slip or bump. RollingSmoother revises earlier poses with later data.
+/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity measurements
+/// determine tilt, biases, scale, misalignment, delay and lever arm of the IMU. RollingFilter can then integrate the
+/// calibrated IMU through several seconds without grip. RollingFilter also estimates the contact mode, for example grip
+/// or slip. Each hypothesis about the past contact modes has a separate error-state Kalman filter, until later data
+/// decide between the hypotheses. The state of each Kalman filter contains the position. Grip after a slip or bump
+/// therefore also corrects the displacement during the slip or bump. RollingSmoother revises earlier poses with later
+/// data.
 ///
 /// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
-/// rest; RollingFilter applies these corrections when motion resumes. If another hypothesis becomes the most probable
-/// at rest, RollingFilter applies the corrections immediately.
+/// rest; RollingFilter applies the corrections when motion resumes. If another hypothesis becomes the most probable at
+/// rest, RollingFilter corrects the position immediately.
 ///
 /// RollingFilter averages the readings of a fast IMU over RollingExpertParams::reading_s, and extrapolates the estimate
 /// between averages. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and assumes an unknown force.
 /// The covariance after a gap accounts for the interpolated rate and the unknown force. RollingFilter detects a start
 /// in motion, and increases the initial uncertainty.
 ///
-/// While the gyro is saturated, the attitude is uncertain, and RollingFilter does not use the rolling constraint. The
-/// position is then uncorrected, and its covariance grows. The state of RollingFilter needs 430 KiB of memory.
+/// While the gyro is saturated, the attitude is uncertain, and RollingFilter does not use the rolling constraint.
+/// During gyro saturation, nothing corrects the position, and the covariance of the position grows. The state of
+/// RollingFilter needs 430 KiB of memory.
 ///
 /// RollingFilter assumes a rigid floor that does not move. The heading drifts.
 class RollingFilter {

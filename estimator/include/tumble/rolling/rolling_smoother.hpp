@@ -23,9 +23,9 @@ namespace tumble {
 /// Bryson-Fraser smoother needs no matrix inverse, only the gains of the Kalman filter. RollingSmoother interpolates
 /// the errors of a sample from the errors of its two neighbouring nodes.
 ///
-/// With a fixed lag, the reported position is constant while the sphere is at rest. When motion resumes,
-/// RollingSmoother applies the corrections of the path before a rest, because the earlier poses are already reported.
-/// Over a whole run, RollingSmoother corrects the path before a rest directly.
+/// With a fixed lag, the reported position is constant while the sphere is at rest. With a fixed lag, RollingSmoother
+/// corrects the position for errors of the path before a rest when motion resumes. Over a whole run, RollingSmoother
+/// corrects the path before a rest directly.
 ///
 /// RollingSmoother treats the contact modes as certain, except for the spread of positions that RollingFilter prunes at
 /// rest.
@@ -42,8 +42,8 @@ class RollingSmoother {
     double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
     /// Measured horizontal distance of the centre between the start and the end of the run, and its standard deviation.
-    /// The measured distance and the prior on the radius determine the radius. The value 0 means that no distance was
-    /// measured.
+    /// The measured distance and the prior on the radius determine the radius. A distance of 0 means that no distance
+    /// was measured.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -89,7 +89,7 @@ class RollingSmoother {
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    // Rate during the gap that contains the node, if any.
+    // Rate during a gap between samples, if the node is within a gap.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
     TimeNs gap_start_ns = 0;
     int gap_step = 0;
@@ -131,7 +131,7 @@ class RollingSmoother {
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
   /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition. A state with
-  /// a lag is invalid if its number of samples exceeds four times that of rate_max_hz.
+  /// a fixed lag is invalid if the sample rate exceeds four times rate_max_hz.
   Status check_state(const State& state) const;
 
  private:
