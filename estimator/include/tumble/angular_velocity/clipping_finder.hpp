@@ -22,8 +22,8 @@ struct SaturationLevels {
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
   /// Returns the saturation planes that are used to classify readings as clipped. If the device clips its output after
-  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. For such a device, the
-  /// function returns planes only for sensing elements without a known saturation limit.
+  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. For a device that clips
+  /// after compensation, the function returns planes only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
   /// Returns the sensing directions of the three sensing elements of the gyro or the accelerometer. The argument
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.

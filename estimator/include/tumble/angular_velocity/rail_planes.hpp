@@ -43,7 +43,8 @@ class RailPlaneFinder {
     /// Prior standard deviation of each cross-axis sensitivity of a sensing element, before the device's compensation.
     double slope_sigma = 0.03;
     double slope_max = 0.12;  ///< largest cross-axis sensitivity in the search
-    /// Minimum saturation limit [rad/s]. Lower readings can be constant without saturation, at rest and in slow motion.
+    /// Minimum saturation limit [rad/s]. At rest and in slow motion, readings below the minimum limit can be constant
+    /// without saturation.
     double distance_min_rad_s = 1.5;
     /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes that the saturation
     /// limit is not far below the stated range.
@@ -54,8 +55,8 @@ class RailPlaneFinder {
     double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
     double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
     /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
-    /// of a run until readings contradict the planes. Planes of one device change by a fraction of a percent between
-    /// runs. A new plane near a known plane has a higher prior probability.
+    /// of a run until readings contradict the planes. Saturation planes of one device change by a fraction of a percent
+    /// between runs. A new plane near a known plane has a higher prior probability.
     RailPlanes known = {};
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.

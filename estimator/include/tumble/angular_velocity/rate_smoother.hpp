@@ -87,7 +87,7 @@ struct RateReport {
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight
-  /// Gyro axes that may be saturated although no saturation was detected: one byte per sample, bit j for axis j.
+  /// Gyro axes that may be saturated without a detected saturation: one byte per sample, bit j for axis j.
   std::vector<std::uint8_t> suspect_axes;
 };
 
@@ -143,8 +143,8 @@ class RateSmoother {
     return estimate(samples, {}, out, report);
   }
   /// Estimates the rates with additional IMUs on the body. The argument `auxiliary_imus` contains one list of readings
-  /// per entry of RateModelParams::auxiliary_imus. Each list contains one reading per sample, as align() computes.
-  /// Returns `too_few` if the number of lists or of readings is wrong.
+  /// per entry of RateModelParams::auxiliary_imus. The function align() computes such a list, with one reading per
+  /// sample. Returns `too_few` if the number of lists or of readings is wrong.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

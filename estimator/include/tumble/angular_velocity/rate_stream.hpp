@@ -28,8 +28,8 @@ namespace tumble {
 /// marginalises the sample into a Gaussian prior on the next sample and on the rig constants.
 ///
 /// The function push() returns the estimate of a sample that is `lag_s` old. The function newest() returns a
-/// provisional estimate of the newest sample. A step costs O(window). The cost per second grows linearly with sample
-/// rates above 200 Hz, and quadratically with sample rates below 200 Hz. RateStream allocates no memory after the State
+/// provisional estimate of the newest sample. A step costs O(window). The cost per second is proportional to the sample
+/// rate above 200 Hz, and to the square of the sample rate below 200 Hz. RateStream allocates no memory after the State
 /// is created.
 ///
 /// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After the detection of a
@@ -38,9 +38,9 @@ namespace tumble {
 /// the rate error of RateStream is 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99
 /// % of the rate errors are within three standard deviations. If RateStream estimates the calibration during the
 /// tumble, the rate error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of 0.5 s. The measured error
-/// ratios are in docs/maths/rate_stream.md. The rate errors during one flight are correlated. RateStream therefore
-/// increases the covariance of calibration and rates until enough flight samples are processed. The limitations of
-/// RateSmoother also apply to RateStream.
+/// ratios are in docs/maths/rate_stream.md. The rate errors during one flight are correlated. RateStream increases the
+/// covariance of calibration and rates until enough flight samples are processed. The limitations of RateSmoother also
+/// apply to RateStream.
 class RateStream {
  public:
   using Params = RateStreamParams;

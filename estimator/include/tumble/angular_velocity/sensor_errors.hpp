@@ -40,9 +40,9 @@ struct KnownSensorErrors {
 void require_known(const KnownSensorErrors& earlier_runs);
 
 /// SensorErrorPriors contains prior standard deviations of sensor errors, for a calibrated and for an uncalibrated
-/// device. The function fit_sensor_errors() estimates from the readings which of the two priors applies. The prior of
-/// the calibrated device always applies if the prior of the uncalibrated device is not larger. Each standard deviation
-/// is in [0, 0.1], in the units of SensorErrors.
+/// device. The function fit_sensor_errors() estimates which of the two priors fits the readings. If the prior of the
+/// uncalibrated device is not larger, the prior of the calibrated device always applies. Each standard deviation is in
+/// [0, 0.1], in the units of SensorErrors.
 struct SensorErrorPriors {
   /// Standard deviations of scale and misalignment. The defaults of the calibrated device are from the data sheet of
   /// the MTi-300: non-orthogonality 0.05 deg. The defaults of the uncalibrated device are from the MPU-6050: 3 % scale
@@ -94,11 +94,11 @@ struct SensorErrorEvidence {
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Multiplies the information by `share` in the directions of sensor errors that free motion of a body does not
-/// determine; see rate_smoother.md (R39). The unobservable directions are a scale common to all axes of a sensor, and a
-/// common rotation of gyro and accelerometer. In the unobservable directions, residuals of the motion model wrongly
-/// appear as information about the sensor errors. The wrong information grows with the number of samples, because
-/// smaller motions have smaller residuals.
+/// Reduces, by the factor `share`, the information about sensor errors that free motion of a body does not determine;
+/// see rate_smoother.md (R39). The unobservable directions are a scale common to all axes of a sensor, and a common
+/// rotation of gyro and accelerometer. In the unobservable directions, residuals of the motion model wrongly appear as
+/// information about the sensor errors. The wrong information grows with the number of samples, because smaller motions
+/// have smaller residuals.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
 /// SensorErrorFit contains the sensor errors estimated from readings and prior.
@@ -114,7 +114,7 @@ struct SensorErrorFit {
 /// the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If the readings
 /// fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet. Cost: O(1),
 /// about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for earlier
-/// runs of the device, and has full weight.
+/// runs of the device.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 

@@ -46,11 +46,11 @@ struct ClippedElements {
 /// bounded remainder. The rotation of the measured gravity vector in sensor axes determines the rate while the gyro is
 /// saturated. HandHeldSmoother estimates attitude, rate, angular acceleration and hand motion at equal time steps,
 /// called nodes. HandHeldSmoother also estimates the biases and the lever arm of the IMU. A Gauss-Newton solver uses
-/// the arrow structure of the normal equations, and their inverse gives the covariances. Memory (about 7 kB per node)
-/// and computation grow in proportion to the duration, whatever the IMU's sample rate.
+/// the arrow structure of the normal equations, and the inverse of the normal matrix gives the covariances. Memory
+/// (about 7 kB per node) and computation grow in proportion to the duration, whatever the IMU's sample rate.
 ///
-/// HandHeldSmoother assumes that the body is not thrown (see `hand_acceleration_ratio`) and has no hard contact. The
-/// biases are constant, and the heading is relative to the start.
+/// HandHeldSmoother assumes that the body is not thrown (see `hand_acceleration_ratio`) and has no hard contact.
+/// HandHeldSmoother assumes constant biases, and reports the heading relative to the start.
 class HandHeldSmoother {
  public:
   using Params = HandHeldParams;

@@ -17,16 +17,16 @@ namespace tumble {
 ///
 /// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
 /// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
-/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory. A run that
-/// is continued from a saved State gives bit-identical results.
+/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory of the
+/// stream. A run that is continued from a saved State gives bit-identical results.
 ///
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
 /// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
 /// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
-/// HandHeldStream does not test whether a clipped segment has an additional full revolution. Instead, the rate
-/// covariance includes the error of one additional revolution (C42, C43 of carried.md). After the detection of a new
-/// saturation limit, HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes
-/// uses the assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
+/// HandHeldStream does not test whether a clipped segment has an additional full revolution. The rate covariance
+/// includes the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation
+/// limit, HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the
+/// assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
 ///
 /// Cost: each new node costs one Gauss-Newton step, O(window).
 class HandHeldStream {
@@ -86,8 +86,8 @@ class HandHeldStream {
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
-    /// Duration of the current clipped segment of each gyro element up to the last reported sample, and integral of the
-    /// rate's standard deviation.
+    /// Duration of the current clipping of each gyro element up to the last reported sample, and the time integral of
+    /// the rate's standard deviation.
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_ambiguous = 0;       ///< number of segments that may contain an additional revolution
     std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
@@ -103,13 +103,12 @@ class HandHeldStream {
   void restart(State& state) const;
 
   /// Processes one sample, and computes the rate `out` of the sample that is `lag_s` old. The argument `known` contains
-  /// the current clip signs of the newest samples, and its last entry belongs to `sample`. If the clip signs of a
-  /// sample in the window changed, push() processes the sample again. The output `out` is empty while the window fills,
-  /// or if `wanted` is false. If `wanted` is false, push() skips most of the computation. The argument `repeated`
-  /// describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time when the
-  /// sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range`
-  /// (no signs) or `degenerate` (sensing directions that do not span the axes). On error, `state` is unchanged and
-  /// `out` is empty.
+  /// the current clip signs of the newest samples, up to `sample`. If the clip signs of a sample in the window changed,
+  /// push() processes the sample again. The output `out` is empty while the window fills, or if `wanted` is false. If
+  /// `wanted` is false, push() skips most of the computation. The argument `repeated` describes repeated readings
+  /// (sample and hold) of the log. A repeated reading counts once, at the time when the sensor took the reading (R95 of
+  /// rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no signs) or `degenerate`
+  /// (sensing directions that do not span the axes). On error, `state` is unchanged and `out` is empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 

@@ -100,8 +100,8 @@ class ImuMerge {
   explicit ImuMerge(const Params& params);
 
   /// Returns the ratio of the measured force differences between IMUs to the differences expected from rotation and
-  /// positions. The ratio is 1 if forces and rotation agree, and -1 if the sign of the accelerometers is inverted. The
-  /// result is empty until the body has rotated enough.
+  /// positions. The ratio of force differences is 1 if forces and rotation agree, and -1 if the sign of the
+  /// accelerometers is inverted. The result is empty until the body has rotated enough.
   static std::optional<double> lever_arm_agreement(const State& state);
 
   /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are
@@ -122,7 +122,7 @@ class ImuMerge {
 
   using UnitMask = std::array<bool, kImus>;
 
-  /// means over a window; flags of the axes that were saturated in the window
+  /// mean readings over a window, with flags of the axes that were saturated in the window
   using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;

@@ -46,28 +46,28 @@ struct ImuPlausibilityParams {
   }
 };
 
-/// Checks whether the readings of an IMU are plausible: units, axes, signs, and frozen sensors.
+/// Detects implausible readings of an IMU: wrong units, axes or signs, and frozen sensors.
 ///
 /// If the magnitude of the force is constant for a fifth of a second, the force is probably gravity. Gravity has the
-/// magnitude g, and its direction in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). Here u is the
-/// direction of the force, and R is the rotation of the sensor from t to t + T. A constant force of another magnitude
-/// than g has another cause, for example the centripetal force of a spin in flight. ImuPlausibility compares directions
-/// only if the force is close to g and the gyro is unsaturated.
+/// magnitude g, and its direction in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u is
+/// the direction of the force, and R is the rotation of the sensor from t to t + T. A constant force of another
+/// magnitude than g has another cause, for example the centripetal force of a spin in flight. ImuPlausibility compares
+/// directions only if the force is close to g and the gyro is unsaturated.
 ///
-/// ImuPlausibility regresses the rotation of the force on the rotation of the gyro. The slope of the regression is 1
-/// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are swapped, the slope of the
-/// regression is about 0. Pushes, and a force along a rod, scatter the measured rotations about the regression line but
-/// change its slope little. Rotation about some axes does not reveal swapped axis labels. For example, a sphere that
-/// rolls along x = y does not reveal that x and y are swapped. The correct axis labels leave the smallest residual, so
-/// ImuPlausibility compares the residuals of all possible axis labels. ImuPlausibility separately detects a force that
-/// is constant although the body rotates.
+/// ImuPlausibility fits a regression line to the rotation of the force as a function of the rotation of the gyro. The
+/// slope of the regression is 1 for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are
+/// swapped, the slope of the regression is about 0. Pushes, and a force along a rod, scatter the measured rotations
+/// about the regression line but change its slope little. Rotation about some axes does not reveal swapped axis labels.
+/// For example, a sphere that rolls along x = y does not reveal that x and y are swapped. The correct axis labels leave
+/// the smallest residual, so ImuPlausibility compares the residuals of all possible axis labels. ImuPlausibility
+/// separately detects a force that is constant although the body rotates.
 ///
-/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit for long enough. The repetition must last
-/// a second, and ten times longer than any earlier repetition. ImuPlausibility tests for repeated readings only if the
-/// readings of the sensor have changed before. Sensors whose readings often repeat do not count as frozen, for example
-/// sensors with coarse quantisation at rest. ImuPlausibility reports a gyro with constant readings as frozen if gravity
-/// rotates, or if forces differ from gravity for long enough. ImuPlausibility reports an accelerometer that always
-/// reads 0 as frozen if the gyro measures motion.
+/// ImuPlausibility reports a gyro or an accelerometer as frozen if one reading repeats bit for bit for long enough. The
+/// repeated reading must last at least a second, and ten times longer than any earlier repeated reading.
+/// ImuPlausibility tests for repeated readings only if the readings of the sensor have changed before. Sensors whose
+/// readings often repeat do not count as frozen, for example sensors with coarse quantisation at rest. ImuPlausibility
+/// reports a gyro with constant readings as frozen if gravity rotates, or if forces differ from gravity for long
+/// enough. ImuPlausibility reports an accelerometer that always reads 0 as frozen if the gyro measures motion.
 ///
 /// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate.
 /// ImuPlausibility detects no error while the body is pushed. ImuPlausibility does not detect an accelerometer whose

@@ -66,8 +66,8 @@ class RegimeStream {
     std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
     double resets = 0.0;               ///< resets of RateStream's calibration, decaying over its lag
     bool hand_held_running = false;    ///< whether HandHeldStream is running
-    /// Recent samples that may determine the smallest probability of hand-held motion within `near_s`. The oldest entry
-    /// of `near` has the smallest probability.
+    /// Samples that may determine the smallest probability of hand-held motion within the last `near_s`. The oldest
+    /// entry of `near` has the smallest probability.
     std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample

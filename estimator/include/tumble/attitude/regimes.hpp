@@ -23,12 +23,12 @@ struct RegimeProbabilities {
 ///
 /// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
 /// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. The residual
-/// force e is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In
-/// contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform prior. A Markov
-/// chain connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or
-/// caught. The Markov chain prevents RegimeEvidence from mistaking an impact or a quiet moment of rolling for hand-held
-/// motion. Readings within `memory_s` are correlated and count as one reading. Readings without rotation do not change
-/// the probabilities.
+/// force e is zero in flight. In hand-held motion, the residual force is gravity plus the acceleration of a hand, in
+/// any direction. In contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform
+/// prior. A Markov chain connects the samples: flight and contact alternate several times per second, but a body is
+/// rarely thrown or caught. The Markov chain prevents RegimeEvidence from mistaking an impact or a quiet moment of
+/// rolling for hand-held motion. Readings within `memory_s` are correlated and count as one reading. Readings without
+/// rotation do not change the probabilities.
 ///
 /// RegimeEvidence does not use the attitude, so its probabilities are available before HandHeldSmoother runs.
 /// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_m_s2` acts on the body.

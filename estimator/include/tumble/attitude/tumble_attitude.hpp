@@ -64,7 +64,7 @@ struct TumbleAttitudeParams {
 /// TumbleAttitude integrates the gyro to an attitude, exactly for a rate that is constant over a sample. TumbleAttitude
 /// integrates the specific force in world axes to a horizontal velocity and displacement, which decay slowly. A tilt
 /// error would let the integrated velocity and displacement grow without bound. Weak pseudo-measurements of zero
-/// velocity and zero displacement therefore correct the tilt and the gyro bias. Accelerations that later reverse
+/// velocity and zero displacement therefore correct the tilt and the gyro bias. Accelerations in alternating directions
 /// average out. A Kalman filter of nine states (tilt, bias, velocity, displacement) processes the pseudo-measurements
 /// every `node_s`. The Kalman filter acts like the low-pass of VQF in an inertial frame, with a corner frequency that
 /// adapts to the sensor's errors. When the body is at rest, its velocity and rate are zero up to noise. At rest,
@@ -84,9 +84,10 @@ struct TumbleAttitudeParams {
 /// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
 /// In a gap longer than `gap_least_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. The Kalman filter
-/// is no longer valid if a gap increases the tilt's standard deviation to `gap_lost_tilt_rad`. A coarse alignment then
-/// searches for the vertical in parallel. Until the coarse alignment succeeds, the covariance is constant. If the
-/// Kalman filter and the coarse alignment disagree, the filter restarts from the alignment.
+/// is no longer valid if a gap increases the tilt's standard deviation to `gap_lost_tilt_rad`. After a long gap, a
+/// coarse alignment estimates the tilt in parallel to the Kalman filter. Until the coarse alignment succeeds, the
+/// covariance is constant. If the Kalman filter and the coarse alignment disagree, the filter restarts from the
+/// alignment.
 ///
 /// TumbleAttitude has no heading reference. TumbleAttitude assumes an accelerometer without bias and scale errors,
 /// which would cause a tilt error at rest.

@@ -109,8 +109,8 @@ class Vqf {
   explicit Vqf(const Params& params);
 
   /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
-  /// its specific force, with yaw 0. Each later sample is integrated and corrects the state. If the force is below 1e-6
-  /// m/s^2, the sample only integrates the gyro. On error, the state is unchanged.
+  /// its specific force, with yaw 0. Each later sample is integrated and corrects the attitude. If the force is below
+  /// 1e-6 m/s^2, the sample only integrates the gyro. On error, the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

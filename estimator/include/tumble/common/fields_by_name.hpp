@@ -41,8 +41,8 @@ class PrefixedNameVisitor {
 }  // namespace detail
 
 /// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. The argument
-/// `value` is a number or a Vector3d, and is const if `params` is const. The argument `name` is a std::string that
-/// starts with the prefixes of the parameter's groups.
+/// `value` is the parameter's value, a number or a Vector3d. The argument `name` is a std::string that starts with the
+/// prefixes of the parameter's groups.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
   detail::PrefixedNameVisitor<Each> visitor(each);

@@ -18,11 +18,11 @@ namespace tumble {
 /// of the sensor and a varying delay of the host. For example, at an angular acceleration of 300 rad/s^2, a timing
 /// error of 0.5 ms causes a rate error of 0.15 rad/s.
 ///
-/// SampleClock fits a line to the time stamps as a function of the sample number. The weights of older time stamps
-/// decrease exponentially. The method is the fading-memory polynomial filter of first degree (Morrison, Introduction to
-/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times
-/// the jitter of the time stamps, where T is the sample period. A constant delay of the host is not observable. Dropped
-/// samples count as samples in the fit.
+/// SampleClock fits a line to the time stamps as a function of the sample number. In the fit, the weights of older time
+/// stamps decrease exponentially. The method is the fading-memory polynomial filter of first degree (Morrison,
+/// Introduction to Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T /
+/// memory_s) times the jitter of the time stamps, where T is the sample period. A constant delay of the host is not
+/// observable. In the fit, dropped samples count as samples.
 ///
 /// SampleClock returns the first 32 time stamps unchanged. Later time stamps are unchanged if the jitter is below
 /// `jitter_min` of the period, which indicates time stamps of the sensor's own clock. Time stamps are also unchanged if

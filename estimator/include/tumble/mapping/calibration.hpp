@@ -40,7 +40,7 @@ struct StatedCalibration {
   /// gravity.
   double deviations(const SweepCalibration& estimated) const;
   /// Returns `out_of_range` if `estimated` is more than `kDistanceMax_sigmas` standard deviations from the stated
-  /// calibration. The stated calibration is then wrong.
+  /// calibration. A larger distance means that the stated calibration is wrong.
   Status verdict(const SweepCalibration& estimated) const;
 };
 

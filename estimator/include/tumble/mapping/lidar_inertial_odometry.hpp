@@ -38,8 +38,8 @@ class StateLayout;
 /// LidarInertialOdometry estimates the lidar's mounting, its time offset and gravity if their standard deviations are
 /// not 0. All unknowns form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over
 /// sweeps. A fixed-lag smoother refines the last `window_sweeps` sweeps with the data of later sweeps, and moves the
-/// map points of the refined sweeps. Map points of older sweeps keep their positions. For a consistent map, process the
-/// recording a second time, starting from calibration().
+/// map points of the refined sweeps. Map points of older sweeps keep their positions. To get a consistent map, process
+/// the recording a second time, starting from the calibration that calibration() returns.
 ///
 /// The reported covariances propagate the errors through the gains of the filter. The residuals of the registration
 /// determine the covariance of the registered pose (Registration::Result::score_covariance).
@@ -75,13 +75,14 @@ class LidarInertialOdometry {
   /// Until the robot is localised, poses are in a local frame, and localised() returns `degenerate`.
   /// LidarInertialOdometry compares the local map with the prior map after each registered sweep. After localisation,
   /// poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If `map.T_MI` is
-  /// set, use_map() also calls set_start_pose(). The prior map is kept as a whole, also beyond map_radius_m. Returns
-  /// the errors of check_prior_map(), or `time_order` after the first sweep. On error, the state is unchanged.
+  /// set, use_map() also calls set_start_pose(). LidarInertialOdometry keeps the whole prior map, also beyond
+  /// map_radius_m. Returns the errors of check_prior_map(), or `time_order` after the first sweep. On error, the state
+  /// is unchanged.
   Status use_map(PriorMap map);
-  /// Uses the prior map and the prior map's parameters of another object, if any. The localisation restarts from the
-  /// pose of set_start_pose(), or else from the pose in the prior map.
+  /// Copies the prior map, if any, and the parameters of the prior map from another object. The localisation restarts
+  /// from the pose of set_start_pose(), or else from the pose in the prior map.
   void use_map_of(const LidarInertialOdometry& other);
-  /// Returns `degenerate` if a prior map is set and the robot is not localised in the prior map, and otherwise `ok`.
+  /// Returns `degenerate` if a prior map is set but the robot is not yet localised, and otherwise `ok`.
   Status localised() const;
   bool has_prior_map() const;
 
@@ -100,13 +101,13 @@ class LidarInertialOdometry {
   /// weighted by their covariances. A new reading replaces an earlier reading and the velocity of add_velocity(). A
   /// reading outside the time of the next sweep has no effect.
   Status add_reading(const OdometerReading& reading);
-  /// Excludes the accelerometer from the prediction of the next sweep. LidarInertialOdometry then predicts the velocity
-  /// as in a gap, but still uses the gyro. A call of exclude_accelerometer() replaces earlier odometer readings for the
-  /// next sweep.
+  /// Excludes the accelerometer from the prediction of the next sweep. Without the accelerometer, LidarInertialOdometry
+  /// predicts the velocity as in a gap, but still uses the gyro. A call of exclude_accelerometer() replaces earlier
+  /// odometer readings for the next sweep.
   void exclude_accelerometer();
 
-  /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. Points with NaN
-  /// coordinates are misses.
+  /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
+  /// coordinates is a laser pulse without a return.
   ///
   /// Three errors of add_sweep() leave the state unchanged. `time_order` means that the end is before the start, or
   /// that the start is before the end of the last sweep. `too_few` means that the IMU samples do not cover the sweep.
@@ -154,9 +155,9 @@ class LidarInertialOdometry {
   std::vector<MapPoint> map() const;
 
   /// Saves or loads the complete state, except `parallel_for`. The loading object must have the parameters of the
-  /// saving object, and continues with bit-identical results. The saved state includes the mounting, the time offset
-  /// and their standard deviations. If loading fails, the StateReader reports an error and the loading object is
-  /// unchanged.
+  /// saving object, and continues with bit-identical results. The saved state includes the lidar's mounting and time
+  /// offset with their standard deviations. If loading fails, the StateReader reports an error and the loading object
+  /// is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;

@@ -46,9 +46,9 @@ class Registration {
 
   explicit Registration(const Params& params);
 
-  /// Aligns the points of a sweep to a map. The points must have been computed with the calibration of `prior`. The
-  /// function rebuilds `trajectory` from `prior` and `samples` up to `end_ns`. The output `trajectory` contains the
-  /// aligned motion. Returns the errors of SweepTrajectory::build().
+  /// Aligns the points of a sweep to a map. The argument `points` must have been computed with the calibration of
+  /// `prior`. The function rebuilds `trajectory` from `prior` and `samples` up to `end_ns`. The output `trajectory`
+  /// contains the aligned motion. Returns the errors of SweepTrajectory::build().
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
@@ -70,7 +70,7 @@ class Registration {
         std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all neighbours were found
     bool searched = false;
   };
-  /// Sums contains the normal equations over the matches of one iteration, for the estimated unknowns only.
+  /// Sums contains the normal equations of the estimated unknowns, summed over the matches of one iteration.
   struct Sums {
     Matrix H = Matrix::Zero();
     Vector g = Vector::Zero();

@@ -41,8 +41,8 @@ struct SweepReport {
   /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are right. An
   /// innovation of 0 means that the sweep was not aligned.
   double innovation = 0.0;
-  /// Standard deviation of the position relative to the map around the robot. In contrast, the covariance of `pose`
-  /// includes the map's drift and tilt, which grow with the travelled distance.
+  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
+  /// the map's drift and tilt, which grow with the travelled distance.
   double map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep

@@ -59,10 +59,10 @@ struct MotionState {
 /// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
 /// is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the saturation
 /// deficit e_j. The factor s_j has the sign of the rate w_j. The magnitude of s_j is the rate's standard deviation
-/// sigma_j, divided by the largest sigma_j of the segment's clipped samples. The saturation deficit therefore corrects
-/// accurate rates only a little. The magnitude of s_j is 1 if all standard deviations sigma_j are 0. Within a sample,
-/// the saturation deficit is constant and has the value at the middle of the sample. SweepTrajectory neglects sculling
-/// within a sample and the earth's rotation.
+/// sigma_j, divided by the largest sigma_j of the segment's clipped samples. The saturation deficit corrects rates with
+/// a small standard deviation only a little. The magnitude of s_j is 1 if all standard deviations sigma_j are 0. Within
+/// a sample, the saturation deficit is constant and has the value at the middle of the sample. SweepTrajectory neglects
+/// sculling within a sample and the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -85,8 +85,8 @@ class SweepTrajectory {
 
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
   /// start. Returns `too_few` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
-  /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start. A
-  /// repeated call reuses the memory of the trajectory.
+  /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start.
+  /// Repeated calls of build() reuse the memory of the trajectory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
   /// Integrates the motion from `start` to `end_ns`, with gravity of magnitude `gravity_m_s2` along -z.
@@ -125,8 +125,8 @@ class SweepTrajectory {
   /// noise.
   MotionState state(double t_s) const;
 
-  /// Transition contains the first-order derivatives of the state at time t_s (position, attitude, velocity). The
-  /// derivatives are with respect to the start state, the saturation deficit, and gravity.
+  /// Transition contains the first-order derivatives of the state at time t_s (position, attitude, velocity).
+  /// Transition differentiates with respect to the start state, the saturation deficit, and gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
     Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;

@@ -86,8 +86,8 @@ class VoxelMap {
   /// remaining sweep.
   std::vector<std::uint32_t> remove_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
-  /// Deletes the points of `first_sweep` and of later sweeps. Cost: O(number of points). The indices of points change;
-  /// sweeps keep their numbers.
+  /// Deletes the points of `first_sweep` and of later sweeps. Cost: O(number of points). The indices of points change,
+  /// and the numbers of sweeps are unchanged.
   void remove_sweeps_from(std::uint32_t first_sweep);
 
   /// Returns the memory in use [bytes].

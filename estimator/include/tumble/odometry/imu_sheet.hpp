@@ -10,8 +10,8 @@ namespace tumble {
 
 /// ImuSheet contains the data sheet of an IMU. A range of 0 means that the range is unknown. The estimators detect
 /// saturation limits from the readings, with or without a stated range. Data sheets state the range of a gyro in
-/// degrees per second, between 250 and 4000. A gyro range above 100 rad/s (5730 deg/s) is rejected, because it is
-/// probably in degrees per second.
+/// degrees per second, between 250 and 4000. A gyro range above 100 rad/s (5730 deg/s) is rejected, because the range
+/// is probably in degrees per second.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;

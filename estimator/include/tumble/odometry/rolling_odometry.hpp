@@ -127,15 +127,15 @@ class RollingOdometry {
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
   /// restarts the run. If the clock steps back, add_imus() rejects samples with `time_order` for 0.2 s, and then the
   /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
-  /// a restart are `uncertain`.
+  /// a restart have the flag `uncertain`.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
   /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
-  /// resamples the IMUs to common times, at most 0.05 s late. An IMU without readings is absent. Returns the errors of
-  /// add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu() rejects samples until
-  /// reset().
+  /// resamples the IMUs to common times, at most 0.05 s late. RollingOdometry treats an IMU without readings as absent.
+  /// Returns the errors of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu()
+  /// rejects samples until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.

@@ -34,9 +34,9 @@ struct RecordingEstimate;
 /// to the map (`report.pose`), at most `lag_s` after the sweep's end. The report of the following sweep contains the
 /// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses
 /// are in the IMU's clock. LidarInertialOdometry defines the world frame. The earliest sweep with enough points starts
-/// the map, and TumblingOdometry reports no poses before. Start with at least half a second at rest, which determines
-/// the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, TumblingOdometry subtracts the offset and restarts,
-/// which needs a second at rest.
+/// the map. TumblingOdometry reports poses only after the map has started. Start with at least half a second at rest,
+/// which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, TumblingOdometry subtracts the
+/// offset and restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
 /// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already

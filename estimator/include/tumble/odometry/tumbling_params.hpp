@@ -27,8 +27,7 @@ struct TumblingExpertParams {
   /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
-  /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration,
-  /// because sweeps use the rates before the calibration is estimated.
+  /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration.
   RegimeStream::Params rate = rate_defaults();
   /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
   /// reading) are unknowns of the registration.

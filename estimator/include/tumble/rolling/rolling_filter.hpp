@@ -30,8 +30,8 @@ namespace tumble {
 ///
 /// RollingFilter averages the readings of a fast IMU over RollingExpertParams::reading_s, and extrapolates the estimate
 /// between averages. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and assumes an unknown force.
-/// The covariance after a gap accounts for the interpolated rate and the unknown force. RollingFilter detects a start
-/// in motion, and increases the initial uncertainty.
+/// After a gap, the covariance includes the errors of the interpolated rate and the unknown force. RollingFilter
+/// detects a start in motion, and increases the initial uncertainty.
 ///
 /// While the gyro is saturated, the attitude is uncertain, and RollingFilter does not use the rolling constraint.
 /// During gyro saturation, nothing corrects the position, and the covariance of the position grows. The state of
@@ -59,11 +59,11 @@ class RollingFilter {
   };
 
   struct State {
-    // Estimate at the last sample, from the most probable hypothesis.
+    // Estimated pose and velocity at the last sample, from the most probable hypothesis.
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    /// covariance at the last node, over all hypotheses
+    /// position covariance at the last node, over all hypotheses
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
         Eigen::Vector3d::Zero();  ///< contact velocity at the last node, in world axes

@@ -19,7 +19,7 @@ struct RollingExpertParams {
   /// reading unchanged.
   double reading_s = 4e-3;
   /// Parameters of the rest detector, which processes the mean reading of each node. The rate limit of 0.0115 rad/s per
-  /// axis is 0.02 rad/s in total, which is 3 mm/s of the sphere. A limit of 0.02 rad/s per axis would increase the
+  /// axis is 0.02 rad/s in total, which is 3 mm/s of the sphere. A rate limit of 0.02 rad/s per axis would increase the
   /// drift of a sphere that comes to rest by half.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};

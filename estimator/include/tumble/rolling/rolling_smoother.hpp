@@ -24,8 +24,8 @@ namespace tumble {
 /// the errors of a sample from the errors of its two neighbouring nodes.
 ///
 /// With a fixed lag, the reported position is constant while the sphere is at rest. With a fixed lag, RollingSmoother
-/// corrects the position for errors of the path before a rest when motion resumes. Over a whole run, RollingSmoother
-/// corrects the path before a rest directly.
+/// corrects the position for errors of the path before a rest when motion resumes. If the whole run is smoothed,
+/// RollingSmoother corrects the path before a rest directly.
 ///
 /// RollingSmoother treats the contact modes as certain, except for the spread of positions that RollingFilter prunes at
 /// rest.
@@ -114,10 +114,10 @@ class RollingSmoother {
 
   /// Processes a sample, and appends the estimates that are older than the lag to `out`. On error, the state is
   /// unchanged. The first sample allocates the memory of the lag. After the first sample, only `out` and the processing
-  /// of a block allocate memory. The memory grows with the duration (64 bytes per sample, 152 per node) beyond
-  /// rate_max_hz, beyond a million samples, or with kWholeRun. The last sample of a block does the computations of the
-  /// block. The computations of a block need 14 KiB of memory per node of lag and block. If there are many nodes, a
-  /// block needs 4 MiB plus 0.3 KiB per node.
+  /// of a block allocate memory. The memory grows with the duration (64 bytes per sample, 152 per node) if the sample
+  /// rate exceeds rate_max_hz, if the lag contains over a million samples, or with kWholeRun. The call of step() for
+  /// the last sample of a block does the computations of the block. The computations of a block need 14 KiB of memory
+  /// per node of lag and block. If there are many nodes, a block needs 4 MiB plus 0.3 KiB per node.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
