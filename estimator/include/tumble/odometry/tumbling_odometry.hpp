@@ -91,7 +91,7 @@ class TumblingOdometry {
   /// may overlap by jitter. On error, the state is unchanged. The error `time_order` means that the end is before the
   /// start, or that half of the sweep is before the end of the last sweep. The error `out_of_range` means that a point
   /// is outside the sweep, or that the end is a second after the newest IMU sample. The function also returns
-  /// `out_of_range` if a time stamp exceeds 109 years or too many sweeps wait.
+  /// `out_of_range` if a time stamp exceeds 97 years or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
