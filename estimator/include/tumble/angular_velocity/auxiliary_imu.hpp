@@ -51,11 +51,11 @@ struct AuxiliaryReading {
   bool same(const AuxiliaryReading& other) const;
 };
 
-/// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The interpolation
-/// is linear between neighbouring readings that are at most `gap_max_s` apart. Readings of clipped sensing elements are
-/// excluded from the interpolation. The argument `clippings` contains one entry of ClippingFinder per sample. Returns
-/// the errors of check_samples() except `gap`, or `too_few` if `clippings` has fewer entries than `samples`. On error,
-/// `out` is unchanged. If `samples` is empty, all interpolated readings are NaN.
+/// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The function
+/// interpolates linearly between neighbouring readings that are at most `gap_max_s` apart. Readings of clipped sensing
+/// elements are excluded from the interpolation. The argument `clippings` contains one entry of ClippingFinder per
+/// sample. Returns the errors of check_samples() except `gap`, or `too_few` if `clippings` has fewer entries than
+/// `samples`. On error, `out` is unchanged. If `samples` is empty, all interpolated readings are NaN.
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

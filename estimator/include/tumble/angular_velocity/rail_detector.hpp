@@ -137,7 +137,7 @@ class RailDetector {
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
   /// Adds the axes on the rising edge of a plateau to `clipping`. An axis is on the rising edge if `sample` is near the
-  /// saturation limit and `next` is clipped. The threshold is equal for the rising and the falling edge.
+  /// saturation limit and `next` is clipped. The falling edge of a plateau has the same threshold.
   void add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                        Clipping& clipping) const;
 

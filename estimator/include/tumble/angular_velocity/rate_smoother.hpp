@@ -95,13 +95,12 @@ struct RateReport {
 /// recording.
 ///
 /// RateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
-/// (RigConstants). A Gauss-Newton solver minimises the residuals of the following measurements and constraints.
-/// Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate, for any number of
-/// axes. In flight, the specific force at the lever arm follows the complete rigid-body equation, and Euler's equation
-/// holds without torque. During contact, the force equation and Euler's equation have lower weights. Between samples,
-/// the angular jerk is white noise, whose density increases with the contact force. An impact therefore decouples the
-/// rates before the impact from the rates after the impact. At rest (RestDetector), the rate is zero, so the gyro
-/// measures its bias.
+/// (RigConstants). A Gauss-Newton solver minimises the residuals of several measurements and constraints. Unclipped
+/// gyro readings measure the rate, and clipped readings give a lower bound on the rate, for any number of axes. In
+/// flight, the accelerometer measures only the effect of rotation at the lever arm, and Euler's equation holds without
+/// torque. During contact, the force equation and Euler's equation have lower weights. Between samples, the angular
+/// jerk is white noise, whose density increases with the contact force. An impact therefore decouples the rates before
+/// the impact from the rates after the impact. At rest (RestDetector), the rate is zero, so the gyro measures its bias.
 ///
 /// The normal equations have an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
 /// come from the published method (Saave), extended by the lower bounds of clipped readings.

@@ -78,7 +78,7 @@ class RestDetector {
   explicit RestDetector(const Params& params);
 
   /// Processes the next finite sample and returns whether the IMU is at rest up to the last averaged reading. The
-  /// argument `bias_rad_s` is the known gyro bias. Cost: O(1), no allocation.
+  /// argument `bias_rad_s` is the known gyro bias [rad/s]. Cost: O(1), no allocation.
   bool observe(const ImuSample& sample, State& state,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 

@@ -90,8 +90,8 @@ struct HandHeldExpertParams {
   double node_s = 0.01;  ///< time between two nodes (states of the estimator)
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Factor on the assumed angular jerk for the reported covariances. The factor is above 1 because the actual jerk is
-  /// unknown.
+  /// Factor on the assumed angular jerk for the reported covariances. The factor increases the reported uncertainty,
+  /// because the true angular jerk is unknown.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   HandMotionParams hand = {};

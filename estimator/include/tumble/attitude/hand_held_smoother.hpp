@@ -71,8 +71,8 @@ class HandHeldSmoother {
     /// The counter revolutions_ambiguous counts segments in which another number of revolutions has odds of at least 1
     /// to 1000. The rate covariance includes the spread of the possible numbers of revolutions.
     int revolutions_tested = 0, revolutions_corrected = 0, revolutions_ambiguous = 0;
-    /// Number of tested revolutions for which the solver failed. After a failure, HandHeldSmoother restores the
-    /// previous solution, and counts the segment in revolutions_ambiguous.
+    /// Number of tests of another number of revolutions in which the solver failed. After a failure, HandHeldSmoother
+    /// restores the previous solution, and counts the segment in revolutions_ambiguous.
     int revolutions_failed = 0;
   };
 

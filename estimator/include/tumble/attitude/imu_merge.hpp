@@ -75,8 +75,8 @@ struct ImuMergeParams {
 /// at tilted planes beforehand (ClippingFinder).
 ///
 /// ImuMerge averages the readings over `window_s`. Bandwidth and tolerances therefore do not depend on the sample rate
-/// of the IMUs. If the sample period is at least `window_s`, ImuMerge uses each reading unchanged. If an axis was
-/// saturated within the window, the mean of the axis is a lower bound.
+/// of the IMUs. If the sample period is at least `window_s`, ImuMerge uses the readings without averaging. If an axis
+/// was saturated within the window, the mean of the axis is a lower bound.
 ///
 /// ImuMerge treats an IMU whose reading is not finite as absent. An IMU is frozen if its gyro or accelerometer repeats
 /// one reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading

@@ -119,8 +119,8 @@ class ImuPlausibility {
   /// reduce the correlation to a value between 0 and 1. The function returns 1 while the rotation is too small for a
   /// decision.
   double rotation_agreement(const State& state) const;
-  /// Returns the force's rotation divided by the gyro's rotation, or 1 while unknown. The ratio includes windows in
-  /// which the force did not rotate.
+  /// Returns the force's rotation divided by the gyro's rotation, or 1 while unknown. The rotation ratio includes
+  /// windows in which the force did not rotate.
   double force_rotation_ratio(const State& state) const;
   /// Returns axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
   /// (I22). The result is empty if the current axis labels fit.

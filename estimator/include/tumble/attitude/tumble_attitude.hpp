@@ -72,8 +72,8 @@ struct TumbleAttitudeParams {
 /// heading.
 ///
 /// The size of the motion is not known in advance: a few centimetres, or the way down a hill. TumbleAttitude accepts a
-/// large velocity or displacement as real motion if the tilt variance cannot explain the value. The assumed standard
-/// deviation of velocity or displacement then increases for `motion_tau_s`.
+/// large velocity or displacement as real motion if the tilt variance cannot explain the value. After accepting a large
+/// motion, TumbleAttitude increases the assumed standard deviation of velocity or displacement for `motion_tau_s`.
 ///
 /// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The

@@ -110,7 +110,7 @@ class Vqf {
 
   /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
   /// its specific force, with yaw 0. Each later sample is integrated and corrects the attitude. If the force is below
-  /// 1e-6 m/s^2, the sample only integrates the gyro. On error, the state is unchanged.
+  /// 1e-6 m/s^2, step() integrates the gyro without a correction. On error, the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -35,9 +35,9 @@ struct StatedCalibration {
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance between an estimated calibration and the stated calibration in standard deviations. The
-  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The distance is infinite
-  /// if `estimated` changes a value that was stated as exact. The distance excludes gravity, because each run estimates
-  /// gravity.
+  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The calibration distance
+  /// is infinite if `estimated` changes a value that was stated as exact. The calibration distance excludes gravity,
+  /// because each run estimates gravity.
   double deviations(const SweepCalibration& estimated) const;
   /// Returns `out_of_range` if `estimated` is more than `kDistanceMax_sigmas` standard deviations from the stated
   /// calibration. A larger distance means that the stated calibration is wrong.

@@ -41,8 +41,9 @@ class StateLayout;
 /// map points of the refined sweeps. Map points of older sweeps keep their positions. To get a consistent map, process
 /// the recording a second time, starting from the calibration that calibration() returns.
 ///
-/// The reported covariances propagate the errors through the gains of the filter. The residuals of the registration
-/// determine the covariance of the registered pose (Registration::Result::score_covariance).
+/// LidarInertialOdometry computes the reported covariances by propagating the errors through the gains of the filter.
+/// The residuals of the registration determine the covariance of the registered pose
+/// (Registration::Result::score_covariance).
 ///
 /// Tracking has failed if the registration rejects several consecutive sweeps. After a tracking failure,
 /// LidarInertialOdometry continues with inertial prediction, and with zero velocity while the IMU is at rest. Until
@@ -63,8 +64,8 @@ class LidarInertialOdometry {
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
   /// Sets position and heading of the IMU at the start of the map. The tilt comes from the specific force at rest.
-  /// Covariances are relative to the start pose. Call set_start_pose() before the first sweep. The default start pose
-  /// is the origin.
+  /// Covariances are relative to the start pose. Call set_start_pose() before the first sweep. Without a call of
+  /// set_start_pose(), the map starts at the origin.
   void set_start_pose(const Eigen::Isometry3d& T_WI);
   /// Returns the pose that was passed to set_start_pose(), if any.
   const std::optional<Eigen::Isometry3d>& start() const;
@@ -91,15 +92,15 @@ class LidarInertialOdometry {
   /// bridges the gap and increases the uncertainty of the predicted motion.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
-  /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The velocity is in
-  /// IMU axes, with one standard deviation for all axes. The odometer's velocity replaces the estimated velocity only
-  /// in the prediction of the next sweep. Returns `non_finite`, or `out_of_range` if the standard deviation is not
-  /// above 0. On error, the state is unchanged.
+  /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The odometer's
+  /// velocity is in IMU axes, with one standard deviation for all axes. The odometer's velocity replaces the estimated
+  /// velocity only in the prediction of the next sweep. Returns `non_finite`, or `out_of_range` if the standard
+  /// deviation is not above 0. On error, the state is unchanged.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer's reading for the next sweep. The reading must be between the end of the last sweep and the end
   /// of the next sweep, with a margin of 20 ms. LidarInertialOdometry fuses the reading with the inertial prediction,
-  /// weighted by their covariances. A new reading replaces an earlier reading and the velocity of add_velocity(). A
-  /// reading outside the time of the next sweep has no effect.
+  /// weighted by their covariances. A new odometer reading replaces an earlier reading and the velocity of
+  /// add_velocity(). An odometer reading outside the time of the next sweep has no effect.
   Status add_reading(const OdometerReading& reading);
   /// Excludes the accelerometer from the prediction of the next sweep. Without the accelerometer, LidarInertialOdometry
   /// predicts the velocity as in a gap, but still uses the gyro. A call of exclude_accelerometer() replaces earlier
@@ -119,7 +120,7 @@ class LidarInertialOdometry {
 
   /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the end of the
   /// last sweep. The state of the odometry is unchanged. If no sample is later than the last sweep, predict() returns
-  /// the pose at the end of the last sweep. Use predict() to get a pose before the next sweep is complete. Returns the
+  /// the pose at the end of the last sweep. Call predict() to get a pose before the next sweep is complete. Returns the
   /// errors of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last sweep). The optional output
   /// `velocity_covariance_I_m2_s2` is defined as in SweepReport.
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose,
@@ -142,8 +143,9 @@ class LidarInertialOdometry {
   /// time outside the window.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps in the window, oldest first. Later sweeps still change the poses in the
-  /// window. The whole trajectory consists of all SweepReport::smoothed, followed by window_trajectories().
+  /// Returns the current poses of the sweeps in the window, oldest first. The poses in the window are not final,
+  /// because later sweeps still refine them. The whole trajectory consists of all SweepReport::smoothed, followed by
+  /// window_trajectories().
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   /// Returns the size of the map in memory [bytes].

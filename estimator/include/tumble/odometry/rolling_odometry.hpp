@@ -34,9 +34,9 @@ namespace tumble {
 /// is the sphere's centre. The sphere should be at rest for one second at the start.
 ///
 /// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag.
-/// RollingOdometry computes poses in blocks of RollingSmoother::Params::block_s. After start-up, a sample inside a
-/// block allocates no memory, except for poses that take() has not yet returned. A call needs at most 64 KiB of stack.
-/// RollingOdometry starts no threads, uses no files and prints nothing. A copy of a RollingOdometry contains the
+/// RollingOdometry computes poses in blocks of RollingSmoother::Params::block_s. After start-up, add_imus() allocates
+/// memory only at the end of a block, and for poses that take() has not yet returned. A call needs at most 64 KiB of
+/// stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy of a RollingOdometry contains the
 /// complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
 class RollingOdometry {
  public:
@@ -149,8 +149,8 @@ class RollingOdometry {
   /// the first error of the remaining samples, or with kWholeRecording the errors of merge_recordings().
   Status finish();
 
-  /// Starts a new run at the origin and at rest. Poses that take() has not yet returned remain available, and counters
-  /// keep their values.
+  /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
+  /// run, and counters keep their values.
   void reset();
   /// Starts a new run at a known pose of the sphere, like reset(). The pose `T_WG` sets position and heading, and
   /// gravity at rest determines the tilt. Covariances are relative to `T_WG`.

@@ -49,10 +49,11 @@ struct RecordingEstimate;
 /// take() returns all sweeps after finish(). A gap of more than a second or a step of the clock ends the recording. The
 /// function finish() needs more stack and memory than other functions.
 ///
-/// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, a sample
-/// that ends no sweep allocates no memory. While SecondPass runs, a sweep costs up to four registrations. The end of
-/// SecondPass costs five more registrations. The lag, the map radius, `sweeps_max` and the buffer of SecondPass limit
-/// the memory. In addition, the map stores 12 bytes per sweep within ten metres. A call needs at most 64 KiB of stack.
+/// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
+/// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four
+/// registrations. When SecondPass ends, it costs five additional registrations. The memory is bounded: it depends on
+/// the lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
+/// within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so a run can be split. The limitations of RegimeStream and LidarInertialOdometry apply to
@@ -115,8 +116,8 @@ class TumblingOdometry {
   /// before each sweep with the numbers of processed sweeps and of all sweeps, for a progress display. Each pass over
   /// the recording starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
-  /// Starts a new run with a new map, at the origin and at rest. Sweeps that take() has not yet returned remain
-  /// available, and counters keep their values.
+  /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
+  /// sweeps of the old run, and counters keep their values.
   void reset();
   /// Starts a new run at a known pose of the IMU, like reset(). The pose `T_WI` sets position and heading, and gravity
   /// at rest determines the tilt. Covariances are relative to `T_WI`.
@@ -127,11 +128,11 @@ class TumblingOdometry {
   /// since the last sweep). The optional output `velocity_covariance_I_m2_s2` is the covariance of the velocity error
   /// in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Returns whether the inputs and the pose are currently plausible. Estimation continues after any finding, and a
-  /// finding ends at most a minute after its cause. The function returns `ok`, or `out_of_range` with one finding.
-  /// Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong accelerometer unit, and a
-  /// wrong scale of the lidar's ranges. Findings about the pose are an uncertain vertical, a missing localisation in
-  /// the prior map, tracking failure, and an implausible change of the lidar's calibration.
+  /// Returns whether the inputs and the pose are currently plausible. The estimation continues after any finding. A
+  /// finding ends at most a minute after its cause has ended. The function returns `ok`, or `out_of_range` with one
+  /// finding. Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong accelerometer unit,
+  /// and a wrong scale of the lidar's ranges. Findings about the pose are an uncertain vertical, a missing localisation
+  /// in the prior map, tracking failure, and an implausible change of the lidar's calibration.
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;

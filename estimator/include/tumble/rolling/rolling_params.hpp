@@ -15,8 +15,8 @@ namespace tumble {
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
   /// Averaging time of the readings. The thresholds in RollingExpertParams assume the default averaging time. An
-  /// averaging time of 0 disables averaging. If the sample period is longer than reading_s, RollingFilter uses each
-  /// reading unchanged.
+  /// averaging time of 0 disables averaging. If the sample period is longer than reading_s, RollingFilter uses the
+  /// readings without averaging.
   double reading_s = 4e-3;
   /// Parameters of the rest detector, which processes the mean reading of each node. The rate limit of 0.0115 rad/s per
   /// axis is 0.02 rad/s in total, which is 3 mm/s of the sphere. A rate limit of 0.02 rad/s per axis would increase the

@@ -113,15 +113,16 @@ class RollingSmoother {
   const RollingFilter& filter() const { return filter_; }
 
   /// Processes a sample, and appends the estimates that are older than the lag to `out`. On error, the state is
-  /// unchanged. The first sample allocates the memory of the lag. After the first sample, only `out` and the processing
-  /// of a block allocate memory. The memory grows with the duration (64 bytes per sample, 152 per node) if the sample
-  /// rate exceeds rate_max_hz, if the lag contains over a million samples, or with kWholeRun. The call of step() for
-  /// the last sample of a block does the computations of the block. The computations of a block need 14 KiB of memory
-  /// per node of lag and block. If there are many nodes, a block needs 4 MiB plus 0.3 KiB per node.
+  /// unchanged. The first call of step() allocates the memory for samples within the lag. Later calls of step()
+  /// allocate memory only for `out` and for the processing of a block. The memory grows with the duration (64 bytes per
+  /// sample, 152 per node) if the sample rate exceeds rate_max_hz, if the lag contains over a million samples, or with
+  /// kWholeRun. The call of step() for the last sample of a block does the computations of the block. The computations
+  /// of a block need 14 KiB of memory per node of lag and block. If a block has many nodes, the computations need 4 MiB
+  /// plus 0.3 KiB per node.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
-  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
+  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;

@@ -21,14 +21,14 @@ namespace tumble {
 /// axis. FrozenAxes does not detect an axis whose readings never changed, or often repeat for long (coarse quantisation
 /// at rest).
 ///
-/// A saturated axis may repeat one reading although it works. FrozenAxes treats a reading as saturated if the device
-/// flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts as
-/// saturated above 0.5 of the stated range. A saturated axis is frozen if all other axes of the IMU indicate rest for
-/// `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a saturated
-/// axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
-/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. In both cases, the
-/// rate of the axis is unknown. FrozenAxes mistakes an even spin about a saturated axis for a frozen axis if no other
-/// axis changes.
+/// A working axis may repeat one reading because it is saturated. FrozenAxes treats a reading as saturated if the
+/// device flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts
+/// as saturated above 0.5 of the stated range. A saturated axis is frozen if all other axes of the IMU indicate rest
+/// for `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a
+/// saturated axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
+/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. The rate of a frozen
+/// or constantly saturated axis is unknown. FrozenAxes mistakes an even spin about a saturated axis for a frozen axis
+/// if no other axis changes.
 class FrozenAxes {
  public:
   struct Params {

@@ -26,7 +26,7 @@ struct CalibratedRig {
   /// Delay, g-sensitivity and scale errors of the device; empty if not estimated.
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
   /// True if the run estimated only saturation limits (with_rails) or an accelerometer delay; all other values are then
-  /// the prior. A saved calibration does not contain this flag.
+  /// the prior. A saved calibration does not contain the flag rails_alone.
   bool rails_alone = false;
 
   /// Returns the saturation planes of the gyro or accelerometer, for saturation detection in the next run.

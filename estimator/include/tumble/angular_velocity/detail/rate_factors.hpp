@@ -44,7 +44,8 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
                                  double delay_s, Eigen::Vector3d* jacobian_delay);
 
 /// Residual of delayed_flight_factor() with derivatives with respect to lever arm and accelerometer bias only; all
-/// other derivatives are zero. This version is faster, for evaluating how well a sample fits.
+/// other derivatives are zero. Use delayed_flight_jacobian_calibration() for a fast evaluation of how well a sample
+/// fits.
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 

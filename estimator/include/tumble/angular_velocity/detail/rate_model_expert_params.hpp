@@ -92,8 +92,8 @@ struct RateModelExpertParams {
   /// Duration for which the model error of a force, a torque or a rate is constant. All samples within model_error_s
   /// share one model error, so averaging reduces only their noise.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate from zero at rest, independent for each sample. This standard deviation covers
-  /// vibration and false detections of rest.
+  /// Standard deviation of the rate from zero at rest, independent for each sample. The standard deviation
+  /// rest_sigma_rad_s covers vibration and false detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorPriors error_sizes = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

@@ -15,7 +15,7 @@ struct RateDescentParams {
   double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
   double widen_first = 8.0;       ///< factor on the contact threshold in the first iteration, then halved
   /// Number of iterations after convergence in which samples in contact use truncated distributions instead of hard
-  /// lower bounds. These iterations make the covariance of samples in contact consistent.
+  /// lower bounds. The additional iterations make the covariance of samples in contact consistent.
   int bound_iterations = 3;
   double bound_damping = 0.5;  ///< weight of a new bound in each additional iteration
 

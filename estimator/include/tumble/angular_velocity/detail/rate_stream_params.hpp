@@ -16,8 +16,8 @@ namespace tumble {
 struct RateStreamParams {
   /// Parameters of the rate model. Two priors are narrower than the defaults of RateModelParams, because RateStream
   /// reports rates before the data outweigh the priors. The prior accelerometer bias of 2 mg is typical after a factory
-  /// calibration. The prior inertia is that of a box: moments of 3 : 2 : 2 are at one standard deviation, a disc is at
-  /// 1.8, and a rod is at 3.6.
+  /// calibration. The prior inertia fits a box: moments of 3 : 2 : 2 are at one standard deviation, a disc is at 1.8,
+  /// and a rod is at 3.6.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples

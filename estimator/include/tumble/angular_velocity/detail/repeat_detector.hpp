@@ -27,9 +27,9 @@ struct RepeatedReading {
   bool operator==(const RepeatedReading&) const = default;
 };
 
-/// Detects causally that a log is faster than its sensor. RepeatDetector is the causal form of find_repeated().
-/// RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29
-/// samples. See docs/maths/rate_stream.md (R95).
+/// Detects causally whether a log has a higher sample rate than the sensor. RepeatDetector is the causal form of
+/// find_repeated(). RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of
+/// 0.5 +- 0.29 samples. See docs/maths/rate_stream.md (R95).
 class RepeatDetector {
  public:
   /// Memory is the detection state of the gyro or of the accelerometer.

@@ -28,11 +28,11 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
                                          double noise_rad_s);
 
 /// Returns the smaller neighbouring reading, as evaluated by `read` (neighbours may be null). Returns the saturation
-/// limit if there is no usable neighbour. A neighbour whose axis is flagged is used only if most of its window was
-/// unsaturated. The window of a flagged neighbour was mostly unsaturated if its reading differs by twice the distance
-/// of `reading_rad_s` from the saturation limit. A rate of constant slope that passes the saturation limit in the
-/// current window was unsaturated in the window before. Flagged readings that decrease one by one along a tilted plane
-/// are not rates. See rails.md (R70).
+/// limit if there is no usable neighbour. The function uses a flagged neighbour only if most of the neighbour's window
+/// was unsaturated. The window of a flagged neighbour was mostly unsaturated if its reading differs by twice the
+/// distance of `reading_rad_s` from the saturation limit. A rate of constant slope that passes the saturation limit in
+/// the current window was unsaturated in the window before. Flagged readings that decrease one by one along a tilted
+/// plane are not rates. See rails.md (R70).
 template <class Read>
 double unsaturated_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                              const ImuSample* after, const Read& read) {

@@ -44,9 +44,9 @@ enum class ReplacedReadings : std::uint8_t {
 };
 
 /// Replaces all three axes of readings by estimated rates, because a tilted saturation plane also corrupts the
-/// unclipped axes. The function adds the gyro bias to the replaced readings, so that they agree with the other
-/// readings. If no reading clips or the estimation fails, all readings are unchanged. An exception are the readings of
-/// a slow gyro with `unreliable`, which are interpolated. Cost: O(N).
+/// unclipped axes. The function adds the gyro bias to the replaced readings, so that replaced and original readings
+/// have equal bias. If no reading clips or the estimation fails, all readings are unchanged. An exception are the
+/// readings of a slow gyro with `unreliable`, which are interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const RegimeSmoother::Params& params, ReplacedReadings replaced);
 

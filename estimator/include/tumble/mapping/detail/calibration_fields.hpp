@@ -4,7 +4,7 @@
 #include "tumble/common/parameters.hpp"
 
 /// Descriptions of parameters that state the accuracy of the lidar's mounting and time offset. Several `Params` structs
-/// use these descriptions.
+/// use the descriptions in calibration_fields.hpp.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -61,9 +61,9 @@ struct MappedRecording {
 MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Processes a recording until the lidar's calibration has converged. The first pass estimates the calibration. The
-/// last pass starts from this calibration and builds a consistent map. If the calibration changes by more than its
-/// stated uncertainty allows, another pass starts from the new value, at most three times. Passes also end if more than
-/// one sweep in five is rejected, because such a pass does not determine the calibration.
+/// last pass starts from the estimated calibration and builds a consistent map. If the calibration changes by more than
+/// its stated uncertainty allows, another pass starts from the new value, at most three times. Passes also end if more
+/// than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Estimates the scale of the lidar's ranges over all sweeps (see sweep_scale.hpp).

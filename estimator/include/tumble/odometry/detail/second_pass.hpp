@@ -19,9 +19,9 @@ namespace tumble {
 /// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondPass
 /// therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, SecondPass
 /// processes the buffer with the current calibration, and with rates that are smoothed with a lag of `lag_s`.
-/// SecondPass processes `sweeps` buffered sweeps per new sweep. At the end of the second pass, its map and pose replace
-/// those of the first pass, and SecondPass frees the buffer. SecondPass discards the result if tracking of the second
-/// pass has failed, or if the second pass has rejected clearly more sweeps than the first pass.
+/// SecondPass processes `sweeps` buffered sweeps per new sweep. At the end of the second pass, map and pose of the
+/// second pass replace the map and pose of the first pass. SecondPass discards the result if tracking failed in the
+/// second pass, or if the second pass rejected clearly more sweeps than the first.
 ///
 /// If tracking of the first pass has failed for `lost_s`, SecondPass processes the whole buffer immediately, once. The
 /// regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps
