@@ -54,7 +54,7 @@ class HandHeldStream {
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    /// centre and end of the sample's averaging window, from the first sample's centre
+    /// Centre and end of the sample's averaging window, from the first sample's centre.
     double centre_s = 0.0, end_s = 0.0;
     std::int64_t node = 0;  ///< node closest to the centre of the averaging window
     bool rest = false;

@@ -21,7 +21,7 @@ namespace tumble {
 /// ImuMergeParams contains the parameters of ImuMerge.
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
-  /// pose of each IMU in the common axes C; only the first `count` entries are used
+  /// Pose of each IMU in the common axes C; only the first `count` entries are used.
   std::array<Eigen::Isometry3d, kImus> T_CI{};
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
@@ -122,7 +122,7 @@ class ImuMerge {
 
   using UnitMask = std::array<bool, kImus>;
 
-  /// mean readings over a window, with flags of the axes that were saturated in the window
+  /// Mean readings over a window, with flags of the axes that were saturated in the window.
   using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;

@@ -39,7 +39,7 @@ inline Field switch_field(const char* name, const char* meaning, FieldRank rank 
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
-/// Upper bound for parameters without a limit: the largest finite number.
+/// Bound for parameters without a limit: the largest finite number.
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
 /// The concept Number is satisfied by arithmetic and enumeration types, which a visitor receives as numbers.

@@ -41,7 +41,7 @@ class FlightSignCheck {
 
   struct Params {
     Body body = Body::may_be_hand_held;
-    /// lever arm from the centre of mass to the IMU, in IMU axes
+    /// Lever arm from the centre of mass to the IMU, in IMU axes.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
     double gyro_range_rad_s = 0.0;            ///< range from the data sheet; 0: unknown
     double reading_s = 0.01;                  ///< averaging time of readings

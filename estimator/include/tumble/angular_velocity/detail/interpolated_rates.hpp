@@ -19,7 +19,7 @@ namespace tumble {
 /// InterpolatedRate is a rate between two readings of the gyro, including the gyro's bias.
 struct InterpolatedRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
-  /// variance of the interpolation error, without sensor noise
+  /// Variance of the interpolation error, without sensor noise.
   Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();
 };
 

@@ -98,7 +98,7 @@ struct RateStreamState {
   /// State of the sensor errors, in a vector of one element. The vector stores the state on the heap, because threads
   /// with a small stack use RateStream.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
-  /// largest and smallest readings so far
+  /// Largest and smallest readings so far.
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   MinSaturationLevels min_levels;  ///< lower bounds from the readings so far
   /// Data of a run of readings at a possible saturation limit that has partly left the window. The data are

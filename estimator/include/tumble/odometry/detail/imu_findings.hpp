@@ -22,7 +22,7 @@ namespace tumble {
 struct CheckedImu {
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
   double gravity_m_s2 = 9.80665;
-  /// lever arm from the centre of mass to the IMU, in IMU axes
+  /// Lever arm from the centre of mass to the IMU, in IMU axes.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
   /// True for several IMUs merged into one, which reports rates beyond the range of one IMU.
   bool merged = false;
