@@ -100,8 +100,8 @@ class ClippingFinder {
                          bool& clips_after_compensation) const;
 
   RailDetector axis_aligned_rails_;
-  // first index: 0 for the gyro, 1 for the accelerometer; second index: 1 for a finder for readings that exceed the
-  // stated range
+  // The first index is 0 for the gyro and 1 for the accelerometer. The second index is 1 for readings that exceed the
+  // stated range.
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;
 };

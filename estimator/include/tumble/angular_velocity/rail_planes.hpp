@@ -43,8 +43,8 @@ class RailPlaneFinder {
     /// Prior standard deviation of each cross-axis sensitivity of a sensing element, before the device's compensation.
     double slope_sigma = 0.03;
     double slope_max = 0.12;  ///< largest cross-axis sensitivity in the search
-    /// Minimum saturation limit [rad/s]. At rest and in slow motion, readings below the minimum limit can be constant
-    /// without saturation.
+    /// Minimum saturation limit [rad/s]. At rest and in slow motion, readings below the minimum saturation limit can be
+    /// constant without saturation.
     double distance_min_rad_s = 1.5;
     /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes that the saturation
     /// limit is not far below the stated range.

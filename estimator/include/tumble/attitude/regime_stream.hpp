@@ -17,8 +17,8 @@ namespace tumble {
 /// the rates again where the body is probably hand-held while the gyro clips. RegimeStream combines the two rate
 /// estimates by the probability of hand-held motion.
 ///
-/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. Each
-/// probability depends on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
+/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The
+/// probabilities depend on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
 /// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
 /// RateStream resets its calibration in more than half of the steps of its lag, clipped samples do not change the
 /// probabilities. HandHeldStream pauses while the probability of hand-held motion is below `carried_min`, and then

@@ -80,10 +80,11 @@ struct VqfParams {
 /// "VQF", Information Fusion 91, 2023.
 ///
 /// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass filter in frame
-/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical, and Vqf rotates frame
-/// N to the world W by the smallest rotation that aligns the verticals. A Kalman filter of three states estimates the
-/// gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the vertical correction measures
-/// the bias. Vqf estimates neither the heading nor, in motion, the bias about the vertical.
+/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of frame N, and Vqf
+/// rotates N by the smallest rotation that aligns its vertical with the vertical of the world W. A Kalman filter of
+/// three states estimates the gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the
+/// vertical correction measures the bias. Vqf estimates neither the heading nor, in motion, the bias about the
+/// vertical.
 class Vqf {
  public:
   using Params = VqfParams;

@@ -59,8 +59,8 @@ void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<cons
                                std::vector<Eigen::Vector3f>& levers_W_m);
 
 /// Transforms the points of a sweep to IMU axes at the time `target_s`, usually the end of the trajectory. The time
-/// `target_s` is relative to the start of the trajectory. The result equals the measurement of a stationary sensor at
-/// the time `target_s`.
+/// `target_s` is relative to the start of the trajectory. The deskewed points equal the points that a stationary sensor
+/// would measure at the time `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 

@@ -31,9 +31,9 @@ class StateLayout;
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The earliest sweep with
 /// `matches_min` points starts the map. If the map starts within half a second, the first IMU sample defines origin and
-/// yaw of the world. If the map starts later, the first sweep of the map defines origin and yaw, and dead reckoning
-/// gives velocity and tilt. Pass IMU samples in time order. Pass each sweep after the IMU samples that cover the sweep.
-/// LidarInertialOdometry starts no threads, uses no files and prints nothing.
+/// yaw of the world. If the map starts more than half a second after the first IMU sample, the first sweep defines
+/// origin and yaw, and dead reckoning gives velocity and tilt. Pass IMU samples in time order. Pass each sweep after
+/// the IMU samples that cover the sweep. LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
 /// LidarInertialOdometry estimates the lidar's mounting, its time offset and gravity if their standard deviations are
 /// not 0. All unknowns form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over

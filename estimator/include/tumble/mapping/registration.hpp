@@ -25,10 +25,10 @@ class OuterProducts;
 /// trajectory. The saturation deficit (the true rate minus the clipped reading) and the calibration are additional
 /// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. The vector g is
 /// gravity, and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current
-/// estimate. The cost function is the sum of two terms. The first term is the sum of robustly weighted squared
-/// distances to planes through the k nearest map points. The second term is the squared Mahalanobis distance from the
-/// prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The prior determines the directions that no
-/// surface constrains.
+/// estimate. The cost function is the sum of two terms. The first term of the cost is the sum of robustly weighted
+/// squared distances to planes through the k nearest map points. The second term of the cost is the squared Mahalanobis
+/// distance from the prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The prior determines the
+/// directions that no surface constrains.
 class Registration {
   static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
 

@@ -56,7 +56,7 @@ struct RegistrationParams {
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
   int iterations_max = 30;
-  double range_sigma_m = 0.02;  ///< range noise at range 0; the noise grows with range by range_sigma_share
+  double range_sigma_m = 0.02;  ///< minimum range noise; at far range, range_sigma_share times the range
   double range_sigma_share = 0.0015;
   double skew_sigma_m_s = 0.25;   ///< growth rate of a point's standard deviation during the sweep; 0: none
   std::size_t matches_min = 100;  ///< minimum number of matches

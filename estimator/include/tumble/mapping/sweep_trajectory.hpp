@@ -52,8 +52,8 @@ struct MotionState {
 /// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). The vectors p_0 and
 /// v_0 are position and velocity at the start, g is gravity, and S is the double integral of the specific force. The
 /// mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and
-/// left Jacobian J_l. The mean force is exact if the force is constant in body axes, for example the centripetal force
-/// of a spin.
+/// left Jacobian J_l. The mean force is exact if the force is constant in body axes, like the centripetal force of a
+/// spin.
 ///
 /// The saturation deficit e is the true rate minus the clipped reading, and corrects the clipped axes. The saturation
 /// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
@@ -100,7 +100,7 @@ class SweepTrajectory {
 
   /// Returns the motion at `t_s` seconds after the start. Outside of the segment, at() extrapolates the motion by up to
   /// kExtrapolation_s, which covers errors of the time offset. The argument `hint` is the interval of the previous
-  /// call, and speeds up calls in time order. Any hint in [0, intervals()) is valid.
+  /// call, and speeds up calls in time order. Any value of `hint` in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
   /// Computes the lever arm vector S(t) + R(t) x of each point x. The function lever_arm_vectors() returns exactly the

@@ -27,9 +27,9 @@ struct Neighbours {
 /// VoxelMap stores map points in world axes and finds nearest neighbours.
 ///
 /// The cells of a cubic grid store their points in chunks of sixteen. Each chunk has one array per coordinate, so that
-/// VoxelMap computes distances over contiguous floats. One hash look-up finds a group of 8x8x8 cells. VoxelMap keeps at
-/// most one point per cube of edge `spacing_m`. Coordinates are single-precision floats, which limits the width of a
-/// map to a few kilometres.
+/// VoxelMap computes distances over contiguous floats. One look-up in a hash table finds a group of 8x8x8 cells.
+/// VoxelMap keeps at most one point per cube of edge `spacing_m`. Coordinates are single-precision floats, which limits
+/// the width of a map to a few kilometres.
 class VoxelMap {
  public:
   /// Label of a point whose scan line is unknown.

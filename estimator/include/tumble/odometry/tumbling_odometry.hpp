@@ -128,11 +128,11 @@ class TumblingOdometry {
   /// since the last sweep). The optional output `velocity_covariance_I_m2_s2` is the covariance of the velocity error
   /// in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Returns whether the inputs and the pose are currently plausible. The estimation continues after any finding. A
-  /// finding ends at most a minute after its cause has ended. The function returns `ok`, or `out_of_range` with one
-  /// finding. Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong accelerometer unit,
-  /// and a wrong scale of the lidar's ranges. Findings about the pose are an uncertain vertical, a missing localisation
-  /// in the prior map, tracking failure, and an implausible change of the lidar's calibration.
+  /// Returns whether the inputs and the pose are currently plausible. The estimation continues after any finding. The
+  /// report of a finding ends at most a minute after the fault itself. The function returns `ok`, or `out_of_range`
+  /// with one finding. Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong
+  /// accelerometer unit, and a wrong scale of the lidar's ranges. Findings about the pose are an uncertain vertical, a
+  /// missing localisation in the prior map, tracking failure, and an implausible change of the lidar's calibration.
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;
@@ -153,8 +153,8 @@ class TumblingOdometry {
   std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
   /// Returns whether SecondPass has replaced the map and the pose.
   bool second_pass_applied() const { return second_pass_.applied(); }
-  /// Return counters that are 0 in normal operation. The function rejected_samples() counts IMU samples that the mapper
-  /// rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
+  /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
+  /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
   /// early_sweeps() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
   /// counts odometer readings that span two sweeps.
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
