@@ -13,49 +13,49 @@
 
 namespace tumble {
 
-/// AuxiliaryAccelerometer contains the readings of an additional accelerometer on the primary IMU's rigid body, in the
-/// primary IMU's axes and at its time stamps. In flight and in contact, the readings of two accelerometers on one rigid
-/// body differ only by the effect of the body's rotation.
+/// AuxiliaryAccelerometer contains the readings of a second accelerometer on the same rigid body as the primary IMU.
+/// The readings of the second accelerometer are in the axes and at the time stamps of the primary IMU. The readings of
+/// two accelerometers on one rigid body differ only by the effect of the body's rotation.
 struct AuxiliaryAccelerometer {
-  Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();  ///< position relative to the primary IMU, in the primary IMU's axes
-  std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one per sample of the primary IMU; NaN: no information
+  Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in its axes
+  std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one reading per sample of the primary IMU; NaN: no reading
 };
 
-/// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the primary IMU's rigid body. Biases and
-/// mounting errors of the additional IMU are not estimated. The standard deviations of the additional IMU's readings
-/// include its errors of bias and mounting.
+/// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the same rigid body as the primary IMU.
+/// The estimator does not estimate the biases and mounting errors of an additional IMU. The standard deviations of an
+/// additional IMU's readings include the errors of bias and mounting.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
-  double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-  double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
-  double gyro_error_rad_s = 0.01;  ///< bias, and rate-independent errors of scale and mounting; [1e-9, 10]
-  double accel_error_m_s2 = 0.07;  ///< difference of the accelerometer biases of the two IMUs; [1e-9, 10]
-  double scale_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; [0, 1]
-  double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; [1e-9, 1]
-  double clock_error_s = 1e-3;     ///< time error between the clocks of the two IMUs; [0, 0.1]
+  double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
+  double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; allowed: [1e-9, 10]
+  double gyro_error_rad_s = 0.01;  ///< standard deviation of bias and other rate-independent errors; [1e-9, 10]
+  double accel_error_m_s2 = 0.07;  ///< difference of the accelerometer biases of the two IMUs; allowed: [1e-9, 10]
+  double scale_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; allowed: [0, 1]
+  double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; allowed: [1e-9, 1]
+  double clock_error_s = 1e-3;     ///< time offset between the clocks of the two IMUs; allowed: [0, 0.1]
   SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
 };
 
-/// AuxiliaryReading is the reading of an auxiliary IMU at the time of a sample of the primary IMU, in the auxiliary
-/// IMU's axes. The value NaN means that an axis provides no information. While a sensing element clips,
-/// AuxiliaryReading stores components along the unsaturated elements, because the device mixes the saturation error
-/// into all axes.
+/// AuxiliaryReading is the reading of an additional IMU at the time of a sample of the primary IMU. The rate and force
+/// are in the axes of the additional IMU, and NaN marks an axis without a valid reading. While a sensing element clips,
+/// AuxiliaryReading stores the components along the unsaturated sensing elements instead of the axes. The device's
+/// misalignment compensation spreads the error of a saturated sensing element over all axes.
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
   bool rate_along_elements = false, force_along_elements = false;
-  /// Creates a reading without information; all components are NaN.
+  /// Creates a reading in which all components are NaN.
   AuxiliaryReading();
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
-  /// Compares two readings bit for bit; NaN equals NaN.
+  /// Returns whether two readings are equal bit for bit, where NaN equals NaN.
   bool same(const AuxiliaryReading& other) const;
 };
 
-/// Interpolates the readings of an auxiliary IMU at the time stamps of the primary IMU. Cost: O(N). The interpolation
-/// is linear between neighbouring readings that are at most `gap_max_s` apart. Clipped elements are left out, although
-/// a clipped reading would provide a lower bound. `clippings` contains one entry of ClippingFinder per sample. Returns
-/// the errors of check_samples() except `gap`, or `too_few` if `clippings` has too few entries. On error nothing is
-/// written. Without auxiliary samples, all returned readings are empty (NaN).
+/// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The function
+/// interpolates linearly between neighbouring readings that are at most `gap_max_s` apart. Readings of clipped sensing
+/// elements are excluded from the interpolation. The argument `clippings` contains one entry of ClippingFinder per
+/// sample. Returns the errors of check_samples() except `gap`, or `too_few` if `clippings` has fewer entries than
+/// `samples`. On error, `out` is unchanged. If `samples` is empty, all interpolated readings are NaN.
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

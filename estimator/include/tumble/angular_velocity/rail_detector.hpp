@@ -12,26 +12,27 @@
 
 namespace tumble {
 
-/// Clipping marks the clipped axes of a sample.
+/// Clipping marks the clipped gyro and accelerometer axes of a sample.
 struct Clipping {
-  std::uint8_t gyro = 0;           ///< bit j: axis j is saturated; the true value is at or beyond the reading
-  std::uint8_t accel = 0;          ///< bit j: axis j of the accelerometer is saturated
-  std::uint8_t unusable_gyro = 0;  ///< bit j: the reading of axis j is unusable (overflow with flipped sign)
+  std::uint8_t gyro = 0;           ///< bit j: gyro axis j is saturated; the true magnitude is at least the reading
+  std::uint8_t accel = 0;          ///< bit j: accelerometer axis j is saturated
+  std::uint8_t unusable_gyro = 0;  ///< bit j: gyro axis j overflowed, with flipped sign, and is unusable
   bool operator==(const Clipping&) const = default;
 };
 
-/// RailPlateauParams defines plateaus: runs of consecutive readings that are closer together than noise allows.
+/// RailPlateauParams defines a plateau: a run of consecutive readings that are closer together than sensor noise
+/// allows.
 struct RailPlateauParams {
-  int samples = 4;  ///< minimum number of readings
-  /// Largest spread of the readings of a plateau, as a fraction of the saturation level. The spread of a plateau is
-  /// smaller than the noise of unsaturated readings.
+  int samples = 4;  ///< minimum number of readings of a plateau
+  /// Largest spread of the readings of a plateau, as a fraction of the saturation limit. Unsaturated readings have a
+  /// larger spread because of sensor noise.
   double spread_share = 2e-5;
-  /// A plateau of the gyro below gyro_low_rad_s needs twice as many readings, and a jump at its start or end.
+  /// A gyro plateau below `gyro_low_rad_s` needs twice as many readings, and a jump at its start or end.
   double gyro_low_rad_s = 1.0;
-  double gyro_min_rad_s = 0.02;  ///< minimum level of a plateau
-  double accel_min_m_s2 = 15.0;  ///< minimum level of a plateau of the accelerometer; above gravity
-  /// Minimum jump at the start or end of a low plateau, in digits. A digit is the smallest observed change between two
-  /// readings.
+  double gyro_min_rad_s = 0.02;  ///< minimum rate of a gyro plateau
+  double accel_min_m_s2 = 15.0;  ///< minimum force of an accelerometer plateau; above gravity
+  /// Minimum jump of the readings at the start or end of a low plateau, in steps of the sensor's resolution. The
+  /// resolution is the smallest observed change between two readings.
   double jump_digits = 8.0;
 
   template <class Self, class Visitor>
@@ -51,7 +52,7 @@ struct RailPlateauParams {
   }
 };
 
-/// Parameters of RailDetectorParams that few users change.
+/// RailDetectorExpertParams contains the rarely changed parameters of RailDetector.
 struct RailDetectorExpertParams {
   RailPlateauParams plateau = {};
 
@@ -61,19 +62,20 @@ struct RailDetectorExpertParams {
   }
 };
 
-/// Parameters of RailDetector.
+/// RailDetectorParams contains the parameters of RailDetector.
 struct RailDetectorParams {
-  /// Ranges that the data sheet or the user states, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
+  /// Measuring range of the gyro [rad/s], in (0, 1000], and of the accelerometer [m/s^2], in (0, 1e5], according to the
+  /// data sheet or the user.
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  double enter_share = 0.003;        ///< clipping starts within this fraction of the saturation level
-  double leave_share = 0.02;         ///< readings next to a clipped reading are clipped within this fraction
+  double enter_share = 0.003;        ///< a reading within this fraction of the saturation limit starts clipping
+  double leave_share = 0.02;         ///< neighbours of a clipped reading are clipped within this fraction
   double disagreement_share = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   using Expert = RailDetectorExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.enter_share,
@@ -89,29 +91,29 @@ struct RailDetectorParams {
   }
 };
 
-/// Finds the saturation level of each axis of an IMU from the readings of the axis. The saturation level differs
-/// between devices of one type, and from the data sheet. For example, one gyro with a stated range of 450 deg/s
-/// saturated at 600 deg/s.
+/// Detects the saturation limit of each gyro and accelerometer axis from the readings of the axis. The saturation
+/// limits of two devices of one type may differ from each other and from the data sheet. For example, one gyro with a
+/// stated range of 450 deg/s saturated at 600 deg/s.
 ///
-/// A plateau is a run of readings of one sign that are closer together than noise allows. The readings of a plateau
-/// have the largest magnitude so far on the axis. A plateau at a low rate must be longer, and must start or end with a
-/// jump of many digits of the device. The required jump excludes an axis at rest, and the rounded maximum of a slow,
-/// coarsely quantised motion. A stated range is used until RailDetector finds a plateau or a reading exceeds the range.
-/// RailDetector always uses the clip flags of the device. The classification has hysteresis, so that the irregular edge
-/// of a plateau belongs to the plateau. RailDetector does not model saturation levels that drift or differ between the
-/// two signs of an axis.
+/// A plateau is a run of readings of one sign that are closer together than sensor noise allows. The readings of a
+/// plateau have the largest magnitude so far on their axis. A plateau at a low rate must be longer, and must start or
+/// end with a jump of many resolution steps. The required jump excludes an axis at rest, and the rounded maximum of a
+/// slow, coarsely quantised motion. RailDetector uses the stated range until it finds a plateau or a reading exceeds
+/// the range. RailDetector always uses the clip flags of the device. The classification has hysteresis, so that
+/// slightly lower readings at the edge of a plateau also count as clipped. RailDetector assumes constant saturation
+/// limits that are equal for both signs of an axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
 
-  /// State of one channel of the IMU. The channels are gyro x, y, z, then accelerometer x, y, z.
+  /// Channel is the detection state of one IMU channel. The channels are gyro x, y, z, then accelerometer x, y, z.
   struct Channel {
-    double rail = 0.0;  ///< saturation level from a plateau; 0: none found
+    double rail = 0.0;  ///< saturation limit from a plateau; 0: none found
     double peak = 0.0;  ///< largest magnitude so far
     double run_first = 0.0;
     int run_length = 0;
     double before = 0.0;  ///< previous reading
-    double entry = 0.0;   ///< change at the start of the run; 0: the recording started with the run
+    double entry = 0.0;   ///< change at the start of the run; 0: first run of the recording
     double digit = 0.0;   ///< smallest observed change between two readings; 0: none yet
     double last = 0.0;
     bool clipped = false;
@@ -125,31 +127,30 @@ class RailDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailDetector(const Params& params);
 
-  /// Updates the saturation levels with one finite sample. Cost: O(1).
+  /// Updates the saturation limits with one finite sample. Cost: O(1).
   void observe(const ImuSample& sample, State& state) const;
-  /// Classifies one finite sample with the current saturation levels. Cost: O(1). `state` stores the hysteresis of the
-  /// classification.
+  /// Returns the clipped axes of one finite sample, according to the current saturation limits. Cost: O(1). The
+  /// argument `state` also stores the hysteresis of the classification.
   Clipping classify(const ImuSample& sample, State& state) const;
-  /// Classifies a whole recording after all samples have updated the saturation levels. Cost: O(N). The clipped samples
-  /// include the edges on both sides of each plateau.
+  /// Classifies all samples of a recording with the saturation limits of the whole recording. Cost: O(N). The samples
+  /// at both edges of a plateau of saturated readings count as clipped.
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// Adds the rising edge of a plateau to `clipping`. The edge consists of the axes of `sample` that are near the
-  /// saturation level before a clipped `next`. The largest distance of an edge from the saturation level is equal
-  /// before and after a plateau.
+  /// Adds the axes on the rising edge of a plateau to `clipping`. An axis is on the rising edge if `sample` is near the
+  /// saturation limit and `next` is clipped. The falling edge of a plateau has the same threshold.
   void add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                        Clipping& clipping) const;
 
-  /// Returns the saturation level of channel c (0-5). The level comes from the plateau of the channel, else from the
-  /// largest plateau on another axis of its triad, else from the stated range. A saturation level from another axis or
-  /// from the stated range applies only while no reading of channel c exceeds the level.
+  /// Returns the saturation limit of channel c (0-5). The saturation limit comes from a plateau of channel c, or else
+  /// from the largest plateau on another axis, or else from the stated range. A saturation limit from another axis or
+  /// from the stated range applies only while all readings of channel c are below the limit.
   std::optional<double> rail(const State& state, int c) const;
-  /// Returns whether a plateau or a larger reading contradicts the stated range.
+  /// Returns whether a plateau or a larger reading contradicts the stated range of channel c.
   bool disagrees(const State& state, int c) const;
 
  private:
   std::optional<double> stated(int c) const;
-  /// Returns whether the current run of readings is a plateau that started or ended with `jump`.
+  /// Returns whether the current run of readings is a plateau that started or ended with the given jump.
   bool plateau(int c, const Channel& channel, double jump) const;
   Params params_;
 };

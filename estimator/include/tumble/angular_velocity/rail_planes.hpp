@@ -13,53 +13,53 @@
 
 namespace tumble {
 
-/// Finds the saturation planes of the sensing elements of a gyro or accelerometer in a whole recording, without clip
-/// flags and without a stated range.
+/// Finds the tilted saturation planes of a gyro or accelerometer in a whole recording. RailPlaneFinder needs neither
+/// clip flags nor the stated range of the sensor.
 ///
-/// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below the plane.
-/// Two kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
-/// turntable). Next to a rounded maximum, the readings decrease as a parabola; saturation ends with a kink. A constant
-/// rate has full sensor noise, has a different value each time, and starts with an impact on all axes. RailPlaneFinder
-/// sums the log likelihood ratio of saturation against rounded maxima and constant rates over all segments. A penalty
-/// (Occam factor) accounts for the free choice of cross-axis sensitivities and saturation level.
+/// A saturation plane is nearly axis-aligned, limits the readings, and has many samples in a thin slab below it. Two
+/// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
+/// turntable). The readings near a rounded maximum follow a parabola, but the readings after saturation start with a
+/// kink. A constant rate has full sensor noise, has a different value each time, and starts with an impact on all axes.
+/// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
+/// segments. A penalty (Occam factor) accounts for the free choice of cross-axis sensitivities and saturation limit.
 ///
-/// Repeated readings (sample and hold) count as one reading. RailPlaneFinder does not resolve structure below the
-/// quantisation or the noise. RailPlaneFinder assumes that the three sensing elements of a gyro or accelerometer are of
-/// one type. A saturation level far below readings of another axis is therefore rejected. A level that equals the level
-/// of another sensing element is more likely. Sensing elements without a saturation plane count as unsaturated.
+/// RailPlaneFinder counts repeated readings (sample and hold) as one reading. RailPlaneFinder assumes that the three
+/// sensing elements of a gyro or accelerometer are of one type. RailPlaneFinder therefore rejects a saturation limit
+/// that is far below readings of another axis. A saturation limit that equals the limit of another sensing element has
+/// a higher prior probability. Sensing elements without a saturation plane count as unsaturated.
 ///
-/// RailPlaneFinder does not model saturation levels that drift or recover slowly, overflow, or several levels of one
-/// sensing element.
+/// RailPlaneFinder assumes that saturation limits are constant and that each sensing element has one limit per sign.
+/// RailPlaneFinder does not detect readings that overflow and change sign.
 class RailPlaneFinder {
  public:
   struct Params {
-    /// Returns the parameters for an accelerometer. The minimum saturation level is about 1.5 g, because gravity alone
-    /// can cause lower constant readings for long.
+    /// Returns the parameters for an accelerometer. The minimum saturation limit is about 1.5 g, because gravity alone
+    /// can cause constant readings below 1.5 g.
     static Params for_accelerometer() {
       Params out;
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// Prior standard deviation of each cross-axis sensitivity of the sensing elements, before the device's
-    /// compensation.
+    /// Prior standard deviation of each cross-axis sensitivity of a sensing element, before the device's compensation.
     double slope_sigma = 0.03;
     double slope_max = 0.12;  ///< largest cross-axis sensitivity in the search
-    /// Minimum saturation level [rad/s]. At rest and in slow motion, readings are constant without saturation.
+    /// Minimum saturation limit [rad/s]. At rest and in slow motion, readings below the minimum saturation limit can be
+    /// constant without saturation.
     double distance_min_rad_s = 1.5;
-    /// Range that the data sheet states [rad/s], if any. RailPlaneFinder assumes that the saturation level is not far
-    /// below the stated range.
+    /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes that the saturation
+    /// limit is not far below the stated range.
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_share = 0.02;     ///< prior of the offset and of differences between elements, as a fraction of r
-    int samples_min = 4;            ///< minimum number of samples on a plane of one sign
-    double log_odds_before = -6.0;  ///< prior log odds for each element and sign
+    double offset_share = 0.02;     ///< prior deviation of the offset and between elements, as a fraction of r
+    int samples_min = 4;            ///< minimum number of samples on the plane of one sign
+    double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
     double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
     double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Saturation planes that an earlier run of the device found. Known planes are used from the start until readings
-    /// contradict the planes. A plane changes by a fraction of a percent between runs. RailPlaneFinder assigns a higher
-    /// prior probability to new planes near known planes.
+    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
+    /// of a run until readings contradict the planes. Saturation planes of one device change by a fraction of a percent
+    /// between runs. A new plane near a known plane has a higher prior probability.
     RailPlanes known = {};
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
@@ -81,8 +81,8 @@ class RailPlaneFinder {
     }
   };
 
-  /// Workspace contains the buffers of a search. If the buffers have room for all readings, the search does not
-  /// allocate.
+  /// Workspace contains the buffers of a search. The search for planes allocates no memory if the buffers have room for
+  /// all readings.
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
@@ -97,8 +97,8 @@ class RailPlaneFinder {
   /// in time order. Cost: O(N), plus a search of some hundred cross-axis sensitivities over the samples near the
   /// extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the planes that were found
-  /// in a subset of `readings_rad_s`.
+  /// Finds the saturation planes in readings without time stamps [rad/s]. The argument `before` contains the saturation
+  /// planes that were found in a subset of the readings.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;
 
@@ -109,9 +109,10 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Returns which sensing elements of a sample are clipped. Cost: O(1).
+/// Returns which sensing elements are clipped in an IMU sample. Cost: O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// Classifies each sample of a recording by its clipped sensing elements. `out` must have the size of `samples`.
+/// Determines the clipped sensing elements in each sample of a recording. The output `out` must have the size of
+/// `samples`.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

@@ -15,44 +15,45 @@
 
 namespace tumble {
 
-/// RateModelParams contains the assumptions of RateSmoother and RateStream about the sensors, the body and its motion.
+/// RateModelParams contains the parameters of RateSmoother and RateStream about the sensors, the body and its motion.
 struct RateModelParams {
-  /// Prior mean of the calibration constants. The inertia entries describe the shape of the inertia about the centre of
-  /// mass, in IMU axes. The lever arm has no default and must be set, unless `calibration` is set.
+  /// Prior mean of the rig constants: lever arm, biases, inertia ratios and gyro axis directions. The inertia ratios
+  /// refer to the centre of mass and to IMU axes. Set the lever arm, which has no default, or set `calibration`.
   RigConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
-  /// Standard deviations of the entries of `nominal`.
+  /// Prior standard deviations of the rig constants in `nominal`.
   double lever_arm_sigma_m = 0.01;
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
   double inertia_sigma = 0.3;
-  /// Standard deviation of each entry of RigConstants::elements, the cross-axis sensitivities before the device's
+  /// Prior standard deviation of each cross-axis sensitivity of the gyro (RigConstants::elements), before the device's
   /// compensation.
   double element_sigma = 0.03;
-  /// Calibration from an earlier run. A calibration replaces `nominal` and the five standard deviations of its entries.
+  /// Calibration from an earlier run. The calibration replaces the prior mean `nominal` and the five prior standard
+  /// deviations.
   std::optional<RigCalibration> calibration = std::nullopt;
 
-  /// Additional IMUs on the body, at most kAuxiliaryImusMax. Each call that adds a sample also passes the readings of
-  /// the additional IMUs.
+  /// Additional IMUs on the body, at most kAuxiliaryImusMax. Each call that adds a sample must also pass the readings
+  /// of the additional IMUs.
   std::vector<AuxiliaryImu> auxiliary_imus = {};
 
-  /// Noise density of the gyro [rad/s/sqrt(Hz)]. The default of gyro_noise_density is that of an industrial MEMS gyro:
-  /// 0.03 deg/s/sqrt(Hz).
+  /// Noise density of the gyro [rad/s/sqrt(Hz)]. The default gyro noise density, 0.03 deg/s/sqrt(Hz), is typical of an
+  /// industrial MEMS gyro.
   double gyro_noise_density = 5.236e-4;
-  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]. The default of accel_noise_density is that of an industrial
-  /// MEMS accelerometer: 60 ug/sqrt(Hz).
+  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]. The default accelerometer noise density, 60 ug/sqrt(Hz), is
+  /// typical of an industrial MEMS accelerometer.
   double accel_noise_density = 5.9e-4;
-  /// Known sensor errors, for which the readings are corrected.
+  /// Known sensor errors, which the estimator subtracts from the readings.
   SensorErrors errors = {};
-  /// Largest possible rate and angular acceleration of the body. Where the readings do not limit the rate, the maximum
-  /// rate and acceleration limit the estimate. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for
-  /// the angular acceleration.
+  /// Largest possible angular rate and angular acceleration of the body. The maximum rate and acceleration limit the
+  /// estimate while the gyro is clipped. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the
+  /// angular acceleration.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 
   using Expert = RateModelExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.lever_arm_sigma_m,

@@ -8,23 +8,23 @@
 
 namespace tumble {
 
-/// Source of an angular velocity.
+/// RateSource states how an angular velocity was estimated.
 enum class RateSource : std::uint8_t {
   measured,           ///< no gyro axis is clipped or suspect
-  recovered_flight,   ///< clipped; recovered from the centripetal specific force in free flight
-  recovered_contact,  ///< clipped; recovered from the force during contact
-  bounded_only,       ///< clipped or suspect; only a lower bound and smoothness of motion are known
+  recovered_flight,   ///< clipped; recovered from the centripetal force in free flight
+  recovered_contact,  ///< clipped; recovered from the specific force during contact
+  bounded_only,       ///< clipped or suspect; limited only by a lower bound and by smooth motion
 };
 
-/// Returns the name of a rate source as used in tables ("recovered_flight").
+/// Returns the name of a rate source as used in tables, for example "recovered_flight".
 const char* to_string(RateSource source);
 
-/// RateState contains the angular velocity of an IMU in the world, in the IMU's axes, at the time of an IMU sample.
+/// RateState is the angular velocity of an IMU relative to the world, in IMU axes, at the time of an IMU sample.
 struct RateState {
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  std::uint8_t clipped_axes = 0;  ///< bit j set: gyro axis j was saturated
+  std::uint8_t clipped_axes = 0;  ///< bit j: gyro axis j was saturated
   RateSource source = RateSource::measured;
 };
 

@@ -22,24 +22,25 @@
 
 namespace tumble {
 
-/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the factors
-/// of RateSmoother over a window of fixed length. RateStream makes one Gauss-Newton step per sample, or one step every
-/// 5 ms if samples are closer together. Samples that leave the window are marginalised into a Gaussian prior on the
-/// next sample and on RigConstants.
+/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the
+/// measurement models of RateSmoother over a sliding window of fixed length. RateStream makes one Gauss-Newton step per
+/// sample, or one step every 5 ms if samples are closer together. When a sample leaves the window, RateStream
+/// marginalises the sample into a Gaussian prior on the next sample and on the rig constants.
 ///
-/// An estimate is reported when its sample is `lag_s` old. The function newest() returns a provisional estimate of the
-/// newest sample. A step costs O(window): the cost grows with the sample rate above 200 Hz, and with the square of the
-/// sample rate below 200 Hz. RateStream allocates no memory after the State is created.
+/// The function push() returns the estimate of a sample that is `lag_s` old. The function newest() returns a
+/// provisional estimate of the newest sample. A step costs O(window). The cost per second is proportional to the sample
+/// rate above 200 Hz, and to the square of the sample rate below 200 Hz. RateStream allocates no memory after the State
+/// is created.
 ///
-/// StreamingClippingFinder detects saturation levels and planes from the readings. After each detection of a saturation
-/// level, the samples in the window are classified again. A clipped sample is therefore accepted as a measurement only
-/// if the sample left the window before the detection. With the calibration of an earlier run, the rate error of
-/// RateStream is 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate
-/// errors are within three standard deviations. With a calibration that is estimated during the tumble itself, the rate
-/// error is 1.6 times that of RateSmoother, or 1.2 times with 0.5 s of lag. The measured error ratios are in
-/// docs/maths/rate_stream.md. The errors of the samples of one flight are correlated. RateStream therefore increases
-/// the covariance of calibration and rates until enough flight samples are processed (`rig_inflation`). The limitations
-/// of RateSmoother also apply to RateStream.
+/// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After the detection of a
+/// new saturation limit, RateStream classifies the samples in the window again. RateStream mistakes a clipped sample
+/// for a measurement only if the sample left the window before the detection of the saturation limit. With the
+/// calibration of an earlier run, the rate error of RateStream is 1.1 times the rate error of RateSmoother. With the
+/// calibration of an earlier run, 99 % of the rate errors are within three standard deviations. If RateStream estimates
+/// the calibration during the tumble, the rate error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of
+/// 0.5 s. The measured error ratios are in docs/maths/rate_stream.md. The rate errors during one flight are correlated.
+/// RateStream increases the covariance of calibration and rates until enough flight samples are processed. The
+/// limitations of RateSmoother also apply to RateStream.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -49,42 +50,42 @@ class RateStream {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateStream(const Params& params);
 
-  /// Returns the state before the first sample, with all memory that push() needs.
+  /// Returns the state before the first sample, and allocates all memory that push() needs.
   State start() const;
 
-  /// Processes one sample. `out` is the estimate of the sample that is lag_s old; `out` is empty while the window
-  /// fills. On error (`non_finite`, `time_order`, `gap`) the state is unchanged and `out` is empty.
+  /// Processes one sample. The output `out` is the estimate of the sample that is `lag_s` old, and is empty while the
+  /// window fills. On error (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// Processes one sample together with readings of additional IMUs on the body at the sample's time. Pass one reading
-  /// per entry of RateModelParams::auxiliary_imus, or no readings; another number returns `too_few`.
+  /// Processes one sample together with the readings of additional IMUs at the time of the sample. The argument
+  /// `auxiliary_imus` must be empty or contain one reading per entry of RateModelParams::auxiliary_imus; otherwise
+  /// push() returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
-  /// Returns the provisional estimate of the newest sample. The result is empty before the first sample.
+  /// Returns the provisional estimate of the newest sample, or an empty result before the first sample.
   std::optional<RateState> newest(const State& state) const;
 
-  /// Appends the estimates of the samples that are still in the window to `out`, oldest first.
+  /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Reports whether the IMU's readings are currently plausible. Returns `out_of_range` with the name of a frozen axis
-  /// (FrozenAxes), or for an accelerometer with inverted sign (FlightSignCheck). While a gyro axis is frozen, the
-  /// standard deviation of its rate is the largest rate read so far.
+  /// Returns whether the IMU's readings are currently plausible. The error `out_of_range` names a frozen axis, or an
+  /// accelerometer with inverted sign. While a gyro axis is frozen, the standard deviation of its rate is the largest
+  /// rate measured so far.
   Status health(const State& state) const;
 
-  /// Returns the estimated calibration.
+  /// Returns the estimated rig constants and their covariance.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
-  /// Returns the estimated sensor errors, for which readings are corrected, and the covariance of the errors.
-  /// RateStream detects a delayed accelerometer from impacts if the data sheet does not exclude a delay; see
-  /// RateStreamDelay.
+  /// Returns the sensor errors that RateStream currently corrects, with their covariance. RateStream detects a delayed
+  /// accelerometer from impacts, unless the data sheet excludes a delay (RateStreamDelay).
   KnownSensorErrors sensor_errors(const State& state) const;
 
-  /// Returns whether two states will give identical results, bit for bit. The comparison ignores buffers.
+  /// Returns whether two states lead to identical results, bit for bit. The comparison ignores buffers.
   static bool equal(const State& a, const State& b);
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
   Status check_state(const State& state) const;
 
  private:

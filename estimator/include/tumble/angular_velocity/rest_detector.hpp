@@ -11,28 +11,27 @@
 
 namespace tumble {
 
-/// Detects when an IMU is stationary, for the estimation of rates, attitude, rolling and maps. At rest, the rate is
-/// within a plausible bias, and the force is large enough to be gravity. At rest, rate and force are constant up to
-/// noise for a minimum time. The gyro of a stationary IMU measures its bias. The parameters of RestDetector refer to
-/// one bandwidth for all IMUs: readings faster than `reading_s` are averaged first. White noise of density n
-/// [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging, whatever the sample rate. A spread
-/// parameter should be at least five standard deviations of the averaged noise. RestDetector does not distinguish rest
-/// from a steady rotation about the vertical that is slower than `rate_max_rad_s`.
+/// Detects when an IMU is stationary. RestDetector detects rest if three conditions hold for a minimum time. The
+/// measured rate is within a plausible gyro bias, the force is large enough to be gravity, and rate and force are
+/// constant up to noise. RestDetector first averages the readings over `reading_s`, so that the parameters do not
+/// depend on the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s)
+/// after averaging. Set each spread parameter to at least five standard deviations of the averaged noise. A steady
+/// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 ///
-/// Each class that uses RestDetector sets its own parameters, as docs/design.md explains.
+/// Each class that uses RestDetector has its own default parameters, as docs/design.md explains.
 class RestDetector {
  public:
   struct Params {
-    double rate_max_rad_s = 0.05;     ///< maximum of the run's mean rate minus the bias, each axis
-    double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean of the run, per axis
-    double force_min_m_s2 = 5.0;      ///< minimum force at rest, which excludes flight
-    double force_max_m_s2 = 1e3;      ///< maximum force at rest, which excludes impacts
-    double force_spread_m_s2 = 0.15;  ///< maximum distance of a reading from the mean of the run, per axis
+    double rate_max_rad_s = 0.05;     ///< maximum of the mean rate minus the bias, per axis
+    double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean reading, per axis
+    double force_min_m_s2 = 5.0;      ///< minimum force at rest; excludes flight
+    double force_max_m_s2 = 1e3;      ///< maximum force at rest; excludes impacts
+    double force_spread_m_s2 = 0.15;  ///< maximum distance of a reading from the mean reading, per axis
     double rest_s = 0.4;              ///< minimum duration of a rest
     double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample
-    double memory_s = 600.0;          ///< time constant of the run's mean, so that a drifting bias is not motion
+    double memory_s = 600.0;          ///< time constant of the mean, which follows a drifting bias
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s,
@@ -53,15 +52,15 @@ class RestDetector {
     }
   };
   struct State {
-    // State of the current run of readings that stay close to their mean. A run of readings that lasts long enough is a
-    // rest.
+    // State contains the current run of readings that stay close to their mean. RestDetector detects rest if the run
+    // lasts long enough.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;              ///< weight of the sums: number of readings, with lower weights of older readings
+    double weight = 0.0;              ///< number of readings in the sums; older readings count less
     TimeNs first_ns = 0;              ///< time of the run's first sample
     TimeNs last_mean_ns = 0;          ///< time of the last reading
-    TimeNs within_bias_since_ns = 0;  ///< duration of the run with a mean within the bias bound
-    bool rests = false;               ///< whether the run, up to the last reading, is rest
+    TimeNs within_bias_since_ns = 0;  ///< time since which the mean rate is within the bias bound
+    bool rests = false;               ///< whether the IMU is at rest, up to the last reading
     // Sums of the samples since the last averaged reading.
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
@@ -70,7 +69,7 @@ class RestDetector {
     bool started = false;
     bool operator==(const State&) const = default;
 
-    /// Returns the mean rate of the run of readings, or zero without a run.
+    /// Returns the mean rate of the current run of readings, or zero before the first reading.
     Eigen::Vector3d mean_rate_rad_s() const;
     Eigen::Vector3d mean_force_m_s2() const;
   };
@@ -78,16 +77,17 @@ class RestDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestDetector(const Params& params);
 
-  /// Processes the next finite sample. Cost: O(1), no allocation. Returns whether the IMU is at rest up to the last
-  /// averaged reading. `bias_rad_s` is the known bias of the gyro.
+  /// Processes the next finite sample and returns whether the IMU is at rest up to the last averaged reading. The
+  /// argument `bias_rad_s` is the known gyro bias [rad/s]. Cost: O(1), no allocation.
   bool observe(const ImuSample& sample, State& state,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
-  /// Processes a mean over a time span, which counts as one reading for every value of `reading_s`.
+  /// Processes the mean rate and force over a time span as one reading, independent of `reading_s`.
   bool observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 
-  /// Returns for each sample of a recording whether it belongs to a rest, including the start of each rest. O(N).
+  /// Returns for each sample of a recording whether the IMU is at rest, including the first samples of each rest. Cost:
+  /// O(N).
   std::vector<bool> find(std::span<const ImuSample> samples,
                          const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 

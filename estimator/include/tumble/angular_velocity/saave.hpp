@@ -14,44 +14,43 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a tumbling body with a clipped gyro from the centripetal part of the specific
-/// force.
+/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped.
 ///
 /// Saave implements a published method in two stages (Deschenes et al., "Saturation-Aware Angular Velocity Estimation",
-/// ICRA 2024, eqs 5-7). In the recursive stage, Saave processes the samples in order. The recursive stage assumes the
-/// rotation axis of the last accepted sample. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the
-/// axis direction e and the lever arm t. In free flight, the component of the specific force along l is |l| |w|^2, with
-/// the rate w. The clipped axis of the rate follows from the force component along l and from the two unclipped axes.
-/// In the smoothing stage, WnojSmoother smooths all samples.
+/// ICRA 2024, eqs 5-7). The recursive stage processes the samples in order and assumes that the rotation axis of the
+/// last accepted sample is still valid. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the axis
+/// direction e and the lever arm t. In free flight, the component of the specific force along l is |l| |w|^2, where w
+/// is the rate. Saave computes the clipped axis of the rate from the force component along l and the two unclipped
+/// axes. In the smoothing stage, Saave smooths the rates of all samples with a white-noise-on-jerk prior.
 ///
-/// The published method does not model a second clipped axis. Saave recovers the first clipped axis in the order x, y,
-/// z. Further clipped axes keep the variance of an unclipped reading. The published method does not model angular
-/// acceleration across the rotation axis, contact, clipped accelerometers, or bias. If the IMU is close to the rotation
-/// axis (small |l|), the estimate has a large error that Saave does not detect; only |l| = 0 is rejected. All recovered
-/// rates have the same assumed variance. Smoothed rates may be below the saturation level.
+/// Saave recovers at most one clipped axis per sample, the first in the order x, y, z. Saave assigns the variance of an
+/// unclipped reading to the other clipped axes. The published method assumes free flight, an unclipped accelerometer,
+/// no bias, and no angular acceleration across the rotation axis. If the IMU is close to the rotation axis (small |l|),
+/// the estimate has a large error that Saave does not detect. Saave assigns the same variance to all recovered rates.
+/// The smoothed rates of clipped axes may be below the saturation limit.
 class Saave {
  public:
   struct Params {
-    /// Lever arm t from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm is required and
-    /// has no default. The lever arm must be accurate to about a millimetre.
+    /// Lever arm t from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm has no default
+    /// and must be accurate to about a millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above saturation_point_rad_s are clipped. The saturation point is required and has no default.
-    /// If the plateau of a saturated device equals the saturation point, no reading exceeds the saturation point, and
-    /// nothing is recovered. Choose a saturation point slightly below the largest reading of the device.
+    /// Readings strictly above `saturation_point_rad_s` count as clipped. The saturation point has no default. Choose a
+    /// saturation point slightly below the largest reading of the device, because readings equal to the saturation
+    /// point count as unclipped.
     double saturation_point_rad_s = 0.0;
-    /// Variance of an unclipped reading [(rad/s)^2]. The default variance of an unclipped reading is (0.03
-    /// deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
+    /// Variance of an unclipped reading [(rad/s)^2]. The default is (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
-    /// Variance of a recovered rate [(rad/s)^2]. The published code uses a variance of 0.2741; the paper prints 3.648.
+    /// Variance of a recovered rate [(rad/s)^2]. The published code uses the variance 0.2741, and the paper prints
+    /// 3.648.
     double variance_estimated_rad2_s2 = 0.2741;
-    /// Variance of the clipped axis if no rate could be recovered [(rad/s)^2].
+    /// Variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2].
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// Longest allowed time between two samples [s].
+    /// Maximum time between two samples [s].
     double gap_max_s = 1.0;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
@@ -76,7 +75,7 @@ class Saave {
     }
   };
 
-  /// State of the recursion.
+  /// State contains the values that the recursive stage keeps between samples.
   struct State {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted rate
     TimeNs last_time_ns = 0;
@@ -87,8 +86,8 @@ class Saave {
   /// Recovered is the result of the recursive stage for one sample, before smoothing.
   struct Recovered {
     Eigen::Vector3d rate_rad_s;
-    Eigen::Vector3d variance_rad2_s2;  ///< variance per axis
-    std::uint8_t clipped_axes = 0;     ///< bits of the axes above the saturation point
+    Eigen::Vector3d variance_rad2_s2;  ///< variance of each axis
+    std::uint8_t clipped_axes = 0;     ///< bit j: the reading of axis j exceeds the saturation point
     bool accepted = true;              ///< false: the clipped axis could not be recovered
   };
 
@@ -99,9 +98,9 @@ class Saave {
   /// `gap`), `state` and `out` are unchanged.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Runs the recursive stage and the smoothing stage over a whole recording, and writes one RateState per sample.
-  /// Cost: O(N). Returns `empty` without samples. On error `out` is unchanged, and the status contains the field and
-  /// value of the first invalid sample.
+  /// Estimates one RateState per sample of a recording, with the recursive stage and the smoothing stage. Cost: O(N).
+  /// Returns `empty` if there are no samples. On error, `out` is unchanged, and the status contains the field and value
+  /// of the first invalid sample.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
   const Params& params() const { return params_; }

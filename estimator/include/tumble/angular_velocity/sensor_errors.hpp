@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// SensorErrors contains the constant errors of gyro and accelerometer other than bias and noise. The 29 numbers are in
-/// the order of the members, matrices row by row.
+/// SensorErrors contains the constant errors of gyro and accelerometer other than bias and noise. The vector of 29
+/// errors follows the order of the members, with matrices row by row.
 struct SensorErrors {
   static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kFilterTimeVariance = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -17,12 +17,12 @@ struct SensorErrors {
   /// Errors of scale and misalignment. The gyro reads (1 + gyro) rate + g_sensitivity force + bias. The accelerometer
   /// reads (1 + accel) force + bias.
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Zero(), accel = Eigen::Matrix3d::Zero();
-  /// g-sensitivity of the gyro [rad/s per m/s^2].
+  /// Sensitivity of the gyro to specific force [rad/s per m/s^2].
   Eigen::Matrix3d g_sensitivity_s_m = Eigen::Matrix3d::Zero();
   /// Delay of the accelerometer relative to the gyro [s].
   double accel_delay_s = 0.0;
-  /// Difference in window width: variance of the time weights of an accelerometer reading minus that of a gyro reading
-  /// [s^2]. The difference is negative if the gyro's window is wider than the accelerometer's window.
+  /// Variance of the averaging window of an accelerometer reading, minus the variance of the averaging window of a gyro
+  /// reading [s^2]. The variance difference is negative if the gyro averages over a longer time than the accelerometer.
   double accel_filter_time_variance_s2 = 0.0;
 
   Vector vector() const;
@@ -30,35 +30,34 @@ struct SensorErrors {
   bool operator==(const SensorErrors&) const = default;
 };
 
-/// KnownSensorErrors contains sensor errors with their covariance.
+/// KnownSensorErrors contains estimated sensor errors with their covariance.
 struct KnownSensorErrors {
   SensorErrors errors;
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
-/// Throws InvalidParams if an error is above 0.2 or the covariance is invalid. A covariance with a negative eigenvalue
-/// is invalid, because the filter would treat the direction of the eigenvector as perfectly known.
+/// Throws InvalidParams if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
 void require_known(const KnownSensorErrors& earlier_runs);
 
-/// SensorErrorPriors contains the prior standard deviations of sensor errors, for a device as in its data sheet and for
-/// an uncalibrated device. SensorErrorFit determines from the readings whether the data sheet applies. If the standard
-/// deviation of the uncalibrated device does not exceed that of the data sheet, the data sheet always applies. Each
-/// standard deviation is in [0, 0.1], in the units of SensorErrors.
+/// SensorErrorPriors contains prior standard deviations of sensor errors, for a calibrated and for an uncalibrated
+/// device. The function fit_sensor_errors() estimates which of the two priors fits the readings. If the prior of the
+/// uncalibrated device is not larger, the prior of the calibrated device always applies. Each standard deviation is in
+/// [0, 0.1], in the units of SensorErrors.
 struct SensorErrorPriors {
   /// Standard deviations of scale and misalignment. The defaults of the calibrated device are from the data sheet of
   /// the MTi-300: non-orthogonality 0.05 deg. The defaults of the uncalibrated device are from the MPU-6050: 3 % scale
   /// and 2 % cross-axis error, taken as three standard deviations.
   double gyro = 5e-4, gyro_uncalibrated = 0.01;
   double accel = 5e-4, accel_uncalibrated = 0.01;
-  /// Standard deviations of the g-sensitivity: 0.003 deg/s/g by the data sheet, and 0.1 deg/s/g for an uncalibrated
-  /// device.
+  /// Standard deviations of the g-sensitivity: 0.003 deg/s/g for a calibrated device, and 0.1 deg/s/g for an
+  /// uncalibrated device.
   double g_sensitivity_s_m = 5.3e-6, g_sensitivity_uncalibrated_s_m = 1.8e-4;
-  /// Standard deviations of the accelerometer's delay. By the data sheet, gyro and accelerometer have filters of about
-  /// 400 Hz. An uncalibrated device has separate windows and filters. The prior of the window difference scales with
-  /// the square of the delay.
+  /// Standard deviations of the accelerometer's delay relative to the gyro. In a calibrated device, gyro and
+  /// accelerometer have equal filters of about 400 Hz. In an uncalibrated device, gyro and accelerometer have separate
+  /// windows and filters. The prior of the window difference scales with the square of the delay's standard deviation.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gyro, {"gyro", "1", 0.0, 0.1,
@@ -82,45 +81,45 @@ struct SensorErrorPriors {
   }
 };
 
-/// Returns the prior standard deviations of all sensor errors. `share` is between 0 (data sheet) and 1 (uncalibrated
-/// device). All returned standard deviations are above 0.
+/// Returns the prior standard deviations of all sensor errors, all above 0. The argument `share` is between 0
+/// (calibrated device) and 1 (uncalibrated device).
 SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 
-/// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded
-/// at `linearisation_point`. `information` is the second derivative of the cost and `gradient` is its negative first
-/// derivative, with all other unknowns at their optimum.
+/// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors. The
+/// quadratic function is expanded at `linearisation_point`. The member `information` is the second derivative of the
+/// cost. The member `gradient` is the negative first derivative of the cost, with all other unknowns at their optimum.
 struct SensorErrorEvidence {
   SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Multiplies the information by `share` in the directions of sensor errors that the motion of a free body does not
-/// determine. See rate_smoother.md (R39). The unobservable directions are a scale common to all axes of gyro or
-/// accelerometer, and a common rotation of gyro and accelerometer. In the unobservable directions, residuals of the
-/// motion model wrongly appear as information about the sensor errors. Smaller motions reduce the residuals, so the
-/// false information grows with the number of samples.
+/// Reduces, by the factor `share`, the information about sensor errors that free motion of a body does not determine;
+/// see rate_smoother.md (R39). The unobservable directions are a scale common to all axes of a sensor, and a common
+/// rotation of gyro and accelerometer. In the unobservable directions, residuals of the motion model wrongly appear as
+/// information about the sensor errors. The wrong information grows with the number of samples, because smaller motions
+/// have smaller residuals.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
-/// SensorErrorFit contains the sensor errors that were estimated from readings and prior.
+/// SensorErrorFit contains the sensor errors estimated from readings and prior.
 struct SensorErrorFit {
   KnownSensorErrors known;
   double data_sheet_probability = 1.0;   ///< probability that scale and misalignment are within the data sheet
-  double synchronous_probability = 1.0;  ///< probability that the triads are as synchronous as in the data sheet
+  double synchronous_probability = 1.0;  ///< probability that gyro and accelerometer are synchronous
 };
 
-/// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. The models combine data
-/// sheet, uncalibrated and intermediate standard deviations for three groups: scale and misalignment, g-sensitivity,
-/// and sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood
-/// of the readings. The result has the mean and the covariance of the mixture of all models. If the readings fit the
-/// data sheet, unobservable sensor errors thereby keep the small uncertainty of the data sheet. Cost: O(1), about 30
-/// systems of 29 unknowns. `earlier_runs` is the information from earlier runs of the device, from
-/// calibration_evidence(), used with full weight.
+/// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. Each model assumes
+/// calibrated, uncalibrated or intermediate standard deviations for scale and misalignment, for g-sensitivity, and for
+/// sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood of
+/// the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If the readings
+/// fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet. Cost: O(1),
+/// about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for earlier
+/// runs of the device.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 
-/// Converts the sensor errors that one run estimated to measurement information for the next run. The function removes
-/// the prior of an uncalibrated device from the covariance, because the next run adds that prior again.
+/// Converts sensor errors that one run estimated to measurement information for the next run. The function removes the
+/// prior of an uncalibrated device from the covariance, because the next run adds the prior again.
 SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
 
 }  // namespace tumble

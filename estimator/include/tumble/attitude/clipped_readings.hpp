@@ -14,21 +14,19 @@
 namespace tumble {
 
 /// ClippedReadings contains the clipped sensing elements of each sample of a recording, as input of HandHeldSmoother.
-/// The function to_clipped_readings() finds clipped elements from flags of the device, and from plateaus and tilted
-/// planes in the readings.
 struct ClippedReadings {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements, one per row
-  std::vector<ClipSigns> signs;                        ///< one per sample
-  std::vector<std::uint8_t> near;                      ///< one per sample: bits of may_meet_rails()
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
+  std::vector<ClipSigns> signs;                        ///< one entry per sample
+  std::vector<std::uint8_t> near;                      ///< one entry per sample: bits of may_meet_rails()
 
   ClippedElements clipped() const { return {rows, signs}; }
 
-  /// Treats unclipped gyro readings that may be saturated at an unknown level as lower bounds instead of measurements.
-  /// `axes` contains one byte per sample; bit j is set if the reading of axis j may be saturated.
+  /// Treats gyro readings that may be saturated at an unknown limit as lower bounds instead of measurements. The
+  /// argument `axes` contains one byte per sample; bit j is set if the reading of axis j may be saturated.
   void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Marks a rate as a lower bound if its reading may have been saturated during a part of the averaging window.
-  /// `rates` contains one rate per sample.
+  /// Marks an estimated rate as a lower bound if its reading may have been saturated during a part of the averaging
+  /// window. The argument `rates` contains one rate per sample.
   void mark_partly_saturated(std::span<RateState> rates) const;
 };
 

@@ -6,15 +6,15 @@
 
 namespace tumble {
 
-/// Time constants of hand-held motion.
+/// HandMotionParams contains the correlation times of hand-held motion.
 struct HandMotionParams {
-  double hand_tau_s = 0.1;             ///< correlation time of the held point's acceleration
-  double velocity_tau_s = 0.3;         ///< correlation time of the held point's velocity
-  double position_tau_s = 1.0;         ///< correlation time of the held point's position
-  double position_leak_s = 10.0;       ///< time constant with which a position decays
+  double hand_tau_s = 0.1;             ///< correlation time of the hand's acceleration
+  double velocity_tau_s = 0.3;         ///< correlation time of the hand's velocity
+  double position_tau_s = 1.0;         ///< correlation time of the hand's position
+  double position_leak_s = 10.0;       ///< time constant with which the hand's position returns to zero
   double hand_noise_adaptation = 0.8;  ///< weight of the measured acceleration power, 0 to 1
   double hand_window_s = 2.0;          ///< averaging time of the measured acceleration power
-  double hand_floor = 1.0;  ///< minimum acceleration density, as a fraction of the density that `hand_m_s2` assumes
+  double hand_floor = 1.0;             ///< minimum acceleration density, as a fraction of the density for `hand_m_s2`
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -35,13 +35,13 @@ struct HandMotionParams {
   }
 };
 
-/// Errors of IMU readings other than noise, for measured, clipped and recovered rates.
+/// HandHeldReadingParams describes the errors of IMU readings other than white noise.
 struct HandHeldReadingParams {
-  double tilt_share = 0.02;             ///< unclipped element's error per deficit of a clipped element
-  double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation level
+  double tilt_share = 0.02;             ///< error of an unclipped element, per saturation deficit of a clipped element
+  double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation limit
   double accel_error_share = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
   double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
-  double recovered_sigma_rad_s = 1.0;   ///< clipped rates below this standard deviation count as recovered
+  double recovered_sigma_rad_s = 1.0;   ///< clipped rates with a smaller standard deviation count as recovered
   double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
   double recovered_scale_share = 6e-3;  ///< scale error of measured rates near recovered rates
 
@@ -68,9 +68,9 @@ struct HandHeldReadingParams {
   }
 };
 
-/// Standard deviations of rate, velocity and acceleration while the body is stationary.
+/// HandHeldRestParams contains the standard deviations of rate, velocity and acceleration while the body is stationary.
 struct HandHeldRestParams {
-  double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, for one node
+  double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, per node
   double rest_sigma_m_s = 0.02;    ///< standard deviation of the velocity at rest
   double rest_sigma_m_s2 = 0.1;    ///< standard deviation of the acceleration at rest
 
@@ -84,14 +84,14 @@ struct HandHeldRestParams {
   }
 };
 
-/// HandHeldExpertParams contains the parameters of HandHeldParams that few users change, grouped by meaning. The fields
-/// have the names that are used in tables and on command lines.
+/// HandHeldExpertParams contains the rarely changed parameters of HandHeldSmoother and HandHeldStream, grouped by
+/// topic.
 struct HandHeldExpertParams {
-  double node_s = 0.01;  ///< time between two nodes
+  double node_s = 0.01;  ///< time between two nodes (states of the estimator)
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Factor by which the assumed angular jerk is increased when HandHeldSmoother computes covariances. The factor is
-  /// above 1 because the jerk of the actual motion is not known in advance.
+  /// Factor on the assumed angular jerk for the reported covariances. The factor increases the reported uncertainty,
+  /// because the true angular jerk is unknown.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   HandMotionParams hand = {};
@@ -115,8 +115,8 @@ struct HandHeldExpertParams {
   }
 };
 
-/// HandHeldParams contains the parameters of HandHeldSmoother and HandHeldStream: errors of the IMU, and extent of the
-/// hand-held motion.
+/// HandHeldParams contains the parameters of HandHeldSmoother and HandHeldStream: IMU errors and the amount of hand
+/// motion.
 struct HandHeldParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
@@ -124,15 +124,15 @@ struct HandHeldParams {
   double gyro_bias_sigma_rad_s = 0.02;
   double accel_bias_sigma_m_s2 = 0.02;
   double lever_arm_sigma_m = 0.03;
-  double jerk_rad_s3_sqrts = 200.0;  ///< root of the power spectral density of the angular jerk
-  double hand_m_s2 = 5.0;            ///< standard deviation of the held point's acceleration
-  double velocity_m_s = 1.0;         ///< standard deviation of the held point's velocity
-  double position_m = 1.0;           ///< standard deviation of the held point's position
+  double jerk_rad_s3_sqrts = 200.0;  ///< square root of the power spectral density of the angular jerk
+  double hand_m_s2 = 5.0;            ///< standard deviation of the hand's acceleration
+  double velocity_m_s = 1.0;         ///< standard deviation of the hand's velocity
+  double position_m = 1.0;           ///< standard deviation of the hand's position
 
   using Expert = HandHeldExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

@@ -17,9 +17,8 @@
 
 namespace tumble {
 
-/// ClipSigns states for each sensing element of an IMU whether one sample is clipped. An element of ClipSigns is -1 at
-/// the negative saturation level, 1 at the positive saturation level, and 0 if unsaturated. The value kMissing marks a
-/// gyro reading that has overflowed and provides neither a measurement nor a lower bound.
+/// ClipSigns states which sensing elements of an IMU are clipped in one sample: -1 at the negative limit, 1 at the
+/// positive limit, 0 if unsaturated. The value kMissing marks a gyro reading that is invalid because of an overflow.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
@@ -27,16 +26,15 @@ struct ClipSigns {
 /// Returns the clipped sensing elements of a sample that RailDetector or ClippingFinder classified.
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// ClippedElements describes the saturation of an IMU over a recording. Sensing element i of the gyro measures the
-/// component of the rate along m_i, which is row i of `rows`. While sensing element i clips, the component m_i' y of
-/// the reading y equals the saturation level. The true component m_i' (rate + bias) of a clipped element is at or
-/// beyond the saturation level.
+/// ClippedElements describes the saturation of an IMU over a recording. Gyro element i measures the component of the
+/// rate along m_i, which is row i of `rows`. While gyro element i clips, the component m_i' y of the reading y equals
+/// the saturation limit. The magnitude of the true component m_i' (rate + bias) is then at least the saturation limit.
 struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  std::span<const ClipSigns> signs;  ///< one per sample; empty: no clipping
-  /// Covariance of each sample's rate, in sensor axes, if the rate was recovered from the equations of flight instead
-  /// of measured. A covariance of zero marks a measured rate; an empty span marks all rates as measured. Sensing
-  /// elements of samples with a recovered rate must not be marked as clipped.
+  std::span<const ClipSigns> signs;  ///< one entry per sample; empty: no clipping
+  /// Covariance of each rate that was recovered from the equations of flight, in sensor axes. A covariance of zero
+  /// marks a measured rate, and an empty span marks all rates as measured. A sample with a recovered rate must not have
+  /// clipped sensing elements.
   std::span<const Eigen::Matrix3d> recovered_covariance_rad2_s2 = {};
 };
 
@@ -45,15 +43,14 @@ struct ClippedElements {
 ///
 /// Hand-held motion is bounded: accelerations are short, and the velocity and displacement of the hand return to zero.
 /// The specific force is therefore the sum of gravity, the centripetal and tangential force at the lever arm, and a
-/// bounded remainder. The direction of gravity rotates in sensor axes, and the rotation of gravity determines the rate
-/// while the gyro is saturated. Nodes at equal time steps contain attitude, rate and angular acceleration, and the
-/// motion of the held point (the point of the body at the hand). Biases and lever arm of the device are additional
-/// unknowns. A Gauss-Newton solver uses the arrow structure of the normal equations (ArrowSystem). The inverse of the
-/// normal equations gives the covariances. Memory (about 7 kB per node) and computation grow in proportion to the
-/// duration, whatever the IMU's sample rate.
+/// bounded remainder. The rotation of the measured gravity vector in sensor axes determines the rate while the gyro is
+/// saturated. HandHeldSmoother estimates attitude, rate, angular acceleration and hand motion at equal time steps,
+/// called nodes. HandHeldSmoother also estimates the biases and the lever arm of the IMU. A Gauss-Newton solver uses
+/// the arrow structure of the normal equations, and the inverse of the normal matrix gives the covariances. Memory
+/// (about 7 kB per node) and computation grow in proportion to the duration, whatever the IMU's sample rate.
 ///
-/// HandHeldSmoother does not model flight of a thrown body (see `hand_acceleration_ratio`), contact forces beyond
-/// hand-held motion, drift of the biases, or heading.
+/// HandHeldSmoother assumes that the body is not thrown (see `hand_acceleration_ratio`) and has no hard contact.
+/// HandHeldSmoother assumes constant biases, and reports the heading relative to the start.
 class HandHeldSmoother {
  public:
   using Params = HandHeldParams;
@@ -64,31 +61,30 @@ class HandHeldSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the held point (at the hand) over a quarter of a second, divided by the assumed
-    /// standard deviation. The value of hand_acceleration_ratio exceeds 2 if the body was thrown (specific force about
-    /// 0) or handled roughly. The value hand_acceleration_ratio is a diagnostic and does not influence the estimate.
+    /// Largest mean acceleration of the hand over a quarter of a second, divided by the assumed standard deviation. A
+    /// ratio above 2 indicates that the body was thrown (specific force about 0) or handled roughly. The ratio is a
+    /// diagnostic and does not influence the estimate.
     double hand_acceleration_ratio = 0.0;
-    /// Number of clipped segments whose number of full revolutions is ambiguous. The counter revolutions_tested counts
-    /// clipped segments that are long and uncertain enough for a test of another number of revolutions. The counter
-    /// revolutions_corrected counts, in each round, the segments where another number of revolutions fitted better and
-    /// was used. The counter revolutions_ambiguous counts segments where another number of revolutions remains
-    /// possible, at odds of at least 1 to 1000. The rate covariance includes the spread of the possible numbers of
-    /// revolutions.
+    /// Counters of clipped segments whose number of full revolutions is ambiguous. The counter revolutions_tested
+    /// counts clipped segments that are long and uncertain enough to test another number of revolutions. The counter
+    /// revolutions_corrected counts, in each round, the segments in which another number of revolutions fitted better.
+    /// The counter revolutions_ambiguous counts segments in which another number of revolutions has odds of at least 1
+    /// to 1000. The rate covariance includes the spread of the possible numbers of revolutions.
     int revolutions_tested = 0, revolutions_corrected = 0, revolutions_ambiguous = 0;
-    /// Number of attempted changes of revolutions for which the solver failed. HandHeldSmoother keeps the solution
-    /// before a failed change, and counts the segment in revolutions_ambiguous.
+    /// Number of tests of another number of revolutions in which the solver failed. After a failure, HandHeldSmoother
+    /// restores the previous solution, and counts the segment in revolutions_ambiguous.
     int revolutions_failed = 0;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit HandHeldSmoother(const Params& params);
 
-  /// Computes one rate and one attitude per sample.
-  /// `rates` contains the angular velocity of each sample, in sensor axes [rad/s]. `attitudes` contains the rotation
-  /// from sensor axes to the world at each sample, with heading 0 at the start.
-  /// Returns `ok`, `empty`, `non_finite`, `time_order`, `gap`, `out_of_range` or `diverged`. On error the outputs are
-  /// empty. The error `out_of_range` means that signs or recovered rates do not have one element per sample, or that a
-  /// covariance is invalid. The error `diverged` means that the normal equations are not positive definite.
+  /// Estimates one rate and one attitude per sample. The output `rates` contains the angular velocity of each sample,
+  /// in sensor axes [rad/s]. The output `attitudes` contains the rotation from sensor axes to the world at each sample,
+  /// with heading 0 at the start. Returns `ok`, `empty`, `non_finite`, `time_order`, `gap`, `out_of_range` or
+  /// `diverged`. On error, the outputs are empty. The error `out_of_range` means that the input arrays have different
+  /// sizes or that a covariance is invalid. The error `diverged` means that the normal equations are not positive
+  /// definite.
   Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 

@@ -13,35 +13,31 @@
 namespace tumble {
 
 /// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream uses
-/// the factors of HandHeldSmoother over a window of nodes, and makes one Gauss-Newton step per node.
+/// the model of HandHeldSmoother over a sliding window of nodes, and makes one Gauss-Newton step per node.
 ///
-/// The oldest node is marginalised into a Gaussian prior on the next node and on the device's constants. Each rate is
-/// reported when its sample is `lag_s` old. The window `window_s` is longer than the lag, so that nodes older than the
-/// lag are relinearised in each step. The lag `lag_s` is converted to a number of samples of `period_s`. If samples are
-/// further apart than `period_s`, a node may leave the window before its rate is reported; the rate is then stored. The
-/// function start() allocates all memory. A run that is split and continues from the State gives bit-identical results.
+/// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
+/// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
+/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory of the
+/// stream. A run that is continued from a saved State gives bit-identical results.
 ///
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
-/// for each fifth node only. The initial attitude comes from a single force reading, not from a filter. The density of
-/// the hand's acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
-/// Nodes in the window have no influence on the density of the hand's acceleration. HandHeldStream does not test
-/// whether a clipped segment has an additional full revolution. The rate covariance instead includes the error of one
-/// additional revolution (C42, C43 of carried.md). The counter `revolutions_ambiguous` counts segments that may contain
-/// an additional revolution. Readings that have left the window are not classified again when a saturation level is
-/// detected later. The prior from marginalised nodes uses the assumed jerk, but reported covariances use the increased
-/// jerk
-/// (`jerk_inflation`).
+/// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
+/// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
+/// HandHeldStream does not test whether a clipped segment has an additional full revolution. The rate covariance
+/// includes the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation
+/// limit, HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the
+/// assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
 ///
 /// Cost: each new node costs one Gauss-Newton step, O(window).
 class HandHeldStream {
  public:
   struct Params {
-    HandHeldSmoother::Params body;  ///< `iterations_max` is not used here
+    HandHeldSmoother::Params body;  ///< `iterations_max` is ignored
     double period_s = 0.01;         ///< nominal time between samples
     double lag_s = 0.2;
     double window_s = 0.6;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);
@@ -54,15 +50,16 @@ class HandHeldStream {
     }
   };
 
-  /// Reading is one IMU sample of the window, with its clip signs.
+  /// Reading is one IMU sample of the sliding window, with its clipped sensing elements.
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    double centre_s = 0.0, end_s = 0.0;  ///< centre and end of the sample's window, from the first sample's centre
-    std::int64_t node = 0;               ///< node closest to the centre
+    /// Centre and end of the sample's averaging window, from the first sample's centre.
+    double centre_s = 0.0, end_s = 0.0;
+    std::int64_t node = 0;  ///< node closest to the centre of the averaging window
     bool rest = false;
-    RepeatedReading gyro, accel;        ///< state of repeated readings
-    std::optional<RateState> smoothed;  ///< rate of a sample whose node has left the window, not yet reported
+    RepeatedReading gyro, accel;        ///< detection state of repeated readings
+    std::optional<RateState> smoothed;  ///< unreported rate of a sample whose node has left the window
   };
   struct Knot {
     hand_held::Node node;
@@ -70,8 +67,8 @@ class HandHeldStream {
   };
   struct State {
     std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
-    std::vector<Knot> window;       ///< oldest first
-    std::int64_t first_node = 0;    ///< number of the oldest node
+    std::vector<Knot> window;       ///< nodes in the window, oldest first
+    std::int64_t first_node = 0;    ///< number of the oldest node in the window
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
@@ -84,16 +81,15 @@ class HandHeldStream {
     double acceleration_power_ratio =
         1.0;  ///< measured acceleration power of marginalised nodes, relative to the assumed power
     RestDetector::State rests;
-    std::int64_t reported_node = -1;  ///< node of the last reported estimate, and its covariance
+    std::int64_t reported_node = -1;  ///< node of the last reported estimate
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
-    std::size_t failures = 0;  ///< number of Gauss-Newton steps skipped because the system was not positive definite
-    /// Duration of the current clipped segment of each gyro element up to the last reported sample, and integral of the
-    /// rate's standard deviation.
+    std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
+    /// Duration of the current clipping of each gyro element up to the last reported sample, and the time integral of
+    /// the rate's standard deviation.
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_ambiguous =
-        0;  ///< number of segments in which an additional revolution could not be excluded
+    std::size_t revolutions_ambiguous = 0;       ///< number of segments that may contain an additional revolution
     std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
   };
 
@@ -102,25 +98,24 @@ class HandHeldStream {
 
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
-  /// Resets `state` to the state before the first sample, and reuses the allocated memory. The counters in `state` keep
-  /// their values.
+  /// Resets `state` to the state before the first sample, without allocating memory. The counters in `state` keep their
+  /// values.
   void restart(State& state) const;
 
-  /// Processes one sample, and computes the rate of the sample that is `lag_s` old. `known` contains the current clip
-  /// signs of the newest samples; the last entry belongs to `sample`. Samples of the window whose clip signs changed
-  /// are processed again. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills,
-  /// or if `wanted` is false. If `wanted` is false, no rate is computed, which saves most of the computation.
-  /// `repeated` describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time
-  /// when the sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`,
-  /// `out_of_range` (no signs) or `degenerate` (sensing directions that do not span the axes). On error `state` is
-  /// unchanged and `out` is empty.
+  /// Processes one sample, and computes the rate `out` of the sample that is `lag_s` old. The argument `known` contains
+  /// the current clip signs of the newest samples, up to `sample`. If the clip signs of a sample in the window changed,
+  /// push() processes the sample again. The output `out` is empty while the window fills, or if `wanted` is false. If
+  /// `wanted` is false, push() skips most of the computation. The argument `repeated` describes repeated readings
+  /// (sample and hold) of the log. A repeated reading counts once, at the time when the sensor took the reading (R95 of
+  /// rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no signs) or `degenerate`
+  /// (sensing directions that do not span the axes). On error, `state` is unchanged and `out` is empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 
-  /// Appends the rates of all samples that are not yet reported to `out`, oldest first.
+  /// Appends the unreported rates of the samples in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
   Status check_state(const State& state) const;
 
  private:

@@ -18,24 +18,25 @@
 
 namespace tumble {
 
-/// Parameters of ImuMerge.
+/// ImuMergeParams contains the parameters of ImuMerge.
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
-  std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< pose of each IMU in the common axes C; the first `count` are used
+  /// Pose of each IMU in the common axes C; only the first `count` entries are used.
+  std::array<Eigen::Isometry3d, kImus> T_CI{};
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
   double window_s = 4e-3;          ///< averaging time of the readings
-  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each unit's time offset; 0: not estimated
-  double gyro_range_rad_s = 1e3;   ///< readings at or above this value are saturated
+  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each IMU's time offset; 0: exact
+  double gyro_range_rad_s = 1e3;   ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// Directions along which the sensing elements of each unit measure, as found by RailPlaneFinder.
+  /// Sensing directions of each IMU's gyro and accelerometer, as RailPlaneFinder finds them.
   std::array<SensingDirections, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
@@ -54,36 +55,36 @@ struct ImuMergeParams {
   }
 };
 
-/// Fuses several IMUs (units) on one rigid body into one IMU, in common axes C, at the mean position of the units.
+/// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
 ///
-/// On a rigid body, the specific force is linear in position. The mean force of all units is therefore exactly the
-/// force at the mean position, without knowledge of the angular acceleration. If one unit disagrees while three or more
-/// units agree, the disagreeing unit is excluded from the sample. ImuMerge then corrects the mean force for the missing
-/// position, using the rate of the remaining units. While the body rotates, a Kalman filter estimates each unit's bias,
-/// scale, misalignment and time offset relative to the mean of all units. ImuMerge corrects significant time offsets;
-/// averaging reduces the remaining gyro errors. Averaging does not reduce accelerometer errors in fast rotation, where
-/// large opposite forces cancel in the mean. ForceErrors therefore estimates and corrects the accelerometer errors.
+/// On a rigid body, the specific force is linear in position. The mean force of all IMUs is therefore exactly the force
+/// at their mean position, for any angular acceleration. If one IMU disagrees while three or more IMUs agree, ImuMerge
+/// excludes the disagreeing IMU from the sample. ImuMerge then corrects the mean force for the shifted mean position,
+/// using the rate of the remaining IMUs. While the body rotates, a Kalman filter estimates each IMU's bias, scale,
+/// misalignment and time offset relative to the mean of all IMUs. ImuMerge corrects significant time offsets; averaging
+/// reduces the remaining gyro errors. In fast rotation, averaging does not reduce accelerometer errors, because large
+/// opposite forces cancel in the mean. ImuMerge therefore estimates and corrects the accelerometer errors.
 ///
-/// A unit with a saturated accelerometer is excluded from the mean force. A unit is also excluded if it disagrees with
-/// the remaining units and may have been saturated for a part of the sample. If most units may be saturated, the merged
-/// force is flagged as clipped. If the gyros are saturated, RateRecovery computes the rate from the force differences
-/// between three or more units. If RateRecovery fails, the merged sample has clip flags. With one or two units, a unit
-/// with a clipped gyro is excluded while another unit is unsaturated. If all gyros are saturated, the merged sample is
-/// flagged on every axis of C to which a clipped axis contributes. ImuMerge treats a reading as clipped if the reading
-/// is flagged or beyond the stated range. The caller must flag readings at lower saturation levels and at tilted planes
-/// beforehand (ClippingFinder).
+/// ImuMerge excludes an IMU with a saturated accelerometer from the mean force. ImuMerge also excludes an IMU that
+/// disagrees with the others and may have been saturated during a part of the sample. If most IMUs may be saturated,
+/// the merged force is flagged as clipped. If the gyros are saturated, ImuMerge computes the rate from the force
+/// differences between three or more IMUs. If the computation of the rate fails, the merged sample has clip flags. With
+/// one or two IMUs, ImuMerge excludes an IMU with a clipped gyro while the other IMU is unsaturated. If all gyros are
+/// saturated, ImuMerge flags every axis of C to which a clipped axis contributes. ImuMerge treats a reading as clipped
+/// if the reading is flagged or beyond the stated range. The caller must flag readings at lower saturation limits and
+/// at tilted planes beforehand (ClippingFinder).
 ///
-/// All decisions and estimates use means over window_s, whatever the sample rate of the IMUs. Bandwidth and tolerances
-/// therefore do not depend on the sample rate. Readings whose period is at least window_s are used unchanged. If an
-/// axis was saturated within the window, the mean of the axis is a lower bound.
+/// ImuMerge averages the readings over `window_s`. Bandwidth and tolerances therefore do not depend on the sample rate
+/// of the IMUs. If the sample period is at least `window_s`, ImuMerge uses the readings without averaging. If an axis
+/// was saturated within the window, the mean of the axis is a lower bound.
 ///
-/// A unit whose reading is not finite is treated as absent. A unit is frozen if its gyro or accelerometer repeats one
-/// reading while the readings of other units change. A unit is also frozen if its accelerometer repeats one reading
-/// while the direction of gravity rotates. A frozen unit is excluded until its readings have changed for
-/// `thawed_after_s`. A unit that disagrees for long (scale, axes, unit of measurement) is excluded permanently, as long
-/// as two other units remain. Repeated readings of a body at rest do not count as freezing or disagreement.
+/// ImuMerge treats an IMU whose reading is not finite as absent. An IMU is frozen if its gyro or accelerometer repeats
+/// one reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
+/// while the direction of gravity rotates. ImuMerge excludes a frozen IMU until its readings have changed for
+/// `thawed_after_s`. ImuMerge permanently excludes an IMU that disagrees for long (scale, axes, unit of measurement),
+/// as long as two other IMUs remain. Repeated readings of a body at rest do not count as frozen.
 ///
-/// ImuMerge does not model clocks of different rates, or an error that all units share.
+/// ImuMerge assumes that all clocks have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
@@ -98,22 +99,22 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// Returns the ratio of the measured force differences between units to the differences expected from rotation and
-  /// positions. The ratio is 1 if forces and rotation agree, and -1 if the sign of the accelerometers is inverted. The
-  /// result is empty until the body has rotated enough.
+  /// Returns the ratio of the measured force differences between IMUs to the differences expected from rotation and
+  /// positions. The ratio of force differences is 1 if forces and rotation agree, and -1 if the sign of the
+  /// accelerometers is inverted. The result is empty until the body has rotated enough.
   static std::optional<double> lever_arm_agreement(const State& state);
 
-  /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. While all units are
-  /// frozen, step() merges their readings unchanged. Returns `ok` if at least one unit is not frozen.
+  /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are
+  /// frozen, step() merges their readings unchanged.
   Status verdict(const State& state) const;
 
-  /// Returns the position of the merged IMU in C.
+  /// Returns the position of the merged IMU in the common axes C [m].
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
-  /// Processes simultaneous samples of all units; the time stamp of the first unit counts. `merged` is the mean over
-  /// the window, in axes C, if the samples complete a window. `merged` is empty while the window is incomplete. Returns
-  /// `too_few` if `samples` does not contain `count` samples, or if none of the samples is finite. On error the state
-  /// is unchanged and `merged` is empty. Cost: O(count), no allocation.
+  /// Processes simultaneous samples of all IMUs, with the time stamp of the first IMU. The output `merged` is the mean
+  /// over the averaging window in axes C, or empty while the window is incomplete. Returns `too_few` if `samples` does
+  /// not contain `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is
+  /// empty. Cost: O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:
@@ -121,7 +122,8 @@ class ImuMerge {
 
   using UnitMask = std::array<bool, kImus>;
 
-  using Readings = std::array<ImuSample, kImus>;  ///< means over a window; flags of the axes that were saturated in it
+  /// Mean readings over a window, with flags of the axes that were saturated in the window.
+  using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;
   ImuSample merge(State& state) const;

@@ -15,20 +15,20 @@
 
 namespace tumble {
 
-/// Parameters of ImuPlausibility.
+/// ImuPlausibilityParams contains the parameters of ImuPlausibility.
 struct ImuPlausibilityParams {
   double gravity_m_s2 = 9.80665;
-  double window_s = 0.2;          ///< duration of a window in which rotation of the force and of the gyro are compared
-  double reading_s = 0.02;        ///< averaging time of readings
+  double window_s = 0.2;          ///< window over which rotations of force and gyro are compared
+  double reading_s = 0.02;        ///< averaging time of the readings
   double steady_share = 0.12;     ///< maximum relative change of the force's magnitude in a window
-  double near_share = 0.25;       ///< maximum relative difference of the force from gravity for comparing directions
-  double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are not compared
+  double near_share = 0.25;       ///< maximum relative difference of force and gravity for comparing directions
+  double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
   double gap_max_s = 0.1;         ///< a longer gap restarts the window
 
   using Expert = ImuPlausibilityExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -46,42 +46,41 @@ struct ImuPlausibilityParams {
   }
 };
 
-/// Checks whether the readings of an IMU are plausible: units, axes, signs, and frozen sensors.
+/// Detects implausible readings of an IMU: wrong units, axes or signs, and frozen sensors.
 ///
 /// If the magnitude of the force is constant for a fifth of a second, the force is probably gravity. Gravity has the
-/// magnitude g, and its direction in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). Here u is the
-/// direction of the force, and R is the rotation of the sensor from t to t + T. A constant force of another magnitude
-/// than g is not gravity, but for example the centripetal force of a spin in flight. The direction of a force is
-/// compared only if the magnitude of the force is close to g. Windows with a saturated gyro are not compared.
+/// magnitude g, and its direction in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u is
+/// the direction of the force, and R is the rotation of the sensor from t to t + T. A constant force of another
+/// magnitude than g has another cause, for example the centripetal force of a spin in flight. ImuPlausibility compares
+/// directions only if the force is close to g and the gyro is unsaturated.
 ///
-/// ImuPlausibility regresses the rotation of the force on the rotation of the gyro. The slope of the regression is 1
-/// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are swapped, the slope of the
-/// regression is about 0. Pushes, and a force along a rod, scatter the measured rotations about the regression line but
-/// change its slope little. Rotation about some axes does not reveal swapped axis labels. For example, a sphere that
-/// rolls along x = y does not reveal that x and y are swapped. If axes are swapped, the correct axis labels leave a
-/// smaller residual. ImuPlausibility therefore compares the residuals of all possible axis labels. A force that does
-/// not rotate although the body rotates is detected separately.
+/// ImuPlausibility fits a regression line to the rotation of the force as a function of the rotation of the gyro. The
+/// slope of the regression is 1 for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are
+/// swapped, the slope of the regression is about 0. Pushes, and a force along a rod, scatter the measured rotations
+/// about the regression line but change its slope little. Rotation about some axes does not reveal swapped axis labels.
+/// For example, a sphere that rolls along x = y does not reveal that x and y are swapped. The correct axis labels leave
+/// the smallest residual, so ImuPlausibility compares the residuals of all possible axis labels. ImuPlausibility
+/// separately detects a force that is constant although the body rotates.
 ///
-/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit for long enough. The repetition must last
-/// a second, and ten times longer than any earlier repetition. The rule of repeated readings applies only to a sensor
-/// whose readings have changed before. A sensor whose readings often repeat for long is not reported as frozen (coarse
-/// quantisation at rest, a simulation without noise). A gyro whose readings never changed is frozen if gravity rotates,
-/// or if forces differ from gravity for long enough. An accelerometer that always reads 0 is frozen if the gyro
-/// measures motion.
+/// ImuPlausibility reports a gyro or an accelerometer as frozen if one reading repeats bit for bit for long enough. The
+/// repeated reading must last at least a second, and ten times longer than any earlier repeated reading.
+/// ImuPlausibility tests for repeated readings only if the readings of the sensor have changed before. Sensors whose
+/// readings often repeat do not count as frozen, for example sensors with coarse quantisation at rest. ImuPlausibility
+/// reports a gyro with constant readings as frozen if gravity rotates, or if forces differ from gravity for long
+/// enough. ImuPlausibility reports an accelerometer that always reads 0 as frozen if the gyro measures motion.
 ///
-/// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate. If
-/// the body is pushed all the time, ImuPlausibility detects no error. ImuPlausibility does not detect an accelerometer
-/// whose three axes are all inverted. With several IMUs, ImuMerge::lever_arm_agreement() detects inverted
-/// accelerometers.
+/// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate.
+/// ImuPlausibility detects no error while the body is pushed. ImuPlausibility does not detect an accelerometer whose
+/// three axes are all inverted. With several IMUs, ImuMerge::lever_arm_agreement() detects inverted accelerometers.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
 
-  /// Repetition describes how long a sensor (gyro or accelerometer) has repeated one reading.
+  /// Repetition describes how long a gyro or accelerometer has repeated one reading.
   struct Repetition {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double repeated_s = 0.0, longest_s = 0.0, changing_s = 0.0;
-    double frozen_s = 0.0;  ///< 0: never
+    double frozen_s = 0.0;  ///< duration for which the sensor was frozen; 0: never frozen
     bool operator==(const Repetition&) const = default;
   };
   struct State {
@@ -91,7 +90,7 @@ class ImuPlausibility {
     Eigen::Quaterniond gyro_rotation = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool window_started = false, force_is_constant = false;
-    bool in_range = true;  ///< whether all samples of the window and average are within the range
+    bool in_range = true;  ///< whether all samples of the window are within the gyro's range
     double force_sum_m_s2 = 0.0, windows = 0.0;
     double non_rest_force_s = 0.0;                       ///< time with forces that exclude rest
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each possible assignment of axis labels
@@ -106,10 +105,10 @@ class ImuPlausibility {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ImuPlausibility(const Params& params);
 
-  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
+  /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Returns the mean magnitude of a constant force as a fraction of gravity, or 1 while unknown.
+  /// Returns the mean magnitude of constant forces divided by gravity, or 1 while unknown.
   double force_ratio(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
   double unexplained_rotation_ratio(const State& state) const;
@@ -117,15 +116,17 @@ class ImuPlausibility {
   double rotation_slope(const State& state) const;
   /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
   /// gyro of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes that are mistaken for gravity
-  /// reduce the correlation to a value between 0 and 1. Returns a correlation of 1 while the rotation is too small.
+  /// reduce the correlation to a value between 0 and 1. The function returns 1 while the rotation is too small for a
+  /// decision.
   double rotation_agreement(const State& state) const;
-  /// Returns the force's rotation as a fraction of the gyro's rotation, or 1 while unknown. The fraction includes
+  /// Returns the force's rotation divided by the gyro's rotation, or 1 while unknown. The rotation ratio includes
   /// windows in which the force did not rotate.
   double force_rotation_ratio(const State& state) const;
-  /// Returns the axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
-  /// (I22).
+  /// Returns axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
+  /// (I22). The result is empty if the current axis labels fit.
   std::optional<AxisLabels> better_axis_labels(const State& state) const;
-  /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if neither was frozen.
+  /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if both sensors always
+  /// worked.
   double frozen_s(const State& state) const;
   /// Returns `out_of_range` with the name of the implausible quantity, or `ok`.
   Status verdict(const State& state) const;
@@ -133,7 +134,7 @@ class ImuPlausibility {
  private:
   /// Returns whether the force rotated far enough, in enough windows, for a decision.
   bool rotated_enough(const State& state) const;
-  /// Returns whether the gyro is inverted, or whether a gyro scaled by the regression slope leaves a far smaller
+  /// Returns whether the gyro is inverted or has a wrong scale, so that the regression slope leaves a far smaller
   /// residual.
   bool fits_better(const State& state) const;
   void process_average(State& state) const;

@@ -11,16 +11,14 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body in flight, in contact or hand-held over a whole recording. RateSmoother
-/// estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates the rates again where
-/// RegimeEvidence indicates that the body was hand-held while the gyro clipped. The function mix_rates() combines the
-/// rates of RateSmoother and HandHeldSmoother by the probability of hand-held motion. HandHeldSmoother runs only if its
-/// rates can change the result. RegimeStream is the streaming form of RegimeSmoother.
+/// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. RateSmoother
+/// estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates the rates again where the
+/// body was probably hand-held while the gyro clipped. RegimeSmoother combines the two rate estimates by the
+/// probability of hand-held motion (RegimeEvidence). RegimeStream is the causal form of RegimeSmoother.
 ///
-/// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment. The
-/// smallest probability is used because a hand may release the body during the segment. Flight then determines the
-/// nearby rates, but provides no information about hand-held motion a second later. Additional IMUs determine the rate
-/// in any kind of motion, so HandHeldSmoother does not run if there are additional IMUs.
+/// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment.
+/// RegimeSmoother uses the smallest probability because a hand may release the body during the segment. Additional IMUs
+/// determine the rate in any kind of motion, so RegimeSmoother omits HandHeldSmoother if there are additional IMUs.
 class RegimeSmoother {
  public:
   struct Params {
@@ -28,9 +26,9 @@ class RegimeSmoother {
     RegimeEvidence::Params evidence;
     HandHeldSmoother::Params hand_held;
     double carried_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldSmoother runs
-    double near_s = 0.1;        ///< clipped samples within this time of each other form one segment
+    double near_s = 0.1;        ///< clipped samples closer together than this form one segment
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -45,29 +43,28 @@ class RegimeSmoother {
   };
   struct Report {
     RateReport rate;
-    bool judged = false;                  ///< probabilities were estimated; the following members are valid
-    RegimeProbabilities probabilities{};  ///< mean probabilities over all samples
-    double hand_held_probability_max =
-        0.0;                              ///< largest probability of hand-held motion in a segment of clipped samples
-    bool hand_held_smoother_ran = false;  ///< HandHeldSmoother ran successfully; its report follows
+    bool judged = false;                     ///< whether RegimeSmoother estimated the following probabilities
+    RegimeProbabilities probabilities{};     ///< mean probabilities over all samples
+    double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
+    bool hand_held_smoother_ran = false;     ///< whether HandHeldSmoother ran successfully; its report follows
     HandHeldSmoother::Report hand_held;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeSmoother(const Params& params);
 
-  /// Computes one RateState per sample. Returns the status of RateSmoother; on error `rates` is empty. If
+  /// Estimates one RateState per sample. Returns the status of RateSmoother; on error, `rates` is empty. If
   /// HandHeldSmoother fails, `rates` contains the result of RateSmoother.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }
-  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate. HandHeldSmoother does not run
-  /// with additional IMUs, and `report.judged` is false.
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). If there are additional IMUs,
+  /// HandHeldSmoother does not run and `report.judged` is false.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;
 
-  /// Replaces `rates`, the result of RateSmoother, by the combination with the rates of HandHeldSmoother. The report of
-  /// RateSmoother must be in `report.rate`.
+  /// Combines `rates`, the result of RateSmoother, with the rates of HandHeldSmoother, in place. The argument
+  /// `report.rate` must contain the report of RateSmoother.
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:

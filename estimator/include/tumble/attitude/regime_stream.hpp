@@ -13,30 +13,30 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream estimates
-/// the rates under the assumption of flight and contact, and detects the saturation levels. HandHeldStream estimates
-/// the rates again where RegimeEvidence indicates hand-held motion while the gyro clips. The function mix_rates()
-/// combines the rates of RateStream and HandHeldStream.
+/// the rates under the assumption of flight and contact, and detects the saturation limits. HandHeldStream estimates
+/// the rates again where the body is probably hand-held while the gyro clips. RegimeStream combines the two rate
+/// estimates by the probability of hand-held motion.
 ///
-/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. Each
-/// probability depends on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
-/// of HandHeldStream is the smallest probability of hand-held motion in the segment of clipped samples, as in
-/// RegimeSmoother. While RateStream resets its calibration in more than half of the steps of its lag, clipped samples
-/// do not change the probabilities. HandHeldStream is paused while the probability of hand-held motion is below
-/// `carried_min`, and then restarts. Rates of unclipped samples are those of RateStream.
+/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The
+/// probabilities depend on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
+/// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
+/// RateStream resets its calibration in more than half of the steps of its lag, clipped samples do not change the
+/// probabilities. HandHeldStream pauses while the probability of hand-held motion is below `carried_min`, and then
+/// restarts. RegimeStream reports RateStream's rate for each unclipped sample.
 ///
-/// RateStream fits its clipped rates and all its angular accelerations to the measured force. Far from the centre of
-/// mass, fitted accelerations would explain gravity in gentle hand-held motion as a force of the lever arm.
-/// RegimeEvidence therefore receives the time derivative of the rates instead of RateStream's angular acceleration.
+/// RateStream fits angular accelerations to the measured force, which can wrongly explain gravity in gentle hand-held
+/// motion. RegimeStream therefore estimates the probabilities with the time derivative of the rates instead of
+/// RateStream's angular accelerations.
 class RegimeStream {
  public:
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
-    HandHeldStream::Params hand_held;  ///< `period_s` and `lag_s` are replaced by those of `rate`
+    HandHeldStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
     double carried_min = 0.02;         ///< minimum probability of hand-held motion for which HandHeldStream runs
-    double near_s = 0.1;               ///< clipped samples within this time of each other form one segment
+    double near_s = 0.1;               ///< clipped samples closer together than this form one segment
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -49,7 +49,7 @@ class RegimeStream {
             {"near_s", "s", 0.0, 10.0, "clipped samples that are less than this time apart belong to one segment"});
     }
   };
-  /// Time and hand-held probability of a reported sample.
+  /// ReportedProbability is the probability of hand-held motion at the time of a reported sample.
   struct ReportedProbability {
     TimeNs time_ns = 0;
     double hand_held = 0.0;
@@ -63,11 +63,11 @@ class RegimeStream {
     std::size_t reported = 0;          ///< number of reported samples
     std::size_t combined_samples = 0;  ///< number of reported samples combined with HandHeldStream
     std::size_t starts = 0;            ///< number of starts of HandHeldStream
-    std::size_t rig_resets = 0;        ///< last value of RateStream's counter
+    std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
     double resets = 0.0;               ///< resets of RateStream's calibration, decaying over its lag
-    bool hand_held_running = false;    ///< HandHeldStream is running
-    /// Samples of the last clipped segment within `near_s`, except samples followed by a smaller probability of
-    /// hand-held motion. The oldest entry of `near` has the smallest probability.
+    bool hand_held_running = false;    ///< whether HandHeldStream is running
+    /// Samples that may determine the smallest probability of hand-held motion within the last `near_s`. The oldest
+    /// entry of `near` has the smallest probability.
     std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
@@ -79,21 +79,20 @@ class RegimeStream {
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Processes one sample like RateStream::push, and combines the rate with that of HandHeldStream.
+  /// Processes one sample like RateStream::push(), and combines the rate with the rate of HandHeldStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// Appends the rates of RateStream::flush to `out`, combined with the rates of HandHeldStream by the current
-  /// probabilities.
+  /// Appends the rates of the samples in the window to `out`, combined by the current probabilities.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }
   const Params& params() const { return params_; }
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
   Status check_state(const State& state) const;
 
  private:

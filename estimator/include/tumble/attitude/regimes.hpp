@@ -12,9 +12,9 @@
 
 namespace tumble {
 
-/// RegimeProbabilities contains the probabilities of one sample's kind of motion (regime). The kinds of motion are free
-/// flight (zero specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about
-/// gravity). The three probabilities of RegimeProbabilities sum to 1.
+/// RegimeProbabilities contains the probabilities of three kinds of motion at one sample, which sum to 1. Free flight
+/// has zero specific force at the centre of mass, contact has any force, and hand-held motion has a bounded
+/// acceleration about gravity.
 struct RegimeProbabilities {
   double flight = 0.0, contact = 0.0, hand_held = 0.0;
 };
@@ -22,16 +22,16 @@ struct RegimeProbabilities {
 /// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
 ///
 /// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
-/// arm. Here f is the specific force, w the rate, a the angular acceleration and r the lever arm. The residual force e
-/// is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In contact,
-/// the residual force e can have any magnitude; the logarithm of the magnitude has a flat density. A Markov chain
-/// connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or caught.
-/// The Markov chain prevents an impact or a quiet moment of rolling from being mistaken for hand-held motion. Readings
-/// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
-/// probabilities.
+/// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. The residual
+/// force e is zero in flight. In hand-held motion, the residual force is gravity plus the acceleration of a hand, in
+/// any direction. In contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform
+/// prior. A Markov chain connects the samples: flight and contact alternate several times per second, but a body is
+/// rarely thrown or caught. The Markov chain prevents RegimeEvidence from mistaking an impact or a quiet moment of
+/// rolling for hand-held motion. Readings within `memory_s` are correlated and count as one reading. Readings without
+/// rotation do not change the probabilities.
 ///
-/// RegimeEvidence needs no attitude, so the probabilities are available before HandHeldSmoother runs. RegimeEvidence
-/// does not model a body that hangs on a rope, buoyancy, or aerodynamic forces above `flight_m_s2`.
+/// RegimeEvidence does not use the attitude, so its probabilities are available before HandHeldSmoother runs.
+/// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_m_s2` acts on the body.
 class RegimeEvidence {
  public:
   struct Params {
@@ -42,11 +42,11 @@ class RegimeEvidence {
     double grip_m = 0.05;              ///< distance of the IMU from the hand
     double contact_max_m_s2 = 1000.0;  ///< largest contact force; the smallest contact force is 1 m/s^2
     double memory_s = 0.05;
-    double rest_rate_rad_s = 0.5;  ///< readings below this rate do not change the probabilities
-    double contacts_hz = 5.0;      ///< rate of changes between flight and contact
-    double throws_hz = 0.02;       ///< rate of changes between hand-held motion and flight or contact
+    double rest_rate_rad_s = 0.5;  ///< readings with a lower rate do not change the probabilities
+    double contacts_hz = 5.0;      ///< mean number of changes between flight and contact per second
+    double throws_hz = 0.02;       ///< mean number of throws and catches per second
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
@@ -76,15 +76,15 @@ class RegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// Computes the probabilities of flight, contact and hand-held motion of each sample. Cost: O(N).
-  /// `rates` contains the angular velocity of each sample, from a smoother that assumes flight and contact.
-  /// `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes.
-  /// Returns `ok`, `empty` without samples, or `out_of_range` if `rates` does not have one element per sample.
+  /// Estimates the probabilities of flight, contact and hand-held motion of each sample. Cost: O(N). The argument
+  /// `rates` contains the angular velocity of each sample, from a smoother that assumes flight and contact. The
+  /// argument `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if
+  /// there are no samples, or `out_of_range` if `rates` does not have one element per sample.
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeProbabilities>& out) const;
 
   /// Returns the probabilities after one sample, given the probabilities `before`, which are `dt_s` older. Cost: O(1).
-  /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes.
+  /// The argument `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes.
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                            const RateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
                            const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2) const;
@@ -95,8 +95,8 @@ class RegimeEvidence {
   Params params_;
 };
 
-/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
-/// of the more probable estimate and the covariance of the mixture of both estimates.
+/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The combined rate has
+/// the mean of the more probable estimate and the covariance of the mixture of both estimates.
 RateState mix_rates(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

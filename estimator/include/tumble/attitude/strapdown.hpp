@@ -10,15 +10,15 @@
 
 namespace tumble {
 
-/// Integrates the gyro to an attitude, q <- q Exp(w dt), from a start levelled by the accelerometer. The integration is
-/// exact if the rate is constant in body axes during each sample. Strapdown estimates no bias and makes no correction,
-/// so the attitude drifts.
+/// Integrates the gyro to an attitude, q <- q Exp(w dt), starting with the tilt that the accelerometer measures. The
+/// integration is exact if the rate is constant in body axes during each sample. The attitude of Strapdown drifts,
+/// because gyro biases and later force readings are ignored.
 class Strapdown {
  public:
   struct Params {
-    double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
+    double gap_max_s = 1.0;  ///< maximum time between samples; a longer gap is an error
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s,
@@ -36,16 +36,16 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample levels the attitude
-  /// (yaw 0) by its specific force. On error the state is unchanged.
+  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
+  /// its specific force, with yaw 0. On error, the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:
   Params params_;
 };
 
-/// Computes the attitude with yaw 0 whose z axis (up) agrees with a specific force measured at rest, in sensor axes.
-/// Returns `degenerate` if the force is below 1e-6 m/s^2.
+/// Computes the attitude with yaw 0 from a specific force at rest in sensor axes, which points upwards. Returns
+/// `degenerate` if the force is below 1e-6 m/s^2.
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

@@ -12,23 +12,24 @@
 
 namespace tumble {
 
-/// Parameters of TumbleAttitude: errors of the gyro, and extent of the body's motion.
+/// TumbleAttitudeParams contains the parameters of TumbleAttitude: gyro errors, and the amount of body motion.
 struct TumbleAttitudeParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk, including unmodelled errors
   double rate_error_sqrts = 4e-3;             ///< angle random walk per rad/s of rate, from scale and timing errors
-  double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
+  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
   double velocity_m_sqrts = 1.0;              ///< standard deviation of the mean velocity over 1 s of motion
   double displacement_m_sqrts = 0.3;          ///< standard deviation of the mean displacement over 1 s
   double displacement_tau_s = 10.0;           ///< time constant with which the displacement decays to zero
   double motion_tau_s = 3.0;                  ///< time constant of the body's velocity and displacement
-  double radius_m = 0.0;                      ///< radius of a sphere rolling on a level floor; 0: not a sphere
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< lever arm from the centre to the IMU, sensor axes
+  double radius_m = 0.0;                      ///< radius of a sphere that rolls on a level floor; 0: not a sphere
+  Eigen::Vector3d lever_arm_m =
+      Eigen::Vector3d::Zero();  ///< lever arm from the body's centre to the IMU, in sensor axes
 
   using Expert = TumbleAttitudeExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -60,35 +61,36 @@ struct TumbleAttitudeParams {
 
 /// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
 ///
-/// TumbleAttitude integrates the gyro to an attitude, exactly for a rate that is constant over a sample. The specific
-/// force, rotated to the world, is integrated to a horizontal velocity and displacement, which decay slowly. A tilt
+/// TumbleAttitude integrates the gyro to an attitude, exactly for a rate that is constant over a sample. TumbleAttitude
+/// integrates the specific force in world axes to a horizontal velocity and displacement, which decay slowly. A tilt
 /// error would let the integrated velocity and displacement grow without bound. Weak pseudo-measurements of zero
-/// velocity and zero displacement therefore correct the tilt and the gyro bias. Accelerations that later reverse
+/// velocity and zero displacement therefore correct the tilt and the gyro bias. Accelerations in alternating directions
 /// average out. A Kalman filter of nine states (tilt, bias, velocity, displacement) processes the pseudo-measurements
 /// every `node_s`. The Kalman filter acts like the low-pass of VQF in an inertial frame, with a corner frequency that
-/// adapts to the sensor's errors. When the body is at rest, its velocity and rate are zero up to noise. At rest, the
-/// gyro measures its bias and the attitude is kept constant, so that noise changes neither tilt nor heading.
+/// adapts to the sensor's errors. When the body is at rest, its velocity and rate are zero up to noise. At rest,
+/// TumbleAttitude measures the gyro bias and keeps the attitude constant, so that noise changes neither tilt nor
+/// heading.
 ///
-/// The extent of the motion is not known in advance: a few centimetres, or the way down a hill. A large velocity or
-/// displacement is accepted as real motion if the tilt variance does not explain the excess over the assumed standard
-/// deviation. The assumed standard deviation of velocity or displacement then increases for `motion_tau_s`.
+/// The size of the motion is not known in advance: a few centimetres, or the way down a hill. TumbleAttitude accepts a
+/// large velocity or displacement as real motion if the tilt variance cannot explain the value. After accepting a large
+/// motion, TumbleAttitude increases the assumed standard deviation of velocity or displacement for `motion_tau_s`.
 ///
 /// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
-/// rolling constraint then predicts the integral of the specific force, so that tilt and bias can be estimated without
-/// the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
-/// corrections pause until the velocity fits the rolling constraint again, for at most slip_timeout_s.
+/// rolling constraint predicts the integral of the specific force, which determines tilt and bias without the
+/// derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
+/// TumbleAttitude pauses its corrections for at most `slip_timeout_s`.
 ///
-/// Readings of a fast IMU are averaged over reading_s before they are processed. Between two averages, the attitude is
-/// extrapolated. In a gap (longer than `gap_least_s`), the rate is interpolated and the velocity is kept, with
-/// increased variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap
-/// increases the tilt's standard deviation to gap_lost_tilt_rad, the linearisation of the Kalman filter is no longer
-/// valid. A coarse alignment then searches for the vertical in parallel. The covariance keeps its value after the gap
-/// until the alignment succeeds. If the Kalman filter and the coarse alignment disagree, the filter restarts from the
-/// alignment.
+/// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
+/// In a gap longer than `gap_least_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
+/// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
+/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. After a
+/// long gap, a coarse alignment estimates the tilt in parallel to the Kalman filter. Until the coarse alignment
+/// succeeds, the covariance is constant. If the Kalman filter and the coarse alignment disagree, the filter restarts
+/// from the alignment.
 ///
-/// TumbleAttitude does not model a heading reference, or accelerometer bias and scale, which cause the remaining tilt
-/// error at rest.
+/// TumbleAttitude has no heading reference. TumbleAttitude assumes an accelerometer without bias and scale errors,
+/// which would cause a tilt error at rest.
 class TumbleAttitude {
  public:
   using Params = TumbleAttitudeParams;
@@ -96,16 +98,17 @@ class TumbleAttitude {
 
   explicit TumbleAttitude(const Params& params);
 
-  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample levels the attitude
-  /// (yaw 0). Each later sample is integrated, and one sample per `node_s` corrects the state. On error the state is
-  /// unchanged.
+  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
+  /// its specific force, with yaw 0. Each later sample is integrated, and one sample per `node_s` corrects the state.
+  /// On error, the state is unchanged.
   Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
-  /// Processes a sample whose rate was recovered from saturation, with the covariance of the rate's error in sensor
-  /// axes. A rate covariance of zero marks a measured rate. The error of a recovered rate has the correlation time
-  /// `recovered_tau_s`. Returns `out_of_range` if the covariance is not finite or has a negative variance.
+  /// Processes a sample whose rate was recovered from saturation. The argument `rate_covariance_rad2_s2` is the
+  /// covariance of the rate error in sensor axes, or zero for a measured rate. The error of a recovered rate has the
+  /// correlation time `recovered_tau_s`. Returns `out_of_range` if the covariance is not finite or has a negative
+  /// variance.
   Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
 
-  /// Returns the covariance of the attitude error at the last node; the error is defined as in AttitudeState.
+  /// Returns the covariance of the attitude error at the last node, with the error as defined in AttitudeState.
   static Eigen::Matrix3d attitude_covariance_rad2(const State& state);
 
  private:

@@ -10,13 +10,12 @@
 
 namespace tumble {
 
-/// VqfExpertParams contains the parameters of Vqf for which the authors of the publication use one value for all
-/// devices.
+/// VqfExpertParams contains the VQF parameters for which the authors use one value for all devices.
 struct VqfExpertParams {
-  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
-  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: limit of the bias uncertainty at rest
+  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< bias uncertainty in motion: 0.1 deg/s
+  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< bias uncertainty at rest: 0.03 deg/s
   double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
-  double rest_tau_s = 0.5;                     ///< time constant of the rest detector's low-pass
+  double rest_tau_s = 0.5;                     ///< time constant of the low-pass filter for detecting rest
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -32,23 +31,23 @@ struct VqfExpertParams {
   }
 };
 
-/// Parameters of Vqf, named as in the publication.
+/// VqfParams contains the parameters of Vqf, named as in the publication.
 struct VqfParams {
-  double tau_s = 3.0;  ///< time constant of the low-pass on the specific force
+  double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
-  bool motion_bias_estimation = true;         ///< both off: the authors' basic filter
-  double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
-  double bias_forgetting_s = 100.0;           ///< time in which the variance grows to (0.1 deg/s)^2
-  double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest accepted bias
+  bool motion_bias_estimation = true;  ///< without bias estimation at rest and in motion: basic filter of the authors
+  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
+  double bias_forgetting_s = 100.0;           ///< time in which the bias variance grows to (0.1 deg/s)^2
+  double bias_clip_rad_s = 3.4907e-2;         ///< largest accepted bias: 2 deg/s
   double rest_time_s = 1.5;
-  double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s: maximum difference of the gyro from its low-pass at rest
-  double rest_force_m_s2 = 0.5;        ///< maximum distance of the force from the low-passed force at rest
+  double rest_rate_rad_s = 3.4907e-2;  ///< maximum difference of gyro and low-passed gyro at rest: 2 deg/s
+  double rest_force_m_s2 = 0.5;        ///< maximum distance of force and low-passed force at rest
   double gap_max_s = 1.0;
 
   using Expert = VqfExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,
@@ -77,20 +76,22 @@ struct VqfParams {
   }
 };
 
-/// Estimates attitude by the versatile quaternion filter (VQF) from gyro and accelerometer. Source: Laidig and Seel,
+/// Estimates attitude from gyro and accelerometer with the versatile quaternion filter (VQF). Source: Laidig and Seel,
 /// "VQF", Information Fusion 91, 2023.
 ///
-/// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass in frame N
-/// averages out the acceleration of a bounded motion. The averaged force levels frame N in the world W by the smallest
-/// rotation. A Kalman filter of three states estimates the bias of the gyro. The bias filter measures the bias by the
-/// low-passed gyro at rest, and by the rate of the levelling in motion. Vqf does not model a heading reference, bias
-/// about the vertical in motion, or adaptation to the magnitude of the acceleration.
+/// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass filter in frame
+/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of frame N, and Vqf
+/// rotates N by the smallest rotation that aligns its vertical with the vertical of the world W. A Kalman filter of
+/// three states estimates the gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the
+/// vertical correction measures the bias. Vqf estimates neither the heading nor, in motion, the bias about the
+/// vertical.
 class Vqf {
  public:
   using Params = VqfParams;
   struct State {
-    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< the estimate, q_WN * q_NI
-    Eigen::Quaterniond q_NI = Eigen::Quaterniond::Identity();  ///< gyro only, bias removed
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< estimated attitude, q_WN * q_NI
+    Eigen::Quaterniond q_NI =
+        Eigen::Quaterniond::Identity();  ///< attitude from the gyro only, with the bias subtracted
     Eigen::Quaterniond q_WN = Eigen::Quaterniond::Identity();
     Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
     Eigen::Matrix3d bias_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
@@ -108,9 +109,9 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample levels the attitude
-  /// (yaw 0). Each later sample is integrated and corrects the state. If the force is below 1e-6 m/s^2, the sample only
-  /// integrates the gyro. On error the state is unchanged.
+  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
+  /// its specific force, with yaw 0. Each later sample is integrated and corrects the attitude. If the force is below
+  /// 1e-6 m/s^2, step() integrates the gyro without a correction. On error, the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -9,13 +9,13 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// fields_by_name.hpp finds the fields of a `Params` by the names that users write on a command line, in a table or as
+/// Functions in fields_by_name.hpp find a parameter of a `Params` struct by its name, for command lines, tables and
 /// Python keywords.
 namespace tumble {
 
 namespace detail {
 
-/// Visitor that prepends the prefixes of the enclosing groups to the name of each field.
+/// PrefixedNameVisitor prepends the prefixes of nested groups to the name of each parameter.
 template <class Each>
 class PrefixedNameVisitor {
  public:
@@ -40,15 +40,16 @@ class PrefixedNameVisitor {
 
 }  // namespace detail
 
-/// Calls `each(name, value, field)` for each field of `params` (const or not), in order. `value` is a number (concept
-/// `Number`) or a whole Vector3d. `name` is a std::string that starts with the prefixes of the enclosing groups.
+/// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. The argument
+/// `value` is the parameter's value, a number or a Vector3d. The argument `name` is a std::string that starts with the
+/// prefixes of the parameter's groups.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
   detail::PrefixedNameVisitor<Each> visitor(each);
   std::remove_cv_t<Params>::fields(params, visitor);
 }
 
-/// Returns whether `name` matches one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
+/// Returns whether `name` equals one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
 template <class Text>
 bool matches_any(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {

@@ -10,47 +10,46 @@
 
 #include "tumble/common/status.hpp"
 
-/// A `Params` struct describes each of its numbers in one place, the function `fields`. Range checks, tables, readers
-/// and comparisons are visitors of the function `fields`.
+/// Each `Params` struct describes its parameters once, in a static member function template `fields`. Range checks,
+/// tables and file readers call `fields` with a visitor to process every parameter.
 ///
-/// A `Params` struct has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The
-/// function `fields` calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its
-/// number) and Vector3d. For each nested `Params`, the function `fields` calls `visit.group("prefix_", p.member)`. The
-/// type `Self` may be const.
+/// The signature is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`, and `Self` may
+/// be const. The function `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of
+/// the struct. The function `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct.
 ///
-/// Poses, planes and earlier calibrations are not fields, because users do not set poses, planes and calibrations as
-/// numbers. The bounds of a Field are plain numbers, so constructors check relations between fields separately.
+/// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter poses and planes as
+/// plain numbers. The bounds of a Field are constants. Constructors check conditions that relate two parameters.
 namespace tumble {
 
-/// FieldRank determines the order of fields in a listing. The rank `basic` marks the numbers that users usually set
-/// before any others.
+/// FieldRank sets the order of parameters in a listing. The rank `basic` marks the parameters that users usually set
+/// first.
 enum class FieldRank : std::uint8_t { basic, advanced };
 
-/// Field describes one number of a `Params` struct. All strings are static.
+/// Field describes one parameter of a `Params` struct. All strings in a Field must have static lifetime.
 struct Field {
-  const char* name;     ///< with its unit as suffix; used in tables, suites and messages
-  const char* unit;     ///< "1" if dimensionless
-  double low, high;     ///< inclusive bounds; for a vector, the bounds of each coordinate
-  const char* meaning;  ///< one sentence: effect and source
+  const char* name;     ///< name with its unit as suffix, used in tables and messages
+  const char* unit;     ///< unit; "1" if dimensionless
+  double low, high;     ///< inclusive bounds; for a vector, of each coordinate
+  const char* meaning;  ///< one sentence that states the parameter's effect and source
   FieldRank rank = FieldRank::advanced;
 };
 
-/// Returns a Field for a boolean switch.
+/// Returns the description of a boolean parameter.
 inline Field switch_field(const char* name, const char* meaning, FieldRank rank = FieldRank::advanced) {
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
-/// Limit of a field whose value only needs to be finite.
+/// Bound for parameters without a limit: the largest finite number.
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// Number is satisfied by the types that a visitor receives as a number, as opposed to a vector or a nested `Params`.
+/// The concept Number is satisfied by arithmetic and enumeration types, which a visitor receives as numbers.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// OutOfBounds describes the first field whose value is not allowed. `names` contains the prefixes of the field's
-/// groups, followed by the field's name.
+/// OutOfBounds describes the first parameter with an invalid value. The array `names` contains the prefixes of the
+/// parameter's groups, followed by the parameter's name.
 struct OutOfBounds {
   std::array<const char*, 8> names{};
   std::size_t depth = 0;
@@ -58,8 +57,8 @@ struct OutOfBounds {
   Status status;
 };
 
-/// BoundsChecker is a visitor that finds the first field whose value is not allowed; NaN is never allowed. The
-/// visitor does not allocate.
+/// BoundsChecker is a visitor that finds the first parameter whose value is out of bounds or NaN. The visitor allocates
+/// no memory.
 class BoundsChecker {
  public:
   explicit BoundsChecker(OutOfBounds& out) : out_(out) {}
@@ -85,14 +84,14 @@ class BoundsChecker {
   OutOfBounds& out_;
 };
 
-/// Throws InvalidParams with the full name of the found field, unless `found` is empty.
+/// Throws InvalidParams with the full name of the invalid parameter, unless `found` is empty.
 void throw_if_out_of_bounds(const OutOfBounds& found);
 
 }  // namespace detail
 
-/// Checks the bounds of all fields of `params`. Returns `out_of_range` with name, value and bound of the first
-/// violation, or `ok`. The returned name of a nested field lacks the prefix of the field's group. The function does not
-/// allocate.
+/// Checks that all parameters of `params` are within their bounds, without allocating memory. Returns `out_of_range`
+/// with the name, value and bound of the first invalid parameter, or `ok`. The returned name of a nested parameter
+/// lacks the prefix of its group.
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBounds found;
@@ -101,7 +100,7 @@ Status check_fields(const Params& params) {
   return found.status;
 }
 
-/// Throws InvalidParams for the first field of `params` that is out of its bounds.
+/// Throws InvalidParams if a parameter is out of its bounds.
 template <class Params>
 void require_valid_fields(const Params& params) {
   detail::OutOfBounds found;

@@ -8,23 +8,23 @@
 
 namespace tumble {
 
-/// AttitudeState contains the attitude of a sensor or body A in the world at one time.
+/// AttitudeState is the attitude of a sensor or body A in the world frame W at one time.
 struct AttitudeState {
   TimeNs time_ns = 0;
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
   /// Covariance of the attitude error phi in world axes [rad^2], with q_true = Exp(phi) * q_WA. The covariance is zero
-  /// if the estimation method reports none.
+  /// if the estimator does not compute a covariance.
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
 };
 
-/// PoseState contains the pose and velocity of a frame A in the world at one time.
+/// PoseState is the pose and velocity of a frame A in the world frame W at one time.
 struct PoseState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WA_m_s = Eigen::Vector3d::Zero();
-  /// Covariance of the position error in W [m] and the attitude error phi in W [rad], with phi as in AttitudeState. The
-  /// covariance is zero if the estimation method reports none.
+  /// Covariance of the position error [m] and the attitude error [rad], both in world axes. The attitude error phi is
+  /// defined by q_true = Exp(phi) * q_WA. The covariance is zero if the estimator does not compute a covariance.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

@@ -7,15 +7,15 @@
 
 namespace tumble {
 
-/// TimeNs is a time stamp in integer nanoseconds from the start of the recording. Sample k of a regular stream has the
-/// stamp t0 + k * period.
+/// TimeNs is a time stamp in integer nanoseconds since the start of the recording.
 using TimeNs = std::int64_t;
 
-/// Largest time stamp that the odometry classes accept, in either direction: 97 years. Twice the difference of two
-/// stamps then fits into 64 bits.
+/// Largest magnitude of a time stamp that the odometry classes accept: 97 years. Twice the difference of two accepted
+/// time stamps fits into 64 bits.
 inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
 
-/// Converts a duration to seconds. The result is exact to 2^-53 relative for durations below 104 days.
+/// Converts a duration from nanoseconds to seconds. The relative error of the conversion is at most 2^-53 for durations
+/// below 104 days.
 constexpr double seconds(TimeNs span_ns) {
   return static_cast<double>(span_ns) * 1e-9;
 }

@@ -8,38 +8,39 @@
 
 namespace tumble {
 
-/// SweepCalibration contains the calibration between lidar, IMU and world. The initial values come from an external
-/// calibration, and the registration refines the values during the motion. The error vector of a calibration contains
-/// rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation error phi is a left
-/// perturbation in IMU axes: R_true = Exp(phi) R.
+/// SweepCalibration contains the calibration between lidar, IMU and world. The registration refines the initial
+/// calibration during the motion. The error vector of a calibration contains rotation of T_IL, translation of T_IL,
+/// time offset and gravity, in this order. The rotation error phi is a left perturbation in IMU axes: R_true = Exp(phi)
+/// R.
 struct SweepCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
 
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  double time_offset_s = 0.0;                              ///< time of the IMU's clock minus time of the lidar's clock
+  double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
-  /// Adds a small error vector to the calibration, in the order that SweepCalibration defines.
+  /// Adds a small error vector to the calibration, in the order of SweepCalibration.
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
   /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
-/// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
-/// (rotation, translation, time offset). A standard deviation of 0 marks an exact part of the calibration.
+/// StatedCalibration is the calibration that the user provides, with standard deviations per axis for rotation,
+/// translation and time offset. A standard deviation of 0 marks an exact value.
 struct StatedCalibration {
-  static constexpr double kDistanceMax_sigmas = 5.0;  ///< plausible change during one run, in standard deviations
+  static constexpr double kDistanceMax_sigmas = 5.0;  ///< plausible error in standard deviations
 
   SweepCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// Returns the distance between `estimated` and the stated calibration in standard deviations. The distance is the
-  /// largest of rotation, translation and time offset, see mapping.md (R69). The distance is infinite if a part of the
-  /// calibration that was stated as exact differs. The distance excludes gravity, because each run estimates gravity.
+  /// Returns the distance between an estimated calibration and the stated calibration in standard deviations. The
+  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The calibration distance
+  /// is infinite if `estimated` changes a value that was stated as exact. The calibration distance excludes gravity,
+  /// because each run estimates gravity.
   double deviations(const SweepCalibration& estimated) const;
   /// Returns `out_of_range` if `estimated` is more than `kDistanceMax_sigmas` standard deviations from the stated
-  /// calibration. A distance above `kDistanceMax_sigmas` means that the stated calibration is wrong.
+  /// calibration. A larger distance means that the stated calibration is wrong.
   Status verdict(const SweepCalibration& estimated) const;
 };
 

@@ -14,24 +14,24 @@
 
 namespace tumble {
 
-/// SweepPoint is a usable lidar return in the IMU's axes at the time when the laser fired.
+/// SweepPoint is a usable lidar return in IMU axes at the time when the laser fired.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f point_L_m = Eigen::Vector3f::Zero();  ///< measured position, in lidar axes
-  float t_s = 0.0f;                                     ///< time after the start of the trajectory, in the IMU's clock
-  float sweep_time_s = 0.0f;                            ///< time after the start of the sweep
-  float range_m = 0.0f;                                 ///< distance from the lidar
+  float t_s = 0.0f;           ///< firing time after the start of the trajectory, in the IMU's clock
+  float sweep_time_s = 0.0f;  ///< firing time after the start of the sweep
+  float range_m = 0.0f;       ///< distance from the lidar
   std::uint16_t ring = 0;
 };
 
-/// PointBounds limits the range and position of usable returns.
+/// PointBounds limits the range and position of usable lidar returns.
 struct PointBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot; an empty box keeps all returns
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot; an empty box keeps all returns
 };
 
-/// PointCounts counts the returns of a sweep.
+/// PointCounts contains the numbers of received and usable lidar returns of a sweep.
 struct PointCounts {
   std::size_t received = 0;
   std::size_t finite = 0;  ///< number of returns with finite coordinates; misses may be NaN
@@ -39,13 +39,14 @@ struct PointCounts {
   bool has_ring_numbers = false;  ///< false if the device does not report ring numbers
 };
 
-/// Selects the usable returns of a sweep and transforms the returns to the IMU's axes. `sweep_start_s` is the start of
-/// the sweep relative to the start of the trajectory.
+/// Selects the usable lidar returns of a sweep and transforms them to IMU axes. The argument `sweep_start_s` is the
+/// start of the sweep relative to the start of the trajectory.
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
-/// Recomputes `points` for another calibration and writes the result to `moved`. Cost: O(n). `later_s` is added to the
-/// times of the points in the IMU's clock. `moved` must not be `points`.
+/// Recomputes `points` for another calibration and writes the result to `moved`. Cost: O(n). The function adds
+/// `later_s` to the times of the points in the IMU's clock. The arguments `points` and `moved` must be different
+/// objects.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
 /// Recomputes the points in place for another calibration, and adds `later_s` to the times of the points in the IMU's
@@ -57,17 +58,17 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Transforms points to the IMU's axes at `target_s` after the start of the trajectory, usually at its end. Each point
-/// is moved from the time of its firing to `target_s`, so the result is what a stationary sensor would measure at
-/// `target_s`.
+/// Transforms the points of a sweep to IMU axes at the time `target_s`, usually the end of the trajectory. The time
+/// `target_s` is relative to the start of the trajectory. The deskewed points equal the points that a stationary sensor
+/// would measure at the time `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
 /// SweepSampler keeps the first point in each cube of edge `voxel_m` in the world. The kept points have an even
-/// density, so that few points need to be registered.
+/// density, so that the registration needs fewer points.
 class SweepSampler {
  public:
-  /// Writes the indices of the kept points of `positions_W_m` to `chosen`, in order.
+  /// Writes the indices of the kept points to `chosen`, in increasing order.
   void choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
 
  private:

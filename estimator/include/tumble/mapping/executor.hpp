@@ -8,13 +8,12 @@
 
 namespace tumble {
 
-/// ParallelFor runs body(0) to body(count - 1), each exactly one time, in any order and on any of the caller's threads.
-/// A ParallelFor returns when all calls of `body` are done. The library starts no threads; without a ParallelFor, the
-/// calling thread does all work. The partition of the work does not depend on the number of threads, so results are
-/// bit-identical for any number of threads.
+/// ParallelFor is a function that runs body(0) to body(count - 1) once each, in any order and on any of the caller's
+/// threads. A ParallelFor returns when all calls of `body` are done. The library starts no threads; without a
+/// ParallelFor, the calling thread does all work. Results of the library are bit-identical for any number of threads.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
-/// Runs `body` by `parallel_for`, or in order if `parallel_for` is empty.
+/// Runs `body` with `parallel_for`, or on the calling thread if `parallel_for` is empty.
 inline void run_parallel(const ParallelFor& parallel_for, std::size_t count,
                          const std::function<void(std::size_t)>& body) {
   if (parallel_for && count > 1) {

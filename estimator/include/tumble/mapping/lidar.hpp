@@ -9,18 +9,18 @@
 
 namespace tumble {
 
-/// LidarPoint is one lidar return in the lidar's axes L at the time of its firing, not deskewed.
+/// LidarPoint is one lidar return in lidar axes L at the time when the laser fired, not deskewed.
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
-  float intensity = 0.0f;       ///< 0..1
-  std::uint32_t offset_ns = 0;  ///< time of firing after the start of the sweep
-  std::uint16_t ring = 0;       ///< channel, counted from bottom to top, or scan line
+  float intensity = 0.0f;       ///< 0 to 1
+  std::uint32_t offset_ns = 0;  ///< firing time after the start of the sweep
+  std::uint16_t ring = 0;       ///< number of the laser, from bottom to top, or of the scan line
 };
 
-/// MapPoint is a point of the map, in the world.
+/// MapPoint is a point of the map, in world axes.
 struct MapPoint {
   Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length; zero if no plane could be fitted
+  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit normal; zero if no plane could be fitted
   float sigma_m = 0.0f;                                ///< standard deviation of the position
 };
 

@@ -13,15 +13,13 @@
 
 namespace tumble {
 
-/// OdometryExpertParams contains the parameters of OdometryParams that few users change, grouped by meaning. The fields
-/// have the names that are used in tables and on command lines.
+/// OdometryExpertParams contains the rarely changed parameters of LidarInertialOdometry, grouped by topic.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Standard deviation of gravity's horizontal part. If the standard deviation is 0, gravity's direction is exact and
-  /// not estimated.
+  /// Standard deviation of gravity's horizontal part. If gravity_sigma_m_s2 is 0, the direction of gravity is fixed.
   double gravity_sigma_m_s2 = 0.0;
-  /// Number of sweeps that are refined together (see SweepReport::smoothed): the newest sweep and the window_sweeps - 1
-  /// sweeps before the newest sweep. With window_sweeps = 1, later sweeps do not refine earlier sweeps.
+  /// Number of newest sweeps that the fixed-lag smoother refines together (see SweepReport::smoothed). If window_sweeps
+  /// is 1, smoothing is disabled.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -60,26 +58,26 @@ struct OdometryExpertParams {
   }
 };
 
-/// Parameters of LidarInertialOdometry.
+/// OdometryParams contains the parameters of LidarInertialOdometry.
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  double time_offset_s = 0.0;                              ///< time of the IMU's clock minus time of the lidar's clock
-  /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact value, which is not
-  /// estimated.
+  double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
+  /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact quantity, which is
+  /// not estimated.
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
   double range_min_m = 0.3;        ///< minimum range of a usable return
   double range_max_m = 100.0;      ///< maximum range of a usable return
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot; an empty box, the default, keeps all returns
-  double sweep_voxel_m = 0.25;     ///< edge of the voxels; one point per voxel is registered
-  /// Threads that the registration may use, if any. The results do not depend on the number of threads.
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot; empty (default): keeps all returns
+  double sweep_voxel_m = 0.25;     ///< edge of the voxels; the registration uses one point per voxel
+  /// Threads for the registration. The results do not depend on the number of threads.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
-  Expert expert;  ///< parameters that few users change
+  Expert expert;  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s,
@@ -103,8 +101,8 @@ struct OdometryParams {
   }
 };
 
-/// Checks all parameters, including parameters that are not fields. Returns `out_of_range` with the first parameter
-/// that LidarInertialOdometry would reject.
+/// Checks all parameters of LidarInertialOdometry, including poses. Returns `out_of_range` for the first invalid
+/// parameter.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

@@ -8,33 +8,33 @@
 
 namespace tumble {
 
-/// PlaneVerdict is the result category of a plane fit to neighbouring map points.
+/// PlaneVerdict states whether neighbouring map points form a plane, or else why not.
 enum class PlaneVerdict { plane, too_few, collinear, one_scan_line, too_thick };
 
-/// PlaneFit is a plane through neighbouring map points: normal . x = normal . centre.
+/// PlaneFit is a plane through neighbouring map points, with the equation normal . x = normal . centre.
 struct PlaneFit {
   PlaneVerdict verdict = PlaneVerdict::too_few;
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
   float thickness_variance_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
-  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation of
-  /// the normal is that of a linear regression whose residuals equal the thickness of the plane.
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The function fit_plane()
+  /// computes the normal's error as in a linear regression whose residuals equal the thickness of the plane.
   Eigen::Matrix<float, 3, 2> normal_sigma_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// The neighbours are collinear if l1 is below the fraction collinear_share of l2. Collinear neighbours (a ring of a
-  /// lidar at rest) would give a wrong normal.
+  /// Neighbours are collinear if l1 is below the fraction collinear_share of l2. Collinear neighbours would give a
+  /// wrong normal, for example on one ring of a lidar at rest.
   double collinear_share = 0.03;
-  double rough_share = 0.1;  ///< the neighbours do not form a plane if l0 is above this fraction of l1
-  /// Minimum number of neighbours that are not on the most frequent scan line. If fewer neighbours are off the scan
-  /// line, the fitted plane could be that of the ring instead of the surface. For example, a lidar ring around a pillar
-  /// or through a room's corner lies in its own plane.
+  double rough_share = 0.1;  ///< neighbours are not a plane if l0 exceeds this fraction of l1
+  /// Minimum number of neighbours outside the most frequent scan line. With fewer neighbours outside, the fitted plane
+  /// could be the plane of a lidar ring instead of the surface. For example, a lidar ring around a pillar or through a
+  /// room's corner is in its own plane.
   int off_line_min = 2;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});
@@ -49,7 +49,7 @@ struct PlaneBounds {
   }
 };
 
-/// Fits a least-squares plane to neighbouring map points. The function does not allocate.
+/// Fits a least-squares plane to neighbouring map points, without allocating memory.
 PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds);
 
 }  // namespace tumble

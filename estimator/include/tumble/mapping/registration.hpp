@@ -22,12 +22,13 @@ class OuterProducts;
 /// Registers a sweep to a map by point-to-plane distances, and estimates the motion within the sweep.
 ///
 /// The unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
-/// trajectory. The saturation deficit (part of the rate hidden by saturation) and the calibration are additional
-/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. Here g is gravity,
-/// and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current estimate. The
-/// cost function has two terms. The first term is the sum of robustly weighted squared distances to planes through the
-/// k nearest map points. The second term is the squared Mahalanobis distance from the prior. The Gauss-Newton solver
-/// uses a normal matrix of at most 28x28. The prior determines the directions that no surface constrains.
+/// trajectory. The saturation deficit (the true rate minus the clipped reading) and the calibration are additional
+/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. The vector g is
+/// gravity, and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current
+/// estimate. The cost function is the sum of two terms. The first term of the cost is the sum of robustly weighted
+/// squared distances to planes through the k nearest map points. The second term of the cost is the squared Mahalanobis
+/// distance from the prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The prior determines the
+/// directions that no surface constrains.
 class Registration {
   static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
 
@@ -45,17 +46,18 @@ class Registration {
 
   explicit Registration(const Params& params);
 
-  /// Aligns `points`, which were computed with the calibration of `prior`, to `map`. The function rebuilds `trajectory`
-  /// from `prior` and `samples` up to `end_ns`. On return, `trajectory` contains the aligned motion. Returns the errors
-  /// of SweepTrajectory::build().
+  /// Aligns the points of a sweep to a map. The argument `points` must have been computed with the calibration of
+  /// `prior`. The function rebuilds `trajectory` from `prior` and `samples` up to `end_ns`. The output `trajectory`
+  /// contains the aligned motion. Returns the errors of SweepTrajectory::build().
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Returns the variance of a lidar return along its ray. The variance includes the skew that remains after deskewing.
+  /// Returns the variance of a lidar return along its ray, including the motion distortion that remains after
+  /// deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Computes the distance of a point from a plane, and the derivative of the distance by all unknowns. The function is
-  /// public so that tests can compare the derivative with finite differences.
+  /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. The function is
+  /// public so that tests can compare the derivatives with finite differences.
   static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
@@ -65,10 +67,10 @@ class Registration {
     Eigen::Vector3f search_position_W_m = Eigen::Vector3f::Zero();
     float map_variance_m2 = 0.0f;
     float farthest_neighbour_m =
-        std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all were found
+        std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all neighbours were found
     bool searched = false;
   };
-  /// Sums contains the normal equations over the matches of one iteration, for the free unknowns only.
+  /// Sums contains the normal equations of the estimated unknowns, summed over the matches of one iteration.
   struct Sums {
     Matrix H = Matrix::Zero();
     Vector g = Vector::Zero();
@@ -105,14 +107,14 @@ class Registration {
   Weight compute_weight(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // buffers that are kept between sweeps; results do not depend on their contents
+  // Buffers that avoid allocations. Results do not depend on the contents of the buffers.
   std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_distances_;
   std::vector<Sums> block_sums_;  // one per block of points
   SpatialHash cluster_index_{1 << 10};
-  std::vector<Vector> cluster_gradients_;  // gradients of the clusters
+  std::vector<Vector> cluster_gradients_;  // gradients of the point clusters
 };
 
 }  // namespace tumble

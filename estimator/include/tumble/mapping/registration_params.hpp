@@ -9,22 +9,19 @@
 
 namespace tumble {
 
-/// RegistrationExpertParams contains the parameters of RegistrationParams that few users change. The fields have the
-/// names that are used in tables and on command lines.
+/// RegistrationExpertParams contains the rarely changed parameters of Registration.
 struct RegistrationExpertParams {
-  double step_m = 5e-4;  ///< converged if the step is below step_m and step_rad
+  double step_m = 5e-4;  ///< converged if a step is below `step_m` and `step_rad`
   double step_rad = 1e-4;
-  double step_s = 1e-5;       ///< convergence limit of a step of the time offset
+  double step_s = 1e-5;       ///< convergence limit for a step of the time offset
   double rematch_m = 0.05;    ///< motion of a point after which its plane is searched again
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
-  /// Factor on the weight of each point's information. The factor is below 1 because neighbouring returns share the
-  /// map's errors and are therefore correlated.
+  /// Factor below 1 on the weight of each point, because neighbouring lidar returns share the map's errors.
   double correlation_discount = 0.1;
   double cluster_m = 1.0;          ///< edge of a cube whose points have correlated errors
   double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
-  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it agrees with the prior
-  /// and has at least agreeing_min matches. The default of agreeing_min is so large that the exception for agreeing
-  /// registrations is disabled.
+  /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
+  /// `matched_share_min`. The large default of agreeing_min disables the exception for agreeing registrations.
   std::size_t agreeing_min = 1'000'000'000;
   /// Minimum fraction of matches whose residual is within three standard deviations. A registration with a smaller
   /// fraction of fitting matches is rejected.
@@ -53,24 +50,24 @@ struct RegistrationExpertParams {
   }
 };
 
-/// Parameters of Registration.
+/// RegistrationParams contains the parameters of Registration.
 struct RegistrationParams {
   static constexpr double kMatchDistanceMax_m = 10.0;
-  int neighbours = 8;             ///< number k of neighbours of a plane fit
+  int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
   int iterations_max = 30;
-  double range_sigma_m = 0.02;  ///< minimum range noise; the noise grows with range by range_sigma_share
+  double range_sigma_m = 0.02;  ///< minimum range noise; at far range, range_sigma_share times the range
   double range_sigma_share = 0.0015;
-  double skew_sigma_m_s = 0.25;   ///< growth of a point's standard deviation over the sweep; 0: none
+  double skew_sigma_m_s = 0.25;   ///< growth rate of a point's standard deviation during the sweep; 0: none
   std::size_t matches_min = 100;  ///< minimum number of matches
   double correction_max_m = 15.0;
   double correction_max_rad = 1.1;
   ParallelFor parallel_for;  ///< threads for neighbour search and sums; empty: the calling thread
 
   using Expert = RegistrationExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", FieldRank::basic});

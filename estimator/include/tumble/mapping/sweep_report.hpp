@@ -10,13 +10,13 @@
 
 namespace tumble {
 
-/// SweepVerdict is the result category of a sweep. For every value except `registered`, the pose relies on the inertial
-/// prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the prediction in every direction. A `rejected` sweep
-/// with too few matches still extends the map.
+/// SweepVerdict states how a sweep determined the pose. If the verdict is not `registered`, the pose relies on the
+/// inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the prediction in every direction.
+/// LidarInertialOdometry also inserts a `rejected` sweep with too few matches into the map.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
   registered,  ///< aligned with the map in all six directions
-  degenerate,  ///< aligned where surfaces constrain it, predicted elsewhere
+  degenerate,  ///< aligned where surfaces constrain the pose, predicted elsewhere
   rejected,    ///< too few matches or too large a correction: pose is predicted
 };
 const char* to_string(SweepVerdict verdict);
@@ -25,7 +25,7 @@ const char* to_string(SweepVerdict verdict);
 struct SweepReport {
   SweepVerdict verdict = SweepVerdict::rejected;
   PoseState pose;  ///< pose and velocity of the IMU at the end of the sweep, with covariance
-  /// Covariance of the error of the velocity in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2].
+  /// Covariance of the velocity error in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2].
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
   /// Final poses of the oldest sweep in the window, smoothed with the data of all newer sweeps in the window. If the
@@ -33,32 +33,31 @@ struct SweepReport {
   /// window fills.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
-  double eigenvalue_ratio = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
+  double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
   /// Standard deviation of the pose in the least constrained direction, from the surfaces of the current sweep alone. A
-  /// standard deviation of zero means that the sweep was not aligned.
+  /// standard deviation of 0 means that the sweep was not aligned.
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
-  /// by the root of nine (the number of unknowns). The mean innovation is at most 1 if inertial prediction and surfaces
-  /// have the stated accuracy. An innovation of zero means that the sweep was not aligned.
+  /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are right. An
+  /// innovation of 0 means that the sweep was not aligned.
   double innovation = 0.0;
-  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also contains
-  /// the map's drift and tilt, which grow with the path.
+  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
+  /// the map's drift and tilt, which grow with the travelled distance.
   double map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
-  /// True if the sweep relocalised after tracking failure, at a pose that inertial prediction did not expect, without
-  /// confirmation so far. Two further sweeps must confirm the pose. A further sweep that contradicts the relocalisation
-  /// reverts the relocalisation.
+  /// True if the sweep relocalised the robot at an unpredicted pose, and later sweeps have not confirmed the pose. Two
+  /// further sweeps must confirm a relocalisation. A contradicting sweep reverts the relocalisation.
   bool relocalisation_unconfirmed = false;
-  /// Direction in W in which the surfaces constrain the pose least. The unit vector contains position, and attitude
-  /// scaled to metres by the root-mean-square lever arm.
+  /// Direction in world axes in which the surfaces constrain the pose least, as a unit vector of position and attitude.
+  /// The attitude is scaled to metres by the root-mean-square lever arm.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Vector3d saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< mean correction of the clipped axes
-  std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot itself
+  Eigen::Vector3d saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< mean correction of the clipped gyro axes
+  std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot
   std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
-  std::size_t points_registered = 0;  ///< one per voxel of the usable points
+  std::size_t points_registered = 0;  ///< usable points after sampling, one per voxel
   std::size_t map_points_added = 0;
-  /// True if the poses of the report are in the frame of the prior map. Without a prior map, always false.
+  /// True if the poses of the report are in the frame of the prior map; always false without a prior map.
   bool in_prior_map = false;
 };
 

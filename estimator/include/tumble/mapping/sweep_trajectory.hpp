@@ -17,24 +17,24 @@ namespace tumble {
 
 struct SweepPoint;
 
-/// MotionSample is one IMU sample with the angular velocity that a rate method estimated. Force and rate of a
-/// MotionSample are means over (from_ns, time_ns].
+/// MotionSample is one IMU sample with its estimated angular velocity. The force and rate of a MotionSample are means
+/// over (from_ns, time_ns].
 struct MotionSample {
   TimeNs from_ns = 0;
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
-  std::uint8_t clipped_axes = 0;                               ///< bit j: axis j of the gyro was saturated
-  std::uint8_t accel_saturated_axes = 0;                       ///< bit j: axis j of the accelerometer was saturated
-  bool at_rest = false;                                        ///< the sample belongs to the rest at the start
-  std::optional<TimeNs> rest_start_ns;                         ///< first sample of the current rest, from the IMU alone
-  bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
-  bool bridges_gap = false;  ///< the sample bridges a gap: force unknown; velocity is kept
+  std::uint8_t clipped_axes = 0;                               ///< bit j: gyro axis j was saturated
+  std::uint8_t accel_saturated_axes = 0;                       ///< bit j: accelerometer axis j was saturated
+  bool at_rest = false;                 ///< the sample belongs to the rest at the start of the run
+  std::optional<TimeNs> rest_start_ns;  ///< first sample of the current rest, from the IMU alone
+  bool in_flight = false;               ///< f_I_m_s2 is the computed force of free flight, not a measurement
+  bool bridges_gap = false;             ///< the sample bridges a gap: the force is unknown, the velocity constant
 };
 
-/// MotionState contains the motion of the IMU at one time. The errors of a MotionState are position, attitude and
-/// velocity, all in W; the attitude error is that of AttitudeState.
+/// MotionState contains the motion of the IMU at one time, with the errors of position, attitude and velocity in world
+/// axes. The attitude error is defined as in AttitudeState.
 struct MotionState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -48,21 +48,21 @@ struct MotionState {
 /// Computes the motion of the IMU over a segment by strapdown integration from a known start. SweepTrajectory can
 /// evaluate the motion at any time of the segment.
 ///
-/// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The formula is exact if the rate is
-/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). Here p_0 and v_0 are
-/// position and velocity at the start, g is gravity, and S is the double integral of the specific force. The mean force
-/// over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and left Jacobian
-/// J_l. The mean force is exact if the force is constant in body axes, for example the centripetal force of a spin.
+/// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The attitude is exact if the rate is
+/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). The vectors p_0 and
+/// v_0 are position and velocity at the start, g is gravity, and S is the double integral of the specific force. The
+/// mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and
+/// left Jacobian J_l. The mean force is exact if the force is constant in body axes, like the centripetal force of a
+/// spin.
 ///
-/// The saturation deficit e is the part of the rate that saturation hides, and corrects the clipped axes. The
-/// saturation deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment.
-/// If axis j is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the
-/// saturation deficit e_j. The factor s_j of the saturation deficit has the sign of the rate w_j. The magnitude of the
-/// factor s_j is the rate's standard deviation sigma_j, divided by the largest sigma_j of the segment's clipped
-/// samples. A rate with a small standard deviation is therefore corrected only a little by the saturation deficit. The
-/// magnitude of the factor s_j is 1 if all standard deviations sigma_j are 0. Within a sample, the saturation deficit
-/// is constant and has the value at the middle of the sample. SweepTrajectory does not model sculling within a sample
-/// or the earth's rotation.
+/// The saturation deficit e is the true rate minus the clipped reading, and corrects the clipped axes. The saturation
+/// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
+/// is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the saturation
+/// deficit e_j. The factor s_j has the sign of the rate w_j. The magnitude of s_j is the rate's standard deviation
+/// sigma_j, divided by the largest sigma_j of the segment's clipped samples. The saturation deficit corrects rates with
+/// a small standard deviation only a little. The magnitude of s_j is 1 if all standard deviations sigma_j are 0. Within
+/// a sample, the saturation deficit is constant and has the value at the middle of the sample. SweepTrajectory neglects
+/// sculling within a sample and the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -70,8 +70,8 @@ class SweepTrajectory {
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitSize>;
 
-  /// PreintegratedMotion is the motion at the time of a lidar point: attitude R(t) and double integral S(t) of the
-  /// specific force.
+  /// PreintegratedMotion is the attitude R(t) and the double integral S(t) of the specific force at the time of a lidar
+  /// point.
   struct PreintegratedMotion {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
@@ -84,12 +84,12 @@ class SweepTrajectory {
   };
 
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
-  /// start. Returns `too_few` if there is no sample or the samples end before end_ns. Returns `time_order` if the end
-  /// is before the start. Returns `gap` with the time in seconds if the first sample begins after the start. A repeated
-  /// call reuses the memory of the trajectory.
+  /// start. Returns `too_few` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
+  /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start.
+  /// Repeated calls of build() reuse the memory of the trajectory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
-  /// Integrates the motion from `start` to `end_ns`, with gravity of the stated magnitude along -z.
+  /// Integrates the motion from `start` to `end_ns`, with gravity of magnitude `gravity_m_s2` along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
                const Deficit& deficit_rad_s = Deficit::Zero()) {
     return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), deficit_rad_s);
@@ -98,17 +98,17 @@ class SweepTrajectory {
   TimeNs start_ns() const { return start_.time_ns; }
   double duration_s() const { return duration_s_; }
 
-  /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion is extrapolated by up to
-  /// kExtrapolation_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds
-  /// up calls in time order. Any hint in [0, intervals()) is valid.
+  /// Returns the motion at `t_s` seconds after the start. Outside of the segment, at() extrapolates the motion by up to
+  /// kExtrapolation_s, which covers errors of the time offset. The argument `hint` is the interval of the previous
+  /// call, and speeds up calls in time order. Any value of `hint` in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit. For
-  /// several points, lever_arm_vectors() is faster than at().
+  /// Computes the lever arm vector S(t) + R(t) x of each point x. The function lever_arm_vectors() returns exactly the
+  /// same values as at(), and is faster for several points.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
-  /// Returns the end of interval i in seconds after the start.
+  /// Returns the end of interval i in seconds after the start of the segment.
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
   /// Returns the common part p_0 + v_0 t + g t^2 / 2 of the positions of all points at time t. The position of a point
@@ -117,15 +117,16 @@ class SweepTrajectory {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point at x_I in the IMU's axes.
+  /// Returns the motion at `t_s` seconds after the start, and the velocity in world axes of a point at x_I in IMU axes.
   PreintegratedMotion at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
                          Eigen::Vector3d& velocity_m_s) const;
 
-  /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.
+  /// Returns the full motion state at the time `t_s` within the segment. The covariance is propagated without process
+  /// noise.
   MotionState state(double t_s) const;
 
-  /// Transition contains the first-order derivatives of the state (position, attitude, velocity) at t_s by the start
-  /// state, the saturation deficit, and gravity.
+  /// Transition contains the first-order derivatives of the state at time t_s (position, attitude, velocity).
+  /// Transition differentiates with respect to the start state, the saturation deficit, and gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
     Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;
@@ -138,7 +139,7 @@ class SweepTrajectory {
   Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_factor.cwiseAbs(); }
   Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_factor.cwiseAbs(); }
 
-  /// Returns the axes that were clipped anywhere in the segment: bit j for axis j.
+  /// Returns the gyro axes that were clipped anywhere in the segment: bit j for axis j.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:

@@ -24,15 +24,15 @@ struct Neighbours {
   std::array<std::uint32_t, kMax> index;  ///< index of the point in its VoxelMap
 };
 
-/// VoxelMap stores points in the world and finds nearest neighbours. Sweeps extend the map one by one.
+/// VoxelMap stores map points in world axes and finds nearest neighbours.
 ///
-/// The cells of a cubic grid store their points in chunks of sixteen. A chunk has one array per coordinate, so that
-/// distances are computed over contiguous floats. One hash look-up finds a group of 8x8x8 cells. VoxelMap keeps at most
-/// one point per cube of edge spacing_m. A copy of a VoxelMap equals the original and is independent of the original.
-/// Coordinates are single-precision floats, which limits the width of a map to a few kilometres.
+/// The cells of a cubic grid store their points in chunks of sixteen. Each chunk has one array per coordinate, so that
+/// VoxelMap computes distances over contiguous floats. One look-up in a hash table finds a group of 8x8x8 cells.
+/// VoxelMap keeps at most one point per cube of edge `spacing_m`. Coordinates are single-precision floats, which limits
+/// the width of a map to a few kilometres.
 class VoxelMap {
  public:
-  /// Scan line of a point whose scan line is unknown.
+  /// Label of a point whose scan line is unknown.
   static constexpr std::uint32_t kUnknownScanLine = 0xffffffffu;
   /// Invalid point index.
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
@@ -41,7 +41,7 @@ class VoxelMap {
     double voxel_m = 0.5;    ///< edge of a cell; the search is fastest at a few times spacing_m
     double spacing_m = 0.1;  ///< edge of a cube that keeps at most one point; 0 keeps all points
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0,
@@ -53,27 +53,27 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point unless the cube at its position already has a point. `sigma_m` is the standard deviation of the
-  /// point's position. `sweep` and `line` are labels, which the functions sweep() and line() return. Returns whether
-  /// the point was added. Points that are not finite or beyond 2^20 cells are not added.
+  /// Adds a point unless the cube at its position already has a point, and returns whether the point was added. The
+  /// argument `sigma_m` is the standard deviation of the point's position. The arguments `sweep` and `line` are labels,
+  /// which the functions sweep() and line() return. VoxelMap rejects points that are not finite or beyond 2^20 cells.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
               std::uint32_t line = kUnknownScanLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
-  /// Adds a point unless the cube at its position already has a point. Returns the index of the point, or kNoPoint if
-  /// the point was not added.
+  /// Adds a point unless the cube at its position already has a point. Returns the index of the new point, or kNoPoint
+  /// if the point was rejected.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Returns whether add() would reject a point, because its cube already has a point or the position is out of the
-  /// map's range. A caller can thereby avoid computing the properties of a rejected point.
+  /// Returns whether add() would reject a point, because its cube already has a point or the position is outside the
+  /// map's range. Call is_occupied() first if the properties of a point are expensive to compute.
   bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 
   /// Moves a point to a refined position. If the refined position is in another cell, move() returns false and leaves
   /// the point unchanged.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
-  /// Counts a sweep that saw through a point's position (`through`) or that observed the point again. An observation
-  /// through the point and an observation of the point cancel each other.
+  /// Counts a sweep whose beam passed through the position of a point (`through` is true) or hit the point again
+  /// (`through` is false). A passing beam and a hitting beam cancel each other.
   void count_observation(std::uint32_t index, bool through);
 
   /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Points of a cell at equal distances are in order
@@ -82,27 +82,27 @@ class VoxelMap {
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
 
   /// Deletes the points farther than `radius_m` from `centre_W_m` and frees their memory. Cost: O(number of points).
-  /// The indices of points change. The remaining sweeps are renumbered in order. Returns the old number of each
+  /// The indices of points change, and the remaining sweeps are renumbered in order. Returns the old number of each
   /// remaining sweep.
   std::vector<std::uint32_t> remove_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
-  /// Deletes the points of `first_sweep` and of later sweeps. Cost: O(number of points). The indices of points change;
-  /// sweeps keep their numbers.
+  /// Deletes the points of `first_sweep` and of later sweeps. Cost: O(number of points). The indices of points change,
+  /// and the numbers of sweeps are unchanged.
   void remove_sweeps_from(std::uint32_t first_sweep);
 
   /// Returns the memory in use [bytes].
   std::size_t bytes() const;
 
-  /// Saves the points and the occupied cubes: 25 bytes per point and 8 bytes per cube. The saved map does not contain
-  /// the search structure, which load() rebuilds.
+  /// Saves the points and the occupied cubes: 25 bytes per point and 8 bytes per cube. The function load() rebuilds the
+  /// search structure.
   void save(StateWriter& out) const;
-  /// Replaces the contents of the map by a saved map with equal parameters. The reader reports `out_of_range` for
-  /// positions that are not possible.
+  /// Replaces the contents of the map with a saved map. The saved map and the loading map must have equal parameters.
+  /// The reader reports `out_of_range` for impossible positions.
   void load(StateReader& in);
   static void describe(StateLayout& out);
 
   std::size_t size() const { return sigma_m_.size() - free_slots_; }
-  /// Returns the upper limit of the indices in use. An index for which exists() is false is a free slot of a chunk.
+  /// Returns the upper limit of the point indices in use. Indices for which exists() returns false are unused.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
   bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
   Eigen::Vector3f position_W_m(std::uint32_t index) const;

@@ -8,10 +8,10 @@
 
 namespace tumble {
 
-/// ImuSheet is the data sheet of an IMU. A range of 0 means that the data sheet states no range. The estimators detect
-/// saturation levels from the readings, with or without a stated range. Data sheets state the range of a gyro in
-/// degrees per second, between 250 and 4000. A value above 100 rad/s (5730 deg/s) is rejected, because the value was
-/// probably not converted to rad/s.
+/// ImuSheet contains the data sheet of an IMU. A range of 0 means that the range is unknown. The estimators detect
+/// saturation limits from the readings, with or without a stated range. Data sheets state the range of a gyro in
+/// degrees per second, between 250 and 4000. A gyro range above 100 rad/s (5730 deg/s) is rejected, because the range
+/// is probably in degrees per second.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -19,7 +19,7 @@ struct ImuSheet {
   double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
   double accel_noise_m_s2_sqrt_hz = 5.9e-4;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", FieldRank::basic});
@@ -34,13 +34,12 @@ struct ImuSheet {
   }
 };
 
-/// Returns the largest reading that is certainly unsaturated, for a range that the data sheet states. If no range is
-/// stated (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration
-/// applies to its saturation level.
+/// Returns the largest reading that is certainly unsaturated, for a range from a data sheet. If the range is unknown
+/// (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration applies to
+/// its saturation limit.
 double unsaturated_range(double stated_range);
 
-/// Data sheets of the devices that the simulation models. The file models/sensors/NAME.yaml states the source of each
-/// number.
+/// Data sheets of the simulated sensors. The file models/sensors/NAME.yaml states the source of each number.
 namespace sheets {
 
 /// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.
@@ -66,7 +65,7 @@ ImuSheet ouster_imu();
 /// IMU inside a Livox Mid-360; its ranges are assumed.
 ImuSheet mid360_imu();
 
-/// Returns all data sheets of IMUs with their names, for programs that select a data sheet by name.
+/// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.
 std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
 
 }  // namespace sheets

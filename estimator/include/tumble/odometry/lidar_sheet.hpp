@@ -8,12 +8,12 @@
 
 namespace tumble {
 
-/// LidarSheet is the data sheet of a lidar. Lidar returns outside of the stated range are dropped.
+/// LidarSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
 struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m,
@@ -23,8 +23,7 @@ struct LidarSheet {
   }
 };
 
-/// Data sheets of the devices that the simulation models. The file models/sensors/NAME.yaml states the source of each
-/// number.
+/// Data sheets of the simulated sensors. The file models/sensors/NAME.yaml states the source of each number.
 namespace sheets {
 
 /// RoboSense RS-16.
@@ -52,7 +51,7 @@ LidarSheet os1_128();
 /// Livox Mid-360.
 LidarSheet mid360();
 
-/// Returns all data sheets of lidars with their names, for programs that select a data sheet by name.
+/// Returns the data sheets of all lidars with their names, for programs that select a data sheet by name.
 std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
 
 }  // namespace sheets

@@ -25,19 +25,19 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
-/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
-/// flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with
-/// its RollingFilter) estimates the motion. With the whole recording, merge_recordings() flags and fuses.
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. RollingOdometry
+/// reports live poses, or poses smoothed with the data of the following `lag_s` or of the whole recording.
+/// RollingOdometry flags saturated readings, merges the IMUs to one (ImuMerge), and estimates the motion of the sphere
+/// (RollingFilter, RollingSmoother).
 ///
-/// The world has z up, its origin at the sphere's centre at the first sample, and yaw 0 at the first sample. The sphere
-/// should be at rest for one second at the start.
+/// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
+/// is the sphere's centre. The sphere should be at rest for one second at the start.
 ///
-/// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. Poses are
-/// computed in blocks of RollingSmoother::Params::block_s. After start-up, a sample inside a block allocates no memory,
-/// except for poses that take() has not yet returned. A call needs at most 64 KiB of stack. RollingOdometry uses no
-/// threads and no files and prints nothing. A copy of a RollingOdometry contains the complete state. The limitations of
-/// ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
+/// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag.
+/// RollingOdometry computes poses in blocks of RollingSmoother::Params::block_s. After start-up, add_imus() allocates
+/// memory only at the end of a block, and for poses that take() has not yet returned. A call needs at most 64 KiB of
+/// stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy of a RollingOdometry contains the
+/// complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
 class RollingOdometry {
  public:
   static constexpr double kWholeRecording = RollingSmoother::kWholeRun;  ///< value of Params::lag_s
@@ -49,33 +49,33 @@ class RollingOdometry {
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
-    double radius_m = 0.0;    ///< required, no default
-    std::vector<Unit> units;  ///< 1 to ImuMerge::kImus; required, no default
-    /// Standard deviation of the origin of T_BI about the true centre of the sphere. RollingOdometry estimates the
-    /// offset between origin and centre.
+    double radius_m = 0.0;    ///< required; has no default
+    std::vector<Unit> units;  ///< 1 to ImuMerge::kImus IMUs; required
+    /// Standard deviation of the distance between the origin of T_BI and the true centre of the sphere. RollingOdometry
+    /// estimates this distance.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    /// Lag of the poses that take() returns. With a lag of 0, the poses are live. With kWholeRecording, add_imus()
+    /// Lag of the poses that take() returns. If the lag is 0, the poses are live. With kWholeRecording, add_imus()
     /// stores the readings, newest() returns nothing, and finish() estimates all poses from the whole recording.
     double lag_s = 0.0;
 
-    /// Parameters that few users change. If Params and Expert contain the same number, the value in Params has
-    /// priority.
+    /// Expert contains rarely changed parameters. If Params and Expert contain the same parameter, RollingOdometry uses
+    /// the value in Params.
     struct Expert {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
-      SampleClock::Params stamps;  ///< correction of stamps that a host assigned
+      SampleClock::Params stamps;  ///< correction of time stamps that a host computer assigned
     } expert;
 
-    /// Returns the names of the fields that RollingOdometry derives from other fields and from the data sheets. Values
-    /// of these fields have no effect.
+    /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
+    /// RollingOdometry ignores user values of computed parameters.
     static std::span<const char* const> derived_fields();
 
-    /// Widens the priors for IMUs that have no data sheet and no calibration, mounted anywhere in the sphere. Assumes a
-    /// level floor, because the accelerometer bias of such an IMU resembles a slope.
+    /// Widens the priors for IMUs without data sheet and calibration, mounted anywhere in the sphere. The function also
+    /// assumes a level floor, because the accelerometer bias of an uncalibrated IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", FieldRank::basic});
@@ -94,15 +94,16 @@ class RollingOdometry {
       visit.group("stamps_", p.expert.stamps);
     }
   };
-  /// Estimated properties of the sphere.
+  /// Calibration contains the estimated centre and radius of the sphere.
   struct Calibration {
-    Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< sphere's centre, from the reference point of T_BI
+    Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< sphere's centre, relative to the origin of T_BI
     double radius_m = 0.0;
-    double radius_sigma_m = 0.0;  ///< 0: the radius is not estimated (expert.rolling.filter.radius_sigma_m)
+    double radius_sigma_m = 0.0;  ///< 0: radius fixed (expert.rolling.filter.radius_sigma_m)
   };
   struct Pose {
-    PoseState pose;  ///< sphere's centre, sphere axes; live poses have no attitude covariance
-    Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< of the sphere, sphere axes
+    PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
+    Eigen::Vector3d angular_velocity_rad_s =
+        Eigen::Vector3d::Zero();  ///< angular velocity of the sphere, in sphere axes
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
     bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain
@@ -116,81 +117,81 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
   ~RollingOdometry() = default;
 
-  /// Processes simultaneous readings of all units. The stamp of the first unit counts, corrected by SampleClock if a
-  /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
-  /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
-  /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
-  /// (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range`: finish() was called, the stamp is
-  /// beyond kStampMax_ns, or the only unit with readings has a frozen axis.
+  /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
+  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single wild readings of each IMU,
+  /// and may delay the samples of all IMUs by one; newest() is then one sample older. On error, the state is unchanged.
+  /// The errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the
+  /// first sample), `gap` and `out_of_range`. The error `out_of_range` means that the run has finished, the time stamp
+  /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
-  /// A single wrong stamp costs one sample (StampOrder). After a gap of more than a second, the second sample restarts
-  /// the run. If the clock steps back, samples are rejected with `time_order` for 0.2 s, and then the run restarts. A
-  /// restart finishes the poses so far and continues as by reset(pose), at the newest pose. Later poses are
-  /// `uncertain`.
+  /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
+  /// restarts the run. If the clock steps back, add_imus() rejects samples with `time_order` for 0.2 s, and then the
+  /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
+  /// a restart have the flag `uncertain`.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Adds a sample of one unit whose stamps differ from the other units' stamps. UnitAlignment resamples the units to
-  /// common times, at most 0.05 s late; a unit without readings is absent. The errors are those of add_imus();
-  /// `time_order` also if the stamp is not later than the unit's last stamp, and `out_of_range` if there is no such
-  /// unit. After a clock steps back, this function rejects samples until reset().
+  /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
+  /// resamples the IMUs to common times, at most 0.05 s late. RollingOdometry treats an IMU without readings as absent.
+  /// Returns the errors of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu()
+  /// rejects samples until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
   std::optional<Pose> newest() const;
 
   /// Returns the next pose in time order. Each pose is returned once. If the lag is 0, the poses are live; otherwise
-  /// the poses are smoothed and lag_s old.
+  /// the poses are smoothed and `lag_s` old.
   std::optional<Pose> take();
 
-  /// Ends the run and smooths the poses that are still within the lag, or all poses of the whole recording. After
-  /// finish(), add_imus() rejects samples until reset(). Returns the first error of the samples that finish()
-  /// processes. With kWholeRecording, finish() also returns the errors of merge_recordings().
+  /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
+  /// the first error of the remaining samples, or with kWholeRecording the errors of merge_recordings().
   Status finish();
 
-  /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available, and the counts
-  /// continue.
+  /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
+  /// run, and counters keep their values.
   void reset();
-  /// Starts a new run as reset() does, at a known pose of the sphere. Position and heading are those of `T_WG`; the
-  /// tilt is levelled at rest. Covariances are relative to this pose.
+  /// Starts a new run at a known pose of the sphere, like reset(). The pose `T_WG` sets position and heading, and
+  /// gravity at rest determines the tilt. Covariances are relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
-  /// Reports whether the readings of the IMUs are currently plausible. Returns `ok`, or `out_of_range` with one
-  /// finding. A finding is a frozen axis (FrozenAxes) with its unit and duration, or a force at rest that differs from
-  /// gravity (RestGravity). The readings of a frozen unit are ignored. If all units with readings are frozen,
-  /// add_imus() rejects the sample.
+  /// Returns whether the readings of the IMUs are currently plausible. The error `out_of_range` names a frozen axis
+  /// with its IMU and duration, or a force at rest that differs from gravity. RollingOdometry ignores the readings of a
+  /// frozen IMU. If all IMUs with readings are frozen, add_imus() rejects the sample.
   Status health() const;
 
-  /// Returns the estimated centre and radius. With a lag, the estimates are those of the newest smoothed pose.
+  /// Returns the estimated centre and radius of the sphere. If `lag_s` is above 0, the centre and radius are the
+  /// estimates at the newest smoothed pose.
   Calibration calibration() const;
 
-  /// Returns the number of gaps in the samples that were bridged, and the longest one [s].
+  /// Returns the number of bridged gaps between samples, and the longest gap [s].
   std::int64_t bridged_gaps() const { return state_->live.gaps; }
   double longest_gap_s() const { return state_->live.gap_longest_s; }
-  /// Returns true if the first samples were not at rest.
+  /// Returns whether the sphere was already moving at the first samples.
   bool started_in_motion() const { return state_->live.started_in_motion; }
 
-  /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
+  /// Returns the state of ImuMerge, which contains the frozen, disagreeing and delayed IMUs.
   const ImuMerge::State& units() const { return *imu_merge_state_; }
 
-  /// Returns the number of readings of all units that OutlierFilter rejected.
+  /// Returns the number of readings of all IMUs that OutlierFilter rejected.
   std::size_t rejected_readings() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
+  /// Returns the jitter of the time stamps [s], while SampleClock corrects the time stamps.
   std::optional<double> estimated_jitter_s() const;
 
   /// Save the state, load a saved state, and read saved parameters, like the functions of TumblingOdometry. A saved
-  /// state has at most one megabyte plus the data of the lag; the state of a sphere at rest is smaller.
+  /// state has at most one megabyte plus the data of the lag.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
-  /// Returns the parameters with which RollingSmoother processes merged readings, for users of RollingSmoother alone.
+  /// Returns the parameters with which RollingSmoother processes merged readings, for programs that use RollingSmoother
+  /// alone.
   static RollingSmoother::Params smoother_params(const Params& params, const MergedRecordings& merged);
 
-  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -219,30 +220,30 @@ class RollingOdometry {
   StampOrder stamp_order_;
   StampOrder::State stamp_order_state_;
   SampleClock sample_clock_;
-  SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
+  SampleClock::State sample_clock_state_;  ///< clock state after the last accepted sample
   ImuMerge imu_merge_;
   RollingSmoother smoother_;
   UnitRails rails_;
   UnitAlignment unit_alignment_;
   UnitAlignment::State unit_alignment_state_;
-  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each unit, with kWholeRecording
+  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each IMU, with kWholeRecording
   std::unique_ptr<ImuMerge::State> imu_merge_state_;
   std::unique_ptr<ImuMerge::State> merge_state_buffer_;  ///< buffer for the next state of ImuMerge
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
-  std::vector<OutlierFilter> outlier_filters_;  ///< one per unit
+  std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
   Outliers outlier_filter_state_{};
-  std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all units while OutlierFilter delays one unit
-  std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one per unit
+  std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all IMUs while OutlierFilter delays one IMU
+  std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one detector per IMU
   Frozen frozen_{};
   RestGravity rest_gravity_;
   std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state_{};
   std::vector<RollingEstimate> results_;
   std::size_t returned_count_ = 0;
-  std::optional<Eigen::Isometry3d> start_;    ///< pose given to reset(), until the first sample
-  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; nothing: the world's origin
+  std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
+  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; empty: the world's origin
   std::size_t restart_count_ = 0;
-  bool restarted_ = false;  ///< the run continues after a gap or a step of the clock, so its position is uncertain
+  bool restarted_ = false;  ///< the position is uncertain because of a gap or a step of the clock
   bool live_ = true, finished_ = false;
 };
 

@@ -24,117 +24,115 @@ namespace tumble {
 
 struct RecordingEstimate;
 
-/// Estimates pose, velocity and map of a tumbling body from one IMU, whose gyro may saturate, and a lidar with skewed
-/// sweeps. The estimation is causal. SampleClock corrects time stamps that a host computer assigned. RegimeStream
-/// estimates the angular velocity of each sample with a delay of `lag_s`. LidarInertialOdometry then processes the
-/// samples and the sweeps.
+/// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate.
+/// TumblingOdometry is causal and corrects the motion distortion of the sweeps. SampleClock corrects time stamps that a
+/// host computer assigned. RegimeStream estimates the angular velocity of each sample with a delay of `lag_s`.
+/// LidarInertialOdometry then processes the samples and the sweeps.
 ///
 /// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
 /// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
-/// to the map (`report.pose`), at most lag_s after the sweep's end. The report of the following sweep contains the
-/// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Stamps of poses are in
-/// the IMU's clock. World: see LidarInertialOdometry. The earliest sweep with enough points starts the map and has no
-/// pose error. Before the map starts, there are no poses. Start with at least half a second at rest, which levels the
-/// attitude. If the gyro's zero offset at this rest is above 0.05 rad/s, the run restarts with the offset removed
-/// (GyroOffset); start with a second at rest for such a gyro.
+/// to the map (`report.pose`), at most `lag_s` after the sweep's end. The report of the following sweep contains the
+/// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses
+/// are in the IMU's clock. LidarInertialOdometry defines the world frame. The earliest sweep with enough points starts
+/// the map. TumblingOdometry reports poses only after the map has started. Start with at least half a second at rest,
+/// which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, TumblingOdometry subtracts the
+/// offset and restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
 /// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
 /// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
 /// sweep without points.
 ///
-/// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates everything from the
-/// whole recording: rates with RegimeSmoother, checks of the IMU, and passes of the mapper until the lidar's
-/// calibration has converged. There are then no live poses, and take() returns all sweeps after finish(). A gap of more
-/// than a second or a step of the clock ends the recording. finish() needs more stack and memory than other calls.
+/// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
+/// map from the whole recording. The function finish() estimates the rates with RegimeSmoother, checks the IMU, and
+/// repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and
+/// take() returns all sweeps after finish(). A gap of more than a second or a step of the clock ends the recording. The
+/// function finish() needs more stack and memory than other functions.
 ///
-/// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, a sample
-/// that ends no sweep allocates no memory. While SecondPass runs, a sweep costs up to four registrations. The end of
-/// SecondPass costs five more registrations. The lag, the map radius, `sweeps_max` and the buffer of SecondPass limit
-/// the memory. In addition, the map stores 12 bytes per sweep within ten metres. A call needs at most 64 KiB of stack.
+/// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
+/// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four
+/// registrations. When SecondPass ends, it costs five additional registrations. The memory is bounded: it depends on
+/// the lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
+/// within ten metres. A call needs at most 64 KiB of stack.
 ///
-/// TumblingOdometry uses no threads and no files and prints nothing. A copy of a TumblingOdometry contains the complete
-/// state, so a run can be split. The limitations of RegimeStream and LidarInertialOdometry apply to TumblingOdometry.
+/// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
+/// complete state, so a run can be split. The limitations of RegimeStream and LidarInertialOdometry apply to
+/// TumblingOdometry.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
   using SweepProgress = std::function<void(std::size_t done, std::size_t all)>;
   static constexpr double kWholeRecording = Params::kWholeRecording;  ///< value of Params::lag_s
 
-  /// Sweep is the result of one sweep.
+  /// Sweep contains the results of one lidar sweep.
   struct Sweep {
-    Status status;  ///< status of add_sweep(); without a pose, `report.trajectory` is empty
+    Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     LidarInertialOdometry::SweepReport report;
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the own-body box is invalid.
+  /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the box `own_body_L` is
+  /// invalid.
   explicit TumblingOdometry(const Params& params);
 
-  /// Sets the map of an earlier run, in which the run localises itself, before the first sweep. Until the run is
-  /// localised, poses are in a local frame, and health() reports that the run is not localised in the prior map.
-  /// Afterwards `report.in_prior_map` is true, and poses are in the frame of the prior map. reset() keeps the prior map
-  /// and localises again; reset(pose) gives the pose in the prior map. Errors: see LidarInertialOdometry::use_map().
+  /// Sets the map of an earlier run, in which TumblingOdometry then localises the robot. Call use_map() before the
+  /// first sweep. Until the robot is localised, poses are in a local frame, and health() reports the missing
+  /// localisation. After localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map. The
+  /// function reset() keeps the prior map and localises the robot again. The argument of reset(pose) is a pose in the
+  /// prior map. Returns the errors of LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
-  /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. Samples with
-  /// `non_finite`, `out_of_range`, `time_order` or `gap` are rejected. A single wrong stamp costs one sample
-  /// (StampOrder).
-  /// - After a gap of more than a second, the second sample restarts the rates with the current calibration. The mapper
-  ///   bridges the gap by inertial integration.
-  /// - If the clock steps back, samples are rejected with `time_order` for 0.2 s. The run then restarts as by
-  ///   reset(pose), at the newest pose.
-  /// OutlierFilter rejects single wild readings. OutlierFilter may delay a sample by one; newest() is then one sample
-  /// older.
+  /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
+  /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
+  /// the loss of one sample. After a gap of more than a second, the second sample restarts the rate estimation with the
+  /// current calibration, and inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples
+  /// with `time_order` for 0.2 s. The run then restarts at the newest pose, like reset(pose). OutlierFilter rejects
+  /// single wild readings and may delay a sample by one; newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The function
-  /// copies the points. Points from before the end of the last sweep are dropped, because time stamps of sweeps may
-  /// overlap by jitter. On error the state is unchanged. The error `time_order` means that the end is before the start,
-  /// or that half of the sweep is before the end of the last sweep. The error `out_of_range` means that a point is
-  /// beyond the sweep, or that the end is a second after the newest IMU sample. A stamp beyond 109 years, or too many
-  /// waiting sweeps, also return `out_of_range`.
+  /// copies the points. The function drops points from before the end of the last sweep, because time stamps of sweeps
+  /// may overlap by jitter. On error, the state is unchanged. The error `time_order` means that the end is before the
+  /// start, or that half of the sweep is before the end of the last sweep. The error `out_of_range` means that a point
+  /// is outside the sweep, or that the end is a second after the newest IMU sample. The function also returns
+  /// `out_of_range` if a time stamp exceeds 97 years or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
-  /// registered, which happens lag_s after the end of the sweep. If a sweep has several odometer readings, only the
-  /// last reading is used. On error the state is unchanged. Returns `empty` (no IMU sample yet), `non_finite`,
-  /// `time_order` (the sweep is already registered) or `out_of_range` on error. The error `out_of_range` means that the
-  /// standard deviation is not above 0, or that the stamp is a second ahead of the newest sample. If 1024 readings
-  /// wait, the functions also return `out_of_range`.
+  /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
+  /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
+  /// TumblingOdometry uses only the last reading. On error, the state is unchanged. Returns `empty` (no IMU sample
+  /// yet), `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. The error `out_of_range`
+  /// means an invalid standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting
+  /// readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU samples cover, at the end of a run or during a halt. After finish(), take()
-  /// returns the registered sweeps. The final poses of the sweeps that are still in the window are available from
-  /// mapper().window_trajectories(). If more samples are added after finish(), the rate estimation restarts with the
-  /// current calibration.
+  /// returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final poses of the
+  /// sweeps in the window. If more samples are added after finish(), the rate estimation restarts with the current
+  /// calibration.
   ///
-  /// With kWholeRecording, finish() estimates the whole recording, and later samples and sweeps are rejected until
-  /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// the errors of RateSmoother::estimate(), for example `too_few`, or the error of a sample in the mapper. Without
-  /// kWholeRecording, finish() returns `ok`. For display, finish() calls `on_sweep` before each sweep with the number
-  /// of processed sweeps and of all sweeps; each pass over the recording starts again at 0.
+  /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
+  /// reset(). The function take() then returns all sweeps with their final poses in `report.pose` and
+  /// `report.trajectory`. Returns the errors of RateSmoother::estimate(), for example `too_few`, or the error of a
+  /// sample in the mapper. Without kWholeRecording, finish() returns `ok`. The function finish() calls `on_sweep`
+  /// before each sweep with the numbers of processed sweeps and of all sweeps, for a progress display. Each pass over
+  /// the recording starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
-  /// Starts a new run with a new map, at the origin and at rest. Sweeps not yet fetched by take() remain available, and
-  /// the counts continue.
+  /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
+  /// sweeps of the old run, and counters keep their values.
   void reset();
-  /// Starts a new run as reset() does, at a known pose of the IMU. Position and heading are those of `T_WI`; the tilt
-  /// is levelled at rest. Covariances are relative to this pose.
+  /// Starts a new run at a known pose of the IMU, like reset(). The pose `T_WI` sets position and heading, and gravity
+  /// at rest determines the tilt. Covariances are relative to `T_WI`.
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
   /// registered sweep. Returns `empty` before the first sweep. The function newest() allocates memory. Cost: O(samples
-  /// since the last sweep). `velocity_covariance_I_m2_s2` receives the covariance of the error of the velocity in IMU
-  /// axes, unless null.
+  /// since the last sweep). The optional output `velocity_covariance_I_m2_s2` is the covariance of the velocity error
+  /// in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding, and a finding
-  /// ends when its cause ends (at the latest a minute later). Returns `ok`, or `out_of_range` with a finding:
-  /// - a frozen IMU axis and the duration of the freeze,
-  /// - an inverted accelerometer (FlightSignCheck),
-  /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
-  /// - a wrong scale of the lidar's ranges (SweepScale),
-  /// - an uncertain vertical after a start in motion (LidarInertialOdometry::check_vertical),
-  /// - a run that is not localised in its prior map (LidarInertialOdometry::localised),
-  /// - tracking failure (Localisation::present),
-  /// - too large a change of the lidar's calibration (StatedCalibration).
+  /// Returns whether the inputs and the pose are currently plausible. The estimation continues after any finding. The
+  /// report of a finding ends at most a minute after the fault itself. The function returns `ok`, or `out_of_range`
+  /// with one finding. Findings about the sensors are a frozen IMU axis, an inverted accelerometer, a wrong
+  /// accelerometer unit, and a wrong scale of the lidar's ranges. Findings about the pose are an uncertain vertical, a
+  /// missing localisation in the prior map, tracking failure, and an implausible change of the lidar's calibration.
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;
@@ -143,50 +141,47 @@ class TumblingOdometry {
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
   /// provisional.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
-  /// Returns the latest smoothed rate, which is about lag_s old. The result is empty while the lag fills.
+  /// Returns the latest smoothed rate, which is about `lag_s` old. The result is empty while the lag fills.
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
-  /// Returns the estimated calibration of the IMU on the body: lever arm, biases, inertia and sensing directions.
+  /// Returns the estimated calibration of the IMU on the body: lever arm, biases, inertia ratios and gyro axis
+  /// directions.
   RigCalibration rig() const;
   const SaturationLevels& rails() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
   std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
-  /// Returns whether SecondPass has replaced map and pose.
+  /// Returns whether SecondPass has replaced the map and the pose.
   bool second_pass_applied() const { return second_pass_.applied(); }
-  /// The counters rejected_samples(), dropped_sweeps(), early_sweeps() and unused_odometer_readings() are 0 in normal
-  /// operation.
-  /// The function rejected_samples() counts IMU samples that the mapper rejected.
-  /// The function dropped_sweeps() counts sweeps that take() did not return in time.
-  /// The function early_sweeps() counts sweeps that ended before the first IMU sample.
-  /// The function unused_odometer_readings() counts odometer readings that span two sweeps.
+  /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
+  /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
+  /// early_sweeps() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
+  /// counts odometer readings that span two sweeps.
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }
   std::size_t unused_odometer_readings() const { return readings_.spanning_two_sweeps(); }
-  /// Returns the standard deviation of the IMU's time stamps about a regular clock [s], while SampleClock corrects the
-  /// stamps.
+  /// Returns the jitter of the IMU's time stamps about a regular clock [s], while SampleClock corrects the time stamps.
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper, which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
-  /// Returns the rates of all samples, the checks and the passes of a whole recording (detail/recording_estimate.hpp).
-  /// Returns null before finish() and without kWholeRecording.
+  /// Returns the rates of all samples, the checks and the mapping passes of a whole recording
+  /// (detail/recording_estimate.hpp). Returns null before finish() and without kWholeRecording.
   const RecordingEstimate* recording() const { return whole_.get(); }
 
   /// Saves the complete state: map, calibration, SecondPass, and sweeps that take() has not yet returned. The saved
-  /// bytes are equal on every machine and include a checksum. If an object with equal parameters loads the bytes, the
-  /// object continues with bit-identical results. Two states are equal if their saved bytes are equal. The size of a
-  /// saved map is in docs/tutorials/your_robot.md. With kWholeRecording, the bytes contain the recorded data instead of
-  /// the results. Call finish() after load() to compute the results again.
+  /// bytes are equal on every machine and include a checksum. An object with equal parameters that loads the bytes
+  /// continues with bit-identical results. Two states are equal if their saved bytes are equal. The size of a saved map
+  /// is in docs/tutorials/your_robot.md. With kWholeRecording, the bytes contain the recorded data instead of the
+  /// results. Call finish() after load() to compute the results again.
   std::vector<std::byte> save() const;
-  /// Replaces the state by a saved state. On error the state is unchanged. The returned status names the field, the
-  /// stored value and the bound. The error is `too_few` (truncated bytes), `non_finite`, `time_order`, `gap` or
-  /// `out_of_range`. The function also rejects a state with different parameters, a different library version, or
-  /// damaged bytes.
+  /// Replaces the state with a saved state. On error, the state is unchanged, and the returned status names the field,
+  /// the stored value and the bound. The error is `too_few` (truncated bytes), `non_finite`, `time_order`, `gap` or
+  /// `out_of_range`. The function also rejects damaged bytes, other parameters, and another library version.
   Status load(std::span<const std::byte> bytes);
-  /// Reads the parameters that a saved state contains. On error `params` is unchanged.
+  /// Reads the parameters that a saved state contains. On error, `params` is unchanged.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -218,18 +213,18 @@ class TumblingOdometry {
   OutlierFilter outlier_filter_;
   OutlierFilter::State outlier_filter_state_;
   SampleClock sample_clock_;
-  SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
+  SampleClock::State sample_clock_state_;  ///< clock state after the last accepted sample
   OdometryPass pass_;
   SecondPass second_pass_;
-  std::optional<TimeNs> newest_ns_;           ///< time of the newest accepted sample
-  std::optional<TimeNs> last_registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time
-                                              ///< of the first sample
+  std::optional<TimeNs> newest_ns_;  ///< time of the newest accepted sample
+  std::optional<TimeNs>
+      last_registered_ns_;  ///< end of the last registered sweep; before the first, time of the first sample
   std::size_t restart_count_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
   std::deque<Sweep> results_;
   std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
-  std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; its sweeps are in `waiting_`
+  std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; the sweeps are in `waiting_`
   std::shared_ptr<const RecordingEstimate> whole_;  ///< set by finish() with kWholeRecording
   bool finished_ = false;
 };

@@ -18,20 +18,19 @@
 
 namespace tumble {
 
-/// TumblingExpertParams contains the parameters of TumblingOdometry that few users change. If a number is also in
-/// TumblingParams, the value in TumblingParams has priority. The value gravity_m_s2 applies to the estimation of rates
-/// and of the map.
+/// TumblingExpertParams contains the rarely changed parameters of TumblingOdometry. If TumblingParams contains the same
+/// parameter, TumblingOdometry uses the value in TumblingParams. The parameter gravity_m_s2 applies to the estimation
+/// of rates and of the map.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The limit sweeps_max
-  /// also applies to sweeps that wait for take(); beyond the limit, the oldest sweep is dropped.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. TumblingOdometry
+  /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
-  /// readings contradict the data sheet. The uncertainty of the calibration increases the covariance of each rate,
-  /// because sweeps use the rates before the calibration is estimated.
+  /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration.
   RegimeStream::Params rate = rate_defaults();
-  /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (the part of the rate hidden
-  /// by saturation) are unknowns of the registration.
+  /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
+  /// reading) are unknowns of the registration.
   OdometryParams mapping = mapping_defaults();
   /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
@@ -39,8 +38,8 @@ struct TumblingExpertParams {
   SecondPass::Params second_pass;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
-  /// Returns the names of the fields that TumblingOdometry derives from other fields; a '*' at the end of a name
-  /// stands for any end. Values of these fields have no effect.
+  /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
+  /// stands for all names with that prefix. TumblingOdometry ignores user values of computed parameters.
   static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>
@@ -54,7 +53,7 @@ struct TumblingExpertParams {
   }
 };
 
-/// Parameters of TumblingOdometry.
+/// TumblingParams contains the parameters of TumblingOdometry.
 struct TumblingParams {
   static constexpr double kWholeRecording = 1e9;  ///< value of `lag_s`; see TumblingOdometry
 
@@ -65,29 +64,29 @@ struct TumblingParams {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset. TumblingOdometry estimates mounting and time offset; a
-  /// standard deviation of 0 marks an exact value.
+  /// Standard deviations of T_IL and of the lidar's time offset, which TumblingOdometry estimates. A standard deviation
+  /// of 0 marks an exact quantity.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
-  /// Lidar returns inside the box own_body_L hit the robot itself and are dropped. An empty box of Eigen, the default,
-  /// keeps all returns. A box with swapped corners is rejected.
+  /// Box in lidar axes that contains the robot. TumblingOdometry drops lidar returns inside the box. The default, an
+  /// empty Eigen box, keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
   /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.
   double lag_s = 0.2;
 
   using Expert = TumblingExpertParams;
-  Expert expert;  ///< parameters that few users change
+  Expert expert;  ///< rarely changed parameters
 
-  /// Returns T_IL and the time offset with their stated standard deviations.
+  /// Returns T_IL and the time offset with their standard deviations.
   StatedCalibration stated_calibration() const {
     StatedCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
     out.calibration.T_IL = T_IL;
     return out;
   }
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);

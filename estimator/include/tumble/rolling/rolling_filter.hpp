@@ -16,28 +16,28 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a level or sloped
 /// floor.
 ///
-/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity from rolling
-/// calibrates tilt, biases, scale, misalignment, delay and lever arm of the IMU. The calibrated IMU can be integrated
-/// through several seconds without grip. RollingFilter estimates the mode of contact, for example grip or slip. Each
-/// hypothesis about the past modes of contact has a separate error-state Kalman filter, until later data decide between
-/// the hypotheses. The state of each Kalman filter contains the position. Grip after a slip or bump therefore also
-/// corrects the displacement during the slip or bump. RollingFilter does not revise earlier estimates; RollingSmoother
-/// revises earlier estimates.
+/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity measurements
+/// determine tilt, biases, scale, misalignment, delay and lever arm of the IMU. RollingFilter can then integrate the
+/// calibrated IMU through several seconds without grip. RollingFilter also estimates the contact mode, for example grip
+/// or slip. Each hypothesis about the past contact modes has a separate error-state Kalman filter, until later data
+/// decide between the hypotheses. The state of each Kalman filter contains the position. Grip after a slip or bump
+/// therefore also corrects the displacement during the slip or bump. RollingSmoother revises earlier poses with later
+/// data.
 ///
 /// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
-/// rest; RollingFilter applies the corrections when motion resumes. If a different hypothesis becomes the most probable
-/// at rest, RollingFilter applies the corrections immediately.
+/// rest; RollingFilter applies the corrections when motion resumes. If another hypothesis becomes the most probable at
+/// rest, RollingFilter corrects the position immediately.
 ///
-/// Readings of a fast IMU are averaged over RollingExpertParams::reading_s before they are processed. Between two
-/// averages, the estimate is extrapolated. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and
-/// assumes an unknown force. The covariance after a gap accounts for the interpolated rate and the unknown force.
-/// RollingFilter detects a start in motion, and increases the initial uncertainty.
+/// RollingFilter averages the readings of a fast IMU over RollingExpertParams::reading_s, and extrapolates the estimate
+/// between averages. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and assumes an unknown force.
+/// After a gap, the covariance includes the errors of the interpolated rate and the unknown force. RollingFilter
+/// detects a start in motion, and increases the initial uncertainty.
 ///
-/// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. During saturation,
-/// the covariance of the position grows, but nothing corrects the position. The state of RollingFilter needs 430 KiB of
-/// memory.
+/// While the gyro is saturated, the attitude is uncertain, and RollingFilter does not use the rolling constraint.
+/// During gyro saturation, nothing corrects the position, and the covariance of the position grows. The state of
+/// RollingFilter needs 430 KiB of memory.
 ///
-/// RollingFilter does not model a floor that moves or yields, or moving platforms. The heading drifts.
+/// RollingFilter assumes a rigid floor that does not move. The heading drifts.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -59,22 +59,24 @@ class RollingFilter {
   };
 
   struct State {
-    // Estimate at the last sample, by the most probable hypothesis.
+    // Estimated pose and velocity at the last sample, from the most probable hypothesis.
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< last node, over all hypotheses
-    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< contact velocity at the last node, W
+    /// Position covariance at the last node, over all hypotheses.
+    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d contact_velocity_m_s =
+        Eigen::Vector3d::Zero();  ///< contact velocity at the last node, in world axes
     RollingMode mode = RollingMode::grip;
     double slip_probability = 0.0;  ///< probability that the contact point moves, at the last node
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< slow rotation about the contact point; no gyro bias update
-    bool uncertain = false;       ///< the position's standard deviation grew by more than uncertain_m in an event
+    bool uncertain = false;       ///< an event increased the position's standard deviation by more than uncertain_m
     bool started_in_motion = false;
-    std::int64_t gaps = 0;  ///< bridged gaps
+    std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;
-    // Linearisation point that all hypotheses share.
+    // Trajectory and constants about which all hypotheses are linearised.
     RollingNominal nominal;
     RollingIntegrals sums;
     ImuAverage average;  ///< average of the readings that are not yet processed
@@ -94,9 +96,10 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// Processes one sample and updates the estimate. The first sample levels the attitude (yaw 0) and sets the sphere's
-  /// centre to the origin, at rest. The sphere should be at rest for one second after the first sample. On error the
-  /// state is unchanged. Cost: no allocation; about kHypotheses * kStates^2 * 40 operations per node.
+  /// Processes one sample and updates the estimate. The first sample sets the tilt from its specific force, with yaw 0,
+  /// and sets the sphere's centre to the origin, at rest. The sphere should be at rest for one second after the first
+  /// sample. On error, the state is unchanged. Cost: no allocation; about kHypotheses * kStates^2 * 40 operations per
+  /// node.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
@@ -109,11 +112,11 @@ class RollingFilter {
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the filter's estimate at the last processed sample. The returned covariance contains only the position
-  /// block; all other entries are zero.
+  /// Returns the estimate at the last processed sample. The covariance contains only the position block; all other
+  /// entries are zero.
   static RollingEstimate estimate(const State& state);
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
   static Status check_state(const State& state);
 
  private:

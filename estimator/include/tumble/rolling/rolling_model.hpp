@@ -8,36 +8,36 @@
 
 namespace tumble {
 
-/// RollingMode is the mode of contact between sphere and floor.
+/// RollingMode is the mode of contact between the rolling sphere and the floor.
 enum class RollingMode : std::uint8_t {
-  grip,     ///< the contact point does not move; the floor is level
-  slip,     ///< the contact point moves along the floor: sphere spins too fast or slides
+  grip,     ///< the contact point is at rest; the floor is level
+  slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
   bump,     ///< the contact point also rises or falls: an obstacle, or flight
-  incline,  ///< the contact point does not move; the floor is a slope with estimated inclination
-  rough,    ///< the contact point does not move; the floor rises and falls about the level
+  incline,  ///< the contact point is at rest; the floor has an estimated slope
+  rough,    ///< the contact point is at rest; the floor rises and falls about the level
 };
 inline constexpr int kRollingModes = 5;
 
-/// Returns whether the contact point may move along the floor in `mode`.
+/// Returns whether the contact point may move along the floor in the contact mode `mode`.
 inline bool may_slip(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
 
-/// RollingEstimate is the pose of a rolling sphere's centre G at one sample, with the mode of contact.
+/// RollingEstimate is the pose of a rolling sphere's centre G at one sample, with the contact mode.
 struct RollingEstimate {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< reading of the gyro minus the bias
-  /// Covariance of the position error [m] and the attitude error [rad] in W, at the node after the sample.
+  Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< gyro reading minus bias
+  /// Covariance of the position error [m] and the attitude error [rad] in world axes, at the node after the sample.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
   bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::uncertain_m)
 };
 
-/// RollingNominal contains the trajectory and the constants at which the errors are linearised.
+/// RollingNominal contains the trajectory and the constants about which the filter linearises its errors.
 struct RollingNominal {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();
@@ -48,7 +48,7 @@ struct RollingNominal {
   Eigen::Matrix3d gyro_scale = Eigen::Matrix3d::Zero();
   double accel_delay_s = 0.0;
   Eigen::Vector3d lever_arm_error_m = Eigen::Vector3d::Zero();
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, W
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, in world axes
   double radius_error_m = 0.0;
   Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last reading
   bool operator==(const RollingNominal&) const = default;
@@ -71,7 +71,7 @@ struct RollingIntegrals {
   double impact_m_s = 0.0;                             ///< integral of | |f| - g | above its usual level
   double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d subsample_saturation_W_m_s =
-      Eigen::Vector3d::Zero();  ///< standard deviation of force lost to subsample saturation
+      Eigen::Vector3d::Zero();  ///< standard deviation of force lost to saturation shorter than a sample
   // Duration of a gap, and the variances that the gap adds to the angle, to rate times time, and to the velocity.
   double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
   double node_s = 0.0;

@@ -11,17 +11,16 @@
 
 namespace tumble {
 
-/// RollingExpertParams contains the parameters of RollingParams that few users change, grouped by meaning. The fields
-/// have the names that are used in tables and on command lines.
+/// RollingExpertParams contains the rarely changed parameters of RollingFilter and RollingSmoother, grouped by topic.
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
-  /// Averaging time of readings. The thresholds of RollingExpertParams are valid for the default averaging time. An
-  /// averaging time of zero disables averaging. Readings of an IMU with a longer sample period are used unchanged.
+  /// Averaging time of the readings. The thresholds in RollingExpertParams assume the default averaging time. An
+  /// averaging time of 0 disables averaging. If the sample period is longer than reading_s, RollingFilter uses the
+  /// readings without averaging.
   double reading_s = 4e-3;
-  /// Parameters of rest detection, which processes the mean readings of nodes. The rate limit of 0.0115 rad/s per axis
-  /// is 0.02 rad/s in total, which is 3 mm/s of the sphere. A limit of 0.02 rad/s per axis would increase the drift of
-  /// a sphere that comes to rest by half. Limits per axis instead of one limit on the norm change the drift by at most
-  /// 40 um, in either direction.
+  /// Parameters of the rest detector, which processes the mean reading of each node. The rate limit of 0.0115 rad/s per
+  /// axis is 0.02 rad/s in total, at which the sphere rolls at 3 mm/s. A rate limit of 0.02 rad/s per axis would
+  /// increase the drift of a sphere that comes to rest by half.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};
@@ -47,21 +46,22 @@ struct RollingExpertParams {
 
 /// RollingParams describes the sphere, its IMU and the floor, for RollingFilter and RollingSmoother.
 struct RollingParams {
-  double radius_m = 0.0;                                  ///< required, no default
-  double radius_sigma_m = 0.0;                            ///< 0: exactly known
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< lever arm from the centre to the IMU, sensor axes
+  double radius_m = 0.0;        ///< required; has no default
+  double radius_sigma_m = 0.0;  ///< 0: the radius is exact
+  Eigen::Vector3d lever_arm_m =
+      Eigen::Vector3d::Zero();  ///< lever arm from the sphere's centre to the IMU, in sensor axes
   double lever_arm_sigma_m = 2e-3;
-  std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: levelled by gravity
+  std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: tilt from gravity
   double gravity_m_s2 = 9.80665;
-  /// Readings at or above gyro_range_rad_s are clipped, in addition to readings that the device flags.
+  /// Gyro readings at or above gyro_range_rad_s are clipped, in addition to readings that the device flags as clipped.
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 
   using Expert = RollingExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});

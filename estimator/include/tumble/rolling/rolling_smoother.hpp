@@ -15,38 +15,38 @@
 
 namespace tumble {
 
-/// Smooths the estimates of RollingFilter with later data, with a fixed lag or over the whole run.
+/// Smooths the poses of RollingFilter with later data, with a fixed lag or over the whole run.
 ///
 /// RollingSmoother uses the contact modes of the most probable hypothesis of RollingFilter at the time of smoothing.
 /// With the contact modes fixed, one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser
 /// smoother then runs backward (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). The
-/// Bryson-Fraser smoother needs no matrix inverse, only the gains of the Kalman filter. The errors of a sample between
-/// two nodes are interpolated from the errors of the two nodes.
+/// Bryson-Fraser smoother needs no matrix inverse, only the gains of the Kalman filter. RollingSmoother interpolates
+/// the errors of a sample from the errors of its two neighbouring nodes.
 ///
-/// With a fixed lag, the reported position is constant while the sphere is at rest. Corrections of the path before a
-/// rest are applied when motion resumes, because the earlier poses are already reported. When a whole run is smoothed,
-/// the path before a rest is corrected itself.
+/// With a fixed lag, the reported position is constant while the sphere is at rest. With a fixed lag, RollingSmoother
+/// corrects the position for errors of the path before a rest when motion resumes. If the whole run is smoothed,
+/// RollingSmoother corrects the path before a rest directly.
 ///
-/// RollingSmoother does not model uncertainty of the contact modes, except the spread of positions that RollingFilter
-/// prunes at rest.
+/// RollingSmoother treats the contact modes as certain, except for the spread of positions that RollingFilter prunes at
+/// rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
 
   struct Params {
     RollingParams filter = {};
-    /// Process noise of the final pass, as a fraction of the process noise of RollingFilter. The reported covariance
-    /// uses the full process noise of RollingFilter.
+    /// Process noise of the smoother, as a fraction of the process noise of RollingFilter. The reported covariance uses
+    /// the full process noise of RollingFilter.
     double path_noise = 0.65;
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
-    double block_s = 0.2;        ///< estimates are reported in blocks of this duration
+    double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
-    /// Horizontal distance of the centre between the start and the end of the run, from an external measurement, and
-    /// its standard deviation. The measured distance and the prior on the radius determine the radius. A distance of 0
-    /// means that no distance was measured.
+    /// Measured horizontal distance of the centre between the start and the end of the run, and its standard deviation.
+    /// The measured distance and the prior on the radius determine the radius. A distance of 0 means that no distance
+    /// was measured.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
@@ -79,17 +79,17 @@ class RollingSmoother {
     bool spins_in_place = false;
     bool operator==(const NodeModes&) const = default;
   };
-  /// FinalPassState is the state of the final pass at the node up to which estimates are reported.
+  /// FinalPassState is the state of the smoother at the node up to which estimates are reported.
   struct FinalPassState {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
     double event_variance_m2 = 0.0;                                ///< position variance at the start of the event
     Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< reported position while `position_constrained`
-    bool position_constrained = false;  ///< the sphere is at rest; the reported position is constant
+    bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    // Rate of the gap that contains the node, if any.
+    // Rate during a gap between samples, if the node is within a gap.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
     TimeNs gap_start_ns = 0;
     int gap_step = 0;
@@ -108,29 +108,31 @@ class RollingSmoother {
 
   explicit RollingSmoother(const Params& params);
 
-  /// Returns the filter that updates State::live. A caller that needs only live poses can use the RollingFilter alone.
+  /// Returns the RollingFilter that updates State::live. A program that needs only live poses can use RollingFilter
+  /// alone.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Processes a sample, and appends the estimates that are older than the lag to `out`. On error the state is
-  /// unchanged. The first sample allocates the memory of the lag. After the first sample, only `out` and the processing
-  /// of a block allocate memory. The memory grows with the duration (64 bytes per sample, 152 per node) beyond
-  /// rate_max_hz, beyond a million samples, or with kWholeRun. The last sample of a block does the computations of the
-  /// block. The computations of a block need 14 KiB of memory per node of lag and block. If there are many nodes, a
-  /// block needs 4 MiB plus 0.3 KiB per node.
+  /// Processes a sample, and appends the estimates that are older than the lag to `out`. On error, the state is
+  /// unchanged. The first call of step() allocates the memory for samples within the lag. Later calls of step()
+  /// allocate memory only for `out` and for the processing of a block. The memory grows with the duration (64 bytes per
+  /// sample, 152 per node) if the sample rate exceeds rate_max_hz, if the lag contains over a million samples, or with
+  /// kWholeRun. The call of step() for the last sample of a block does the computations of the block. The computations
+  /// of a block need 14 KiB of memory per node of lag and block. If a block has many nodes, the computations need 4 MiB
+  /// plus 0.3 KiB per node.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
-  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
+  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run with externally known contact modes, one per sample of a whole run that `state` processed with
-  /// kWholeRun.
+  /// Ends the run with externally known contact modes. The argument `known` contains one contact mode per sample of a
+  /// whole run that was processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant. The function
-  /// rejects a state with a lag if its number of samples exceeds four times that of rate_max_hz.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition. A state with
+  /// a fixed lag is invalid if the sample rate exceeds four times rate_max_hz.
   Status check_state(const State& state) const;
 
  private:

@@ -7,7 +7,8 @@
 
 namespace tumble {
 
-/// The namespace arrow contains the arrow matrix of RateSmoother and RateStream; see ArrowSystem.
+/// The namespace arrow contains the sparse linear system (arrow matrix) that RateSmoother and RateStream solve; see
+/// ArrowSystem.
 namespace arrow {
 
 inline constexpr int kBlockSize = 6;    ///< size of a block: rate and scaled angular acceleration
@@ -26,28 +27,29 @@ using Marginal = System::Marginal;
 
 inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
-/// Derivative of the gradient of a block, or of the border, by each of the kErrorCount sensor errors. After
+/// Derivative of the gradient of a block or of the border with respect to each of the kErrorCount sensor errors. After
 /// back-substitution, the matrix contains the derivative of the solution step.
 using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
-/// Eliminates a block like ArrowSystem::eliminate.
+/// Eliminates a block as ArrowSystem::eliminate() does.
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 Conditional back_conditional(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
-/// Eliminates the error columns of an already eliminated `block` into the next block (null for the last block) and into
-/// the border.
+/// Eliminates the sensor-error columns of an already eliminated `block` into the border and into the next block (null
+/// for the last block).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// Returns the derivative of an eliminated block by each sensor error, after eliminate_errors(). `next_moved` and
-/// `border_moved` are the derivatives of the next block (null for the last block) and of the border.
+/// Returns the derivative of an eliminated block with respect to each sensor error. Call eliminate_errors() first. The
+/// arguments `next_moved` and `border_moved` are the derivatives of the next block (null for the last block) and of the
+/// border.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 
-/// Returns the covariance of the rates, which is the upper left 3x3 block of marginal().state, at lower cost.
+/// Returns the covariance of the rates, at lower cost than marginal().
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow

@@ -11,16 +11,17 @@
 
 namespace tumble {
 
-/// Readings of an additional IMU over a whole recording, in order of time.
+/// AuxiliaryRecording contains the readings of an additional IMU over a whole recording, in time order.
 struct AuxiliaryRecording {
   AuxiliaryImu imu;  ///< the sensing directions are estimated from the readings
   RailDetector::Params stated_rails;
   std::vector<ImuSample> samples;
 };
 
-/// Interpolates additional IMUs at the time stamps of the primary IMU (see align()). Appends each IMU with its
-/// estimated sensing directions to `model.auxiliary_imus`, and its readings to `out`. Only the first kAuxiliaryImusMax
-/// recordings are used. Returns the first error of align(). Cost: O(N), plus the search of ClippingFinder.
+/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU (see align()). The function
+/// appends each IMU with its estimated sensing directions to `model.auxiliary_imus`, and its readings to `out`. The
+/// function ignores recordings beyond the first kAuxiliaryImusMax. Returns the first error of align(). Cost: O(N), plus
+/// the search of ClippingFinder.
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
              RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
 

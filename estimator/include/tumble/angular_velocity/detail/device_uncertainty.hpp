@@ -8,49 +8,47 @@
 namespace tumble {
 
 /// Computes the uncertainty of a device's sensor errors from measurement information that grows during a run. The prior
-/// is a mixture of two devices: a device that matches its data sheet, and an uncalibrated device (SensorErrorPriors). A
-/// stream uses DeviceUncertainty instead of fit_sensor_errors(), which needs more computation. See rate_stream.md
-/// (R102), (R103).
+/// is a mixture of two devices: a device that matches its data sheet, and an uncalibrated device (SensorErrorPriors).
+/// DeviceUncertainty needs less computation than fit_sensor_errors(). See rate_stream.md (R102), (R103).
 class DeviceUncertainty {
  public:
-  /// Weight of the samples' information about the sensor errors. The weight is below 1 because errors of the flight
-  /// model last longer than a sample, so sample errors are correlated. The function fit_sensor_errors() uses an equal
-  /// weight.
+  /// Weight of the samples' information about the sensor errors. The weight is below 1 because the errors of the flight
+  /// model are correlated between samples. The function fit_sensor_errors() uses an equal weight.
   static constexpr double kEvidenceWeight = 0.03;
 
   struct Posterior {
-    /// Covariance of the sensor errors about the values for which readings are corrected.
+    /// Covariance of the sensor errors that remain after the correction of the readings.
     SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
     double uncalibrated_probability = 0.0;  ///< probability that the device does not match its data sheet
   };
 
-  /// Buffers of update(). The buffers are too large for the small stack of a robot's thread.
+  /// Work contains the buffers of update(), which are too large for the stack of a robot's thread.
   struct Work {
     SensorErrors::Matrix system, about_corrected;
   };
 
-  /// `uncalibrated` is the prior probability of an uncalibrated device.
+  /// Constructs the prior, where `uncalibrated` is the prior probability of an uncalibrated device.
   DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
   /// Computes `posterior` from the measurement information. Cost: O(1), two systems of 29 unknowns, no allocation. If
-  /// the information is not finite, `posterior` is the prior. `is_uncalibrated` states that the device is known not to
-  /// match its data sheet.
+  /// the information is not finite, `posterior` is the prior. The argument `is_uncalibrated` states that the device is
+  /// known to deviate from its data sheet.
   void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
               bool is_uncalibrated = false) const;
 
-  /// Returns the likelihood ratio of a device with synchronous gyro and accelerometer, as in the data sheet, to an
-  /// asynchronous device. See rate_stream.md (R106). `delay_s` is a measured delay minus the known delay, and `sigma_s`
-  /// is its standard deviation.
+  /// Returns the likelihood ratio of two devices: a device with synchronous gyro and accelerometer, as in the data
+  /// sheet, and an asynchronous device. See rate_stream.md (R106). The argument `delay_s` is a measured delay minus the
+  /// known delay, and `sigma_s` is its standard deviation.
   double data_sheet_odds(double delay_s, double sigma_s) const;
 
-  /// Returns the delay beyond the corrected delay that `evidence` implies for a device with any delay within `reach_s`.
+  /// Estimates from `evidence` the remaining delay of the accelerometer, for a device with any delay within `reach_s`.
   /// See rate_stream.md (R107). Cost: O(1), no allocation. Returns 0 if the information is indefinite.
   double delay_correction_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
   /// Resets the posterior to the prior.
   void reset(Posterior& posterior) const;
 
-  /// Returns the variance of a delay common to gyro and accelerometer [s^2]. If a device does not match its data sheet,
+  /// Returns the variance of a delay common to gyro and accelerometer [s^2]. If a device deviates from its data sheet,
   /// no measurement determines the common delay.
   double common_delay_variance_s2(const Posterior& posterior) const;
 

@@ -12,9 +12,9 @@
 
 namespace tumble {
 
-/// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro. FlightSignCheck is
-/// needed because mirrored forces (all three axes flipped, one axis flipped, two axes swapped) change neither gravity
-/// at rest nor its rotation.
+/// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro, from free flight.
+/// Checks at rest cannot detect mirrored forces (three axes flipped, one axis flipped, two axes swapped), because
+/// mirrored gravity has the correct magnitude and rotation.
 ///
 /// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with the rate w and the
 /// angular acceleration a. FlightSignCheck compares the readings with the force of free flight, for the true sensor and
@@ -26,34 +26,35 @@ namespace tumble {
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
 /// hand-held, FlightSignCheck therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated
-/// rates. FlightSignCheck does not detect wrong sensors if the body never flies while spinning, the IMU is at the
-/// centre of mass, or two gyro axes clip in all flights. A lever arm with the wrong sign looks like an inverted
-/// accelerometer.
+/// rates. FlightSignCheck detects wrong sensors only if the body flies while spinning, the IMU is off the centre of
+/// mass, and at most one gyro axis clips. A lever arm with the wrong sign looks like an inverted accelerometer.
 class FlightSignCheck {
  public:
   static constexpr double kMemory_s = 60.0;
 
-  /// Number of alternatives, and index of the gyro with half scale. Alternative 0 is the true sensor. Errors of the
-  /// accelerometer follow, then errors of the gyro: all axes flipped, one axis flipped, two axes swapped.
+  /// Number of sensor alternatives, and index of the half-scale gyro. Alternative 0 is the true sensor. The next
+  /// alternatives are errors of the accelerometer, then errors of the gyro: all axes flipped, one axis flipped, two
+  /// axes swapped.
   static constexpr std::size_t kAlternatives = 17, kHalfScaleGyro = 16;
 
   enum class Body { may_be_hand_held, thrown };
 
   struct Params {
     Body body = Body::may_be_hand_held;
-    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the IMU, IMU axes
-    double gyro_range_rad_s = 0.0;                          ///< stated by the device; 0: not stated
-    double reading_s = 0.01;                                ///< averaging time of readings
-    double force_min_m_s2 = 2.5;                            ///< minimum force of free flight at the lever arm
-    double share = 0.25;                                    ///< tolerance as a fraction of the force of free flight
-    double run_s = 0.02;                                    ///< minimum duration of agreement
-    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor
-    double half_scale_flight_s = 0.3;                       ///< minimum total flight time of a half-scale gyro
-    double alternative_evidence_ratio = 4.0;  ///< minimum ratio of an alternative's flight time to the true sensor's
+    /// Lever arm from the centre of mass to the IMU, in IMU axes.
+    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
+    double gyro_range_rad_s = 0.0;            ///< range from the data sheet; 0: unknown
+    double reading_s = 0.01;                  ///< averaging time of readings
+    double force_min_m_s2 = 2.5;              ///< minimum force of free flight at the lever arm
+    double share = 0.25;                      ///< tolerance as a fraction of the force of free flight
+    double run_s = 0.02;                      ///< minimum duration of agreement
+    double alternative_flight_s = 0.1;        ///< minimum total flight time of an alternative sensor
+    double half_scale_flight_s = 0.3;         ///< minimum total flight time of a half-scale gyro
+    double alternative_evidence_ratio = 4.0;  ///< minimum ratio of an alternative's to the true sensor's flight time
     double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is not hand-held
     double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,
@@ -106,12 +107,12 @@ class FlightSignCheck {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit FlightSignCheck(const Params& params);
 
-  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
+  /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Returns `out_of_range` if the flights match a sensor with wrong signs, axes or scale.
+  /// Returns `out_of_range` if the measured flights match a sensor with wrong signs, axes or scale, and otherwise `ok`.
   Status verdict(const State& state) const;
-  /// Returns verdict() until the last flight of an alternative is kMemory_s old.
+  /// Returns verdict() until the last flight of an alternative is kMemory_s old, and then `ok`.
   Status current_verdict(const State& state) const;
 
  private:

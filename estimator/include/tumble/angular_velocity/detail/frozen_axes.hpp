@@ -15,29 +15,29 @@ namespace tumble {
 
 /// Detects single axes of an IMU that have stopped updating, sample by sample.
 ///
-/// An axis is frozen if it repeats one reading bit for bit for `frozen_s`, and for ten times its longest earlier
-/// repetition. Before the repetition, the readings of the axis must have changed for an equal time. Another axis of the
-/// same sensor must change from sample to sample, by far more than the quantisation of the tested axis. FrozenAxes does
-/// not detect an axis that never changed. FrozenAxes does not detect an axis that often repeats its readings for long
-/// (coarse quantisation at rest, simulation without noise).
+/// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for `frozen_s`, and for ten times the
+/// longest earlier repetition. Before the repetition, the readings of the axis must have changed for an equal time.
+/// Another axis of the same sensor must change from sample to sample, by far more than the quantisation of the tested
+/// axis. FrozenAxes does not detect an axis whose readings never changed, or often repeat for long (coarse quantisation
+/// at rest).
 ///
-/// A saturated reading may repeat although its axis is not frozen. FrozenAxes treats a reading as saturated from 0.9 of
-/// the stated range on, or if the device flags the reading. The extreme reading of an axis counts as saturated from 0.5
-/// of the stated range on. A saturated axis is frozen if all other axes of the IMU indicate rest for
-/// `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a saturated
-/// axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
-/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. If the axis is frozen
-/// or the range is too small, the rate of the axis is unknown. A body that spins so evenly about a saturated axis that
-/// no other axis changes is mistaken for a frozen axis.
+/// A working axis may repeat one reading because it is saturated. FrozenAxes treats a reading as saturated if the
+/// device flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts
+/// as saturated above 0.5 of the stated range. A saturated axis is frozen if all other axes of the IMU indicate rest
+/// for `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a
+/// saturated axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
+/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. The rate of a frozen
+/// or constantly saturated axis is unknown. FrozenAxes mistakes an even spin about a saturated axis for a frozen axis
+/// if no other axis changes.
 class FrozenAxes {
  public:
   struct Params {
-    double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated by the device; 0: not stated
+    double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
     double frozen_s = 0.5;           ///< longest repetition of a working axis while the body moves
     double rail_stationary_s = 1.5;  ///< duration of rest on all other axes while an axis is saturated
     double rail_repeated_s = 5.0;    ///< longest saturated repetition of a working axis in motion
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,
@@ -67,7 +67,8 @@ class FrozenAxes {
     double changing_s = 0.0;       ///< total time with changing readings
     double smallest_change = 0.0;  ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
-    /// Minimum, maximum and number of changes of the two other axes of the same sensor, during the repetition.
+    /// Minimum, maximum and number of changes of the two other axes of the same sensor, during the repetition of one
+    /// reading.
     std::array<double, 2> others_min{}, others_max{}, others_changes{};
     double samples = 0.0;       ///< number of repeated samples
     double stationary_s = 0.0;  ///< duration of rest on the other axes during the repetition
@@ -86,17 +87,17 @@ class FrozenAxes {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit FrozenAxes(const Params& params);
 
-  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
+  /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
-  /// Returns `out_of_range` with the name of a currently frozen axis, the duration and the limit. Returns `ok` if no
-  /// axis is frozen.
+  /// Returns `out_of_range` with the name of a currently frozen axis, the duration and the limit. Returns `ok` if all
+  /// axes work.
   Status verdict(const State& state) const;
 
-  /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The rate of a frozen gyro axis is
-  /// unknown up to the largest rate read so far. The variance is zero for axes that are not frozen.
+  /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The standard deviation of a frozen
+  /// gyro axis is the largest rate measured so far. The variance is zero for axes that work.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:
@@ -108,14 +109,14 @@ class FrozenAxes {
   Params params_;
 };
 
-/// Interval in which one axis repeats one reading.
+/// FrozenAxis is an interval in which one axis repeats one reading.
 struct FrozenAxis {
   Triad triad = Triad::gyro;
   int axis = 0;
   TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
 };
 
-/// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. O(N).
+/// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. Cost: O(N).
 std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -10,15 +10,14 @@
 
 namespace tumble {
 
-/// Estimates a gyro's zero offset from the rest at the start of a run, if the offset is larger than the mean rate that
-/// RestDetector accepts at rest by default (0.05 rad/s). Data sheets of consumer gyros allow such offsets. At rest,
-/// rate and force are constant for half a second, and the offset is at most kOffsetMax_rad_s per axis. A smaller offset
-/// needs no estimate: the prior of the bias includes it. GyroOffset does not distinguish an offset from a steady
-/// rotation about the vertical.
+/// Estimates a large zero offset of a gyro from the rest at the start of a run. Consumer gyros may have offsets above
+/// the mean rate that RestDetector accepts at rest by default (0.05 rad/s). GyroOffset detects rest if rate and force
+/// are constant for half a second and the offset is at most kOffsetMax_rad_s per axis. The prior of the gyro bias
+/// covers smaller offsets. GyroOffset mistakes a steady rotation about the vertical for an offset.
 class GyroOffset {
  public:
   static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;
-  static constexpr double kRestEndMax_s = 2.0;  ///< the rest must end within this time after the first sample
+  static constexpr double kRestEndMax_s = 2.0;  ///< latest end of the rest after the first sample
 
   struct State {
     RestDetector::State rest;
@@ -28,9 +27,9 @@ class GyroOffset {
 
   GyroOffset();
 
-  /// Processes a finite sample. Returns the offset once, as soon as it is known. O(1), no allocation.
+  /// Processes a finite sample, and returns the offset once, as soon as the offset is known. Cost: O(1), no allocation.
   std::optional<Eigen::Vector3d> observe(const ImuSample& sample, State& state) const;
-  /// Returns the offset of a recording, or zero without a large offset.
+  /// Returns the gyro's zero offset of a recording, or zero without a large offset.
   Eigen::Vector3d find(std::span<const ImuSample> samples) const;
 
  private:

@@ -11,36 +11,37 @@
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
 #include "tumble/common/imu.hpp"
 
-/// The functions of interpolated_rates.hpp interpolate the readings of a gyro that is slower than its log, so that the
-/// log repeats readings. The interpolation is cubic between the readings around a sample, each at its true time. See
-/// docs/maths/rate_stream.md (R96).
+/// The functions in interpolated_rates.hpp interpolate the readings of a gyro that updates more slowly than the log, so
+/// that the log repeats readings. The interpolation is cubic between the readings around a sample, each at its true
+/// time. See docs/maths/rate_stream.md (R96).
 namespace tumble {
 
 /// InterpolatedRate is a rate between two readings of the gyro, including the gyro's bias.
 struct InterpolatedRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();  ///< variance of the interpolation, without noise
+  /// Variance of the interpolation error, without sensor noise.
+  Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Returns the interpolated rate of sample `k` of a stream's window. Cost: O(samples of three readings). The result is
-/// empty if each sample has its own reading, the next reading has not yet arrived, or a reading is not fully usable.
+/// Returns the interpolated rate of sample `k` in the window of a RateStream. Cost: O(samples of three readings). The
+/// result is empty if no reading repeats, the next reading has not yet arrived, or a reading is invalid.
 std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
                                                       double period_s);
 
-/// Returns the interpolated rates of a recording. Cost: O(N), plus find_repeated. The list is empty if each sample has
-/// its own reading. `hidden` contains one mask per sample of axes that are not used. No rate is computed next to hidden
-/// axes or at the ends of the recording.
+/// Returns the interpolated rates of a recording. Cost: O(N), plus find_repeated(). The result is empty if no reading
+/// repeats. The argument `hidden` contains one bit mask of unused axes per sample. The function computes no rate next
+/// to hidden axes or at the ends of the recording.
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden);
 struct RepeatedReadings;
-/// Returns the interpolated rates of a recording, given the result of find_repeated for the gyro.
+/// Returns the interpolated rates of a recording, given the result of find_repeated() for the gyro.
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated);
 
-/// Returns the force at the time of each sample, for an accelerometer that is slower than its log. Cost: O(N), plus
-/// find_repeated. The force is linear between readings, and constant before the first reading and after the last
-/// reading. The list of forces is empty if each sample has its own reading.
+/// Returns the force at the time of each sample, for an accelerometer that updates more slowly than the log. Cost:
+/// O(N), plus find_repeated(). The force is linear between readings, and constant before the first reading and after
+/// the last reading. The result is empty if no reading repeats.
 std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
 }  // namespace tumble

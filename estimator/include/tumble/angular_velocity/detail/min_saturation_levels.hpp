@@ -6,13 +6,13 @@
 
 namespace tumble {
 
-/// MinSaturationLevels contains lower bounds of the saturation levels, per sensing element and sign. No reading exceeds
-/// its saturation level, see rails.md (R75).
+/// MinSaturationLevels contains lower bounds of the saturation limits, per sensing element and sign. The bounds follow
+/// from the readings, because no reading exceeds its saturation limit, see rails.md (R75).
 class MinSaturationLevels {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
-  /// Returns whether a reading of element `axis` is below any possible saturation level of the element for the sign of
-  /// the reading. The margin covers the tilt and the noise of saturation levels.
+  /// Returns whether a reading of element `axis` is certainly below the saturation limit for its sign. The margin
+  /// covers the tilt and the noise of saturation planes.
   bool rules_out(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;
 

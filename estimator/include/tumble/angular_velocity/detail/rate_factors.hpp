@@ -7,14 +7,14 @@
 
 namespace tumble {
 
-/// RateKnot contains the unknowns of one sample: rate and angular acceleration of the body, IMU axes.
+/// RateKnot contains the unknowns of one sample: angular rate and angular acceleration of the body in IMU axes.
 struct RateKnot {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_rad_s2 = Eigen::Vector3d::Zero();
   bool operator==(const RateKnot&) const = default;
 };
 
-/// RateFactor is a residual of three rows, with its derivatives by rate and angular acceleration and by the calibration
+/// RateFactor is a residual of three rows, with its derivatives with respect to rate, angular acceleration and rig
 /// constants.
 struct RateFactor {
   Eigen::Vector3d residual;
@@ -22,32 +22,35 @@ struct RateFactor {
   Eigen::Matrix<double, 3, RigConstants::kSize> jacobian_calibration;
 };
 
-/// Residual of the gyro while no sensing element clips: rate + bias - reading [rad/s].
+/// Residual of the gyro while it is unsaturated: rate + bias - reading [rad/s].
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along m_j
-/// [rad/s]. If a sensing element is unsaturated, its residual is noise. If a sensing element clips, its residual is the
+/// [rad/s]. The residual of an unsaturated sensing element is noise. The residual of a clipped sensing element is its
 /// saturation deficit, independent of the device's cross-axis compensation.
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
-/// Residual of the accelerometer in free flight [m/s^2]: alpha x t + w x (w x t) + bias - reading. Here w is the rate,
-/// alpha the angular acceleration and t the lever arm. The specific force at the centre of mass is zero in free flight.
+/// Residual of the accelerometer in free flight [m/s^2]: alpha x t + w x (w x t) + bias - reading. The symbols are the
+/// rate w, the angular acceleration alpha and the lever arm t. The specific force at the centre of mass is zero in free
+/// flight.
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
 /// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. Euler's equation without
 /// torque propagates rate and angular acceleration back by the delay d. The propagated rate is w - d alpha + d^2/2 j,
 /// and the propagated angular acceleration is alpha - d j, with the angular jerk j. The residual of a late reading also
-/// depends on the inertia. `jacobian_delay` (may be null) receives the derivative of the residual by the delay.
+/// depends on the inertia. The optional output `jacobian_delay` is the derivative of the residual with respect to the
+/// delay.
 RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                                  double delay_s, Eigen::Vector3d* jacobian_delay);
 
-/// Residual of delayed_flight_factor() with derivatives by lever arm and accelerometer bias only; all other derivatives
-/// are zero. The function is for callers that evaluate only how well a sample fits.
+/// Residual of delayed_flight_factor() with derivatives with respect to lever arm and accelerometer bias only; all
+/// other derivatives are zero. Use delayed_flight_jacobian_calibration() for a fast evaluation of how well a sample
+/// fits.
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
-/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. The effect of a
-/// window on a reading is half of the second derivative, times the variance of the window.
+/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. The averaging
+/// window changes a reading by half of the second derivative times the variance of the window.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
 /// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.

@@ -14,24 +14,24 @@
 
 namespace tumble {
 
-/// RateModel adds the factors of one sample, and of one step between samples, to an arrow matrix. RateModel stores only
-/// coefficients that are derived from its parameters.
+/// RateModel adds the measurements of samples and the motion between samples to the normal equations of RateSmoother
+/// and RateStream.
 class RateModel {
  public:
-  /// `period_s` is the nominal time between samples. The sample period determines the noise per sample, and the unit of
-  /// angular acceleration in the solver.
+  /// Constructs the model for a nominal time `period_s` between samples. The sample period determines the noise per
+  /// sample, and the unit of angular acceleration in the solver.
   RateModel(const RateModelParams& params, double period_s);
 
-  /// Computes the weight of a sample between flight and contact at the current estimate. `rig_covariance` prevents that
-  /// errors of the calibration are mistaken for contact. `threshold_factor` >= 1 multiplies the contact threshold while
-  /// the rates are still inaccurate. `jump` is the smaller of the two results of jump() for the neighbours, because
-  /// flight has at least one smooth side.
+  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. The argument
+  /// `rig_covariance` prevents RateModel from mistaking calibration errors for contact. The argument `threshold_factor`
+  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. The argument `jump` is the smaller of
+  /// the two results of jump() for the neighbouring samples, because flight has at least one smooth side.
   void compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              RateEstimate& estimate) const;
 
-  /// Returns how far a step between two samples violates the smoothness of flight: squared, normalised, six degrees of
-  /// freedom.
+  /// Returns how far a step between two samples violates the smoothness of flight, as a squared normalised error with
+  /// six degrees of freedom.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
@@ -43,25 +43,26 @@ class RateModel {
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
-  /// (site) gives the marginal rate the mean and variance of a distribution truncated at the reading. `damping` in (0,
-  /// 1] is the weight of the new site.
+  /// (site) gives the marginal rate the mean and variance of a distribution truncated at the reading. The argument
+  /// `damping` in (0, 1] is the weight of the new site.
   void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
-  /// Adds the factors of gyro, lower bounds, flight and Euler's equation of one sample. `rig_spread` is null, or the
-  /// covariance of the calibration. With a covariance, the sample does not update the calibration and has a reduced
-  /// weight. A covariance is passed for short flights, which a different calibration could also explain as contact.
+  /// Adds the residuals of gyro, lower bounds, flight and Euler's equation of one sample. The argument `rig_spread` is
+  /// null, or the covariance of the calibration. If a covariance is passed, the sample has a reduced weight and does
+  /// not update the calibration. Pass a covariance for short flights, which a different calibration could also explain
+  /// as contact.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's information about SensorErrors.
-  /// Clipped elements and samples in contact contribute no information about SensorErrors. `rig_spread` states whether
-  /// add_sample() received a covariance; the force of the sample is then left out.
+  /// Clipped elements and samples in contact contribute no information about SensorErrors. The argument `rig_spread`
+  /// states whether add_sample() received a covariance; the force of the sample then contributes no information.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
 
-  /// Adds the motion prior between two samples that are dt_s apart.
+  /// Adds the motion prior between two samples that are `dt_s` apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                 arrow::Block& next) const;
 
@@ -80,18 +81,19 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// Converts a difference in physical units to the solver's units.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the reported covariance of a rate. The reported covariance is larger than the covariance of the fit, in
-  /// contact and because of the uncertain time of the reading.
+  /// Returns the covariance of a rate that is reported to the user. The reported covariance is larger than the
+  /// covariance of the fit in contact, and includes the uncertain time of the reading.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
-  /// Returns the weight of one sample in errors that last `model_error_s`, or 1 if samples are at least as long.
+  /// Returns the weight of one sample in errors that last `model_error_s`, or 1 if the sample period is at least as
+  /// long.
   double independent_reading_ratio() const { return share_; }
 
  private:
   struct ForceFactor {
     RateFactor factor;
-    Eigen::Vector3d information;  ///< information of each axis or element
+    Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
   /// Converts the flight residual to element directions if an accelerometer element clips, and removes the residuals of
   /// satisfied lower bounds. Returns additional variances due to the uncertain sensing directions and the hidden force.
@@ -102,11 +104,11 @@ class RateModel {
   RateKnot at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
   /// Returns the gyro's reading, corrected for known sensor errors.
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns flight_factor() with the known accelerometer errors. `jacobian_delay` is passed to
+  /// Returns flight_factor() with the known accelerometer errors. The argument `jacobian_delay` is passed to
   /// delayed_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* jacobian_delay = nullptr) const;
-  /// Returns flight() with only the derivatives by the calibration, which compute_flight_weight() needs. The function
+  /// Returns the residual of flight() with derivatives with respect to the calibration only. The function
   /// flight_jacobian_calibration() needs less than half of the computation of flight().
   RateFactor flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
                                          const RigConstants& rig) const;
@@ -135,8 +137,8 @@ class RateModel {
   RigConstants::Matrix prior_information_;
 };
 
-/// Returns the source of a rate, from its covariance and from the standard deviation below which a clipped axis counts
-/// as recovered.
+/// Determines the source of a rate from its covariance and from the standard deviation below which a clipped axis
+/// counts as recovered.
 RateSource rate_source(const RateObservation& observation, const RateEstimate& estimate,
                        const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
 

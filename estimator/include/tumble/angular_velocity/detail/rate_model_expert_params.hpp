@@ -4,15 +4,15 @@
 #include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RateModelParams::Expert.
+/// The structs in rate_model_expert_params.hpp are parts of RateModelParams::Expert.
 namespace tumble {
 
-/// Errors of readings other than noise.
+/// RateReadingParams describes the errors of IMU readings other than noise.
 struct RateReadingParams {
   /// Scale and misalignment error of the accelerometer, as a fraction of the force.
   double accel_scale_error = 1e-3;
-  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass at 415
-  /// Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
+  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass filter
+  /// at 415 Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
   /// acceleration.
   double gyro_time_sigma_s = 2.5e-4;
   double rail_sigma_rad_s = 0.05;  ///< standard deviation of the lower bound from a clipped reading
@@ -29,7 +29,7 @@ struct RateReadingParams {
   }
 };
 
-/// Parameters of flight, in which no force acts at the centre of mass and no torque acts on the body.
+/// RateFlightParams contains the parameters of free flight, in which only gravity acts on the body.
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
@@ -52,23 +52,23 @@ struct RateFlightParams {
   }
 };
 
-/// Parameters of contact, in which an unknown force acts on the body.
+/// RateContactParams contains the parameters of contact, in which an unknown force acts on the body.
 struct RateContactParams {
   /// Angular acceleration per contact force: rad/s^2 per m/s^2 of specific force that the flight model does not
   /// explain.
   double gain_rad_m = 4.0;
   /// Factor on the standard deviation during impacts, because the errors of impacts are not Gaussian.
   double sigma_factor = 1.3;
-  /// Largest angular acceleration across the direction of a contact force, per unit of force, in Euler's equation. The
-  /// largest angular acceleration is mass times the distance of the contact point, over a third of the trace of the
+  /// Largest angular acceleration across the direction of a contact force, per unit of specific force. The largest
+  /// angular acceleration is mass times the distance of the contact point, divided by a third of the trace of the
   /// inertia.
   double lever_rad_m = 5.0;
   /// Angular acceleration about the direction of a contact force, as a fraction of the angular acceleration across the
-  /// direction. Torque about the direction of the contact force is caused by several contacts, or by a contact that
-  /// moves within a window.
+  /// direction. Several contacts, or a contact that moves within a sample, cause torque about the direction of the
+  /// contact force.
   double twist_share = 0.3;
   /// Standard deviation of the unknown contact force, as a fraction of the force; the mean is zero. A prior that is
-  /// flat in the logarithm of the force has force_share 0.58. The value 0 disables the prior.
+  /// flat in the logarithm of the force has force_share 0.58. If force_share is 0, the prior is disabled.
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -87,14 +87,13 @@ struct RateContactParams {
   }
 };
 
-/// Parameters of RateModelParams that few users change, grouped by meaning. The fields have the names that are used in
-/// tables and on command lines.
+/// RateModelExpertParams contains the rarely changed parameters of RateModelParams, grouped by topic.
 struct RateModelExpertParams {
   /// Duration for which the model error of a force, a torque or a rate is constant. All samples within model_error_s
   /// share one model error, so averaging reduces only their noise.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate from zero at rest, independent for each sample. The rate deviation at rest covers
-  /// vibration and false detections of rest.
+  /// Standard deviation of the rate from zero at rest, independent for each sample. The standard deviation
+  /// rest_sigma_rad_s covers vibration and false detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorPriors error_sizes = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

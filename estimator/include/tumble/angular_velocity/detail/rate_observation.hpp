@@ -15,16 +15,16 @@
 
 namespace tumble {
 
-/// RateObservation is one sample as input of RateModel.
+/// RateObservation is one IMU sample with its classification, as input of RateModel.
 struct RateObservation {
   ImuSample sample;
   Clipping clipping;
   bool at_rest = false;  ///< the rate is zero, see RestDetector
-  // Masks of axes whose readings have a separate standard deviation, bit j for axis j. Each axis is in at most one of
-  // the three masks subsample_saturated, lone and suspect.
-  std::uint8_t subsample_saturated = 0;  ///< saturated for a part of the window, see SubsampleSaturation
-  std::uint8_t isolated_high_axes = 0;   ///< few high readings on a side without a known saturation level
-  std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation level: lower bounds
+  // Masks of axes whose readings have a separate standard deviation, with bit j for axis j. Each axis is in at most one
+  // of the three masks subsample_saturated, isolated_high_axes and suspect.
+  std::uint8_t subsample_saturated = 0;  ///< saturated during a part of the sample, see SubsampleSaturation
+  std::uint8_t isolated_high_axes = 0;   ///< few high readings on a side without a known saturation limit
+  std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation limit: lower bounds
   Eigen::Vector3d expected_deficit_rad_s =
       Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
   Eigen::Vector3d expected_deficit_sigma_rad_s =
@@ -37,18 +37,18 @@ struct RateObservation {
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
-  /// Returns whether a sensing element clips. If an element clips, all axes are corrupted and the gyro is used element
-  /// by element.
+  /// Returns whether a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
+  /// element by element.
   bool is_element_clipped() const { return (clipping.gyro | clipping.unusable_gyro) != 0; }
 
   /// Returns the axes whose readings have a larger standard deviation than the gyro's noise.
   std::uint8_t partly_saturated_axes() const {
     return static_cast<std::uint8_t>(subsample_saturated | isolated_high_axes | suspect);
   }
-  /// Returns the axes whose reading may be below the rate although no saturation level was found.
+  /// Returns the axes whose reading may be below the true rate although no saturation limit was found.
   std::uint8_t possibly_saturated_axes() const { return static_cast<std::uint8_t>(isolated_high_axes | suspect); }
 
-  /// Returns the axes whose rate is not measured, or has only a lower bound.
+  /// Returns the axes whose rate has no measurement or only a lower bound.
   std::uint8_t unmeasured_axes() const {
     for (const AuxiliaryReading& auxiliary_imu : auxiliary_imus) {
       if (auxiliary_imu.measures_all_rates()) return 0;
@@ -58,12 +58,12 @@ struct RateObservation {
   }
 };
 
-/// Finds the axes of `now` that are saturated for a part of the window, from the neighbouring samples. A neighbour that
-/// does not exist is null.
+/// Finds the axes of the sample `now` that are saturated during a part of the sample, from the neighbouring samples. A
+/// missing neighbour is null.
 void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
                                const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// RateEstimate is the estimate of one sample.
+/// RateEstimate contains the estimated rate, contact state and lower bounds of one sample.
 struct RateEstimate {
   RateKnot knot;
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
@@ -74,7 +74,7 @@ struct RateEstimate {
   /// factor is stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
-  bool soft_bounds = false;  ///< false: bounds are hard, and act only if violated
+  bool soft_bounds = false;  ///< false: lower bounds are hard, and act only if violated
 };
 
 }  // namespace tumble

@@ -5,13 +5,13 @@
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RateSmoother::Params::Expert.
+/// The structs in rate_smoother_expert_params.hpp are parts of RateSmootherParams::Expert.
 namespace tumble {
 
-/// Parameters of the Gauss-Newton optimisation that finds the most likely rates.
+/// RateDescentParams contains the parameters of the Gauss-Newton solver that finds the most likely rates.
 struct RateDescentParams {
   int iterations_max = 15;
-  double tolerance_rad_s = 2e-3;  ///< converged if no rate changes by more than this
+  double tolerance_rad_s = 2e-3;  ///< converged if every rate changes by less than this
   double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
   double widen_first = 8.0;       ///< factor on the contact threshold in the first iteration, then halved
   /// Number of iterations after convergence in which samples in contact use truncated distributions instead of hard
@@ -37,16 +37,16 @@ struct RateDescentParams {
   }
 };
 
-/// Parameters of RateSmootherParams that few users change, grouped by meaning. The fields have the names that are used
-/// in tables and on command lines.
+/// RateSmootherExpertParams contains the rarely changed parameters of RateSmoother, grouped by topic.
 struct RateSmootherExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateSmootherParams::rails applies
+  RailPlaneFinder::Params planes = {};  ///< if no range is stated, the range of RateSmootherParams::rails applies
   /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
   /// Maximum number of optimisations. Each optimisation uses readings corrected by the sensor errors of the previous
-  /// optimisation. If error_rounds_max is 1, sensor errors are included in the covariance but not estimated.
+  /// optimisation. If error_rounds_max is 1, the covariance includes sensor errors, but RateSmoother does not estimate
+  /// the errors.
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -5,18 +5,19 @@
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RateStream::Params::Expert.
+/// The structs in rate_stream_expert_params.hpp are parts of RateStreamParams::Expert.
 namespace tumble {
 
-/// Increase of the calibration's uncertainty while only few flight samples have updated the calibration. The number of
-/// flight samples is n. A sample shorter than `model_error_s` counts as a fraction of a sample.
+/// RigInflationParams increases the calibration's uncertainty until enough flight samples have updated the calibration.
+/// The formulas use the number n of flight samples. A sample shorter than `model_error_s` counts as a fraction of a
+/// sample.
 struct RigInflationParams {
-  /// The covariance of the calibration is multiplied by 1 + covariance / (1 + n / samples). The covariance of the
-  /// gyro's bias is not increased, and the increased covariance never exceeds the prior.
+  /// Initial factor on the calibration's covariance: the factor is 1 + covariance / (1 + n / samples). The covariance
+  /// of the gyro's bias is not increased, and the increased covariance never exceeds the prior.
   double covariance = 60.0;
   double samples = 30.0;
-  /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of a
-  /// recovered rate is at least the fraction `contact` of the saturation deficit, divided by 1 + n / samples.
+  /// Minimum standard deviation of a rate that was recovered in contact, as a fraction of the saturation deficit. The
+  /// fraction is divided by 1 + n / samples. Rates that are recovered in contact depend on the calibration.
   double contact = 0.5;
   /// Uncertainty of a run of clipped samples in contact. A parabola with the slopes of the rate at the ends of the run
   /// predicts a saturation deficit. The standard deviation is at least the fraction `slopes` of the predicted
@@ -39,20 +40,20 @@ struct RigInflationParams {
   }
 };
 
-/// Parameters of RateStreamParams that few users change, grouped by meaning. The fields have the names that are used in
-/// tables and on command lines.
+/// RateStreamExpertParams contains the rarely changed parameters of RateStream, grouped by topic.
 struct RateStreamExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateStreamParams::rails applies
+  RailPlaneFinder::Params planes = {};  ///< if no range is stated, the range of RateStreamParams::rails applies
   /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   double widen_first = 8.0;      ///< factor on the contact threshold of a new clipped sample, then halved
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
-  int bound_age = 3;             ///< number of steps until the bounds of a sample in contact become soft
-  double bound_damping = 0.5;    ///< weight of a new bound in each step
-  int flight_run_min = 6;        ///< minimum consecutive flight samples that update the calibration
+  int bound_age = 3;             ///< number of steps until the lower bounds of a sample in contact become soft
+  double bound_damping = 0.5;    ///< weight of a new lower bound in each step
+  int flight_run_min = 6;        ///< minimum number of consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
-  /// Prior probability of an uncalibrated device. If the probability is 0, the device matches its data sheet.
+  /// Prior probability of an uncalibrated device. If `uncalibrated` is 0, the device is assumed to match its data
+  /// sheet.
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>

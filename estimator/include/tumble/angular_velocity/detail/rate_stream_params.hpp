@@ -12,33 +12,32 @@
 
 namespace tumble {
 
-/// Parameters of RateStream.
+/// RateStreamParams contains the parameters of RateStream.
 struct RateStreamParams {
-  /// Parameters of the rate model. Two priors are narrower than the defaults of RateModelParams, because a stream
-  /// reports before the data outweigh the priors. The prior bias of 2 mg is typical after a factory calibration. The
-  /// prior inertia is that of a box. Moments of 3 : 2 : 2 are at one standard deviation, a disc is at 1.8, and a rod is
-  /// at 3.6.
+  /// Parameters of the rate model. Two priors are narrower than the defaults of RateModelParams, because RateStream
+  /// reports rates before the data outweigh the priors. The prior accelerometer bias of 2 mg is typical after a factory
+  /// calibration. The prior inertia fits a box: moments of 3 : 2 : 2 are at one standard deviation, a disc is at 1.8,
+  /// and a rod is at 3.6.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
   double recovered_sigma_rad_s = 0.5;        ///< see RateSmootherParams
-  double calibration_mahalanobis_max = 1.5;  ///< beyond this distance, the estimated calibration is reset
+  double calibration_mahalanobis_max = 1.5;  ///< maximum distance; a larger distance resets the estimated calibration
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 
-  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If calibrated_errors is empty, readings
-  /// are corrected by model.errors, and the remaining uncertainty is estimated from the readings. The pointer is shared
-  /// because Params are copied often and few Params contain calibrated errors.
+  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If calibrated_errors is empty,
+  /// RateStream corrects the readings by model.errors and estimates the remaining uncertainty from the readings.
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = RateStreamExpertParams;
-  Expert expert = {};  ///< parameters that few users change
+  Expert expert = {};  ///< rarely changed parameters
 
   /// Returns the maximum length of a window: the duration of 4096 samples, but at most 10 s.
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

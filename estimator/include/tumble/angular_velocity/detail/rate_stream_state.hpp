@@ -34,35 +34,36 @@ struct RateStreamForce {
   bool operator==(const RateStreamForce&) const = default;
 };
 
-/// RateStreamKnot is a sample in the window.
+/// RateStreamKnot is a sample in the sliding window of RateStream.
 struct RateStreamKnot {
-  RateObservation observation;  ///< force at the sample's own time; `read` has the force as received
+  RateObservation observation;  ///< with the force at the sample's own time; `read` has the received force
   RateStreamForce read;
-  Clipping by_axis_aligned_rails;  ///< clipping by flags and equal readings; the observation also uses planes
+  Clipping by_axis_aligned_rails;  ///< clipping from flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// Growth of each axis's magnitude per step up to the sample: the smaller growth of the last two steps, and at least
-  /// 0.
+  /// Growth of each axis's magnitude per step up to the sample. The growth is the smaller growth of the last two steps,
+  /// and at least 0.
   Eigen::Vector3d reading_growth_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
   RepeatedReading repeated;  ///< repetition of the gyro's reading; none at rest
-  std::uint8_t near = 0;     ///< axes that may be saturated for a part of the window: rails.md (R76)
+  std::uint8_t near = 0;     ///< axes that may be saturated during a part of the sample: rails.md (R76)
 };
 
-/// RateStreamDelay contains the delay of the accelerometer relative to the gyro, see rate_stream.md (R104) to (R107).
+/// RateStreamDelay contains the estimated delay of the accelerometer relative to the gyro, see rate_stream.md (R104) to
+/// (R107).
 struct RateStreamDelay {
   ImpactSums impacts;
-  double applied_delay_s = 0.0;      ///< delay that is applied; the prior until a delay is found
-  double estimated_s = 0.0;          ///< latest estimate from impacts and from sensor-error evidence
+  double applied_delay_s = 0.0;      ///< delay in use; the prior until a delay is found
+  double estimated_s = 0.0;          ///< latest estimate from impacts and sensor-error evidence
   bool found = false;                ///< whether the delay differs from the prior
   TriadDelay guess;                  ///< latest estimate from impacts alone
   std::optional<TimeNs> updated_ns;  ///< time of the last estimate from impacts
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// RateStreamDevice contains the information about sensor errors from all samples that left the window, and its
-/// derivatives. See rate_stream.md (R100).
+/// RateStreamDevice contains the information about sensor errors from all samples that have left the window. See
+/// rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, calibration_by_errors;
@@ -79,7 +80,7 @@ struct RateStreamDevice {
   Work work;                              ///< buffer
 };
 
-/// RateStreamState is the complete state, which RateStream::start() creates. The state can be copied, and
+/// RateStreamState is the complete state of a RateStream, created by RateStream::start(). The state can be copied, and
 /// RateStream::equal() compares states.
 struct RateStreamState {
   StreamingClippingFinder::State rails;
@@ -90,20 +91,20 @@ struct RateStreamState {
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // Gaussian prior on the oldest sample and on the calibration, from all samples that left the window, about a
+  // Gaussian prior on the oldest sample and on the calibration, from all samples that have left the window, about a
   // linearisation point.
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// State of the device's sensor errors, in a vector of one element. The element is on the heap, because the state
-  /// passes through threads with a small stack.
+  /// State of the sensor errors, in a vector of one element. The vector stores the state on the heap, because threads
+  /// with a small stack use RateStream.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
-  /// largest and smallest readings so far
+  /// Largest and smallest readings so far.
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   MinSaturationLevels min_levels;  ///< lower bounds from the readings so far
-  /// Data of a run of readings at a possible saturation level that has partly left the window. The data are
-  /// RateStreamKnot::reading_growth_rad_s before the run, and the number of samples that left.
+  /// Data of a run of readings at a possible saturation limit that has partly left the window. The data are
+  /// RateStreamKnot::reading_growth_rad_s before the run, and the number of samples that have left.
   Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
-  std::optional<RateKnot> last_marginalised;  ///< the sample that left the window last, and its time
+  std::optional<RateKnot> last_marginalised;  ///< sample that left the window last, and its time
   TimeNs last_marginalised_ns = 0;
   RateKnot prior_knot;
   RigConstants prior_rig;
@@ -112,7 +113,7 @@ struct RateStreamState {
   std::size_t calibration_samples = 0;  ///< flight samples that left the window and updated the calibration
   std::size_t flight_run = 0;           ///< consecutive flight samples among the last samples that left
   std::size_t rig_resets = 0;           ///< number of resets of the calibration
-  std::size_t failures = 0;             ///< number of skipped steps whose system was not positive definite
+  std::size_t failures = 0;             ///< number of steps skipped because the system was not positive definite
   std::vector<arrow::Block> work;       ///< buffer, not part of the state
 };
 

@@ -9,16 +9,16 @@
 
 namespace tumble {
 
-/// RepeatedReading describes the reading of the gyro or accelerometer that a sample contains. If the sensor is slower
-/// than the log (sample and hold), the sample may repeat an earlier reading.
+/// RepeatedReading describes the gyro or accelerometer reading in a sample, which may repeat an earlier reading (sample
+/// and hold). Readings repeat if the sensor updates more slowly than the log.
 struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
-  double period_samples = 1.0;                       ///< samples per reading; 1: each sample has a separate reading
+  double period_samples = 1.0;                       ///< samples per reading; 1: no repeated readings
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the reading]
 
   bool is_slower_than_log() const { return period_samples > 1.0; }
-  /// Returns how far the middle of the reading's window is before the middle of the sample's window, in samples. The
+  /// Returns the time from the middle of the reading's window to the middle of the sample's window, in samples. The
   /// reading's window has the length of the update period, and ends when the sensor takes the reading.
   double delay_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
   /// Returns the change of the measured quantity during delay_samples(), extrapolated with the slope of the last
@@ -27,12 +27,12 @@ struct RepeatedReading {
   bool operator==(const RepeatedReading&) const = default;
 };
 
-/// Detects a log that is faster than its sensor, causally. RepeatDetector is the causal form of find_repeated.
-/// RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29
-/// samples. See docs/maths/rate_stream.md (R95).
+/// Detects causally whether a log has a higher sample rate than the sensor. RepeatDetector is the causal form of
+/// find_repeated(). RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of
+/// 0.5 +- 0.29 samples. See docs/maths/rate_stream.md (R95).
 class RepeatDetector {
  public:
-  /// State of gyro or accelerometer.
+  /// Memory is the detection state of the gyro or of the accelerometer.
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double equal_samples = 0.0;           ///< consecutive samples with this reading
@@ -41,13 +41,13 @@ class RepeatDetector {
     bool operator==(const Memory&) const = default;
   };
   struct State {
-    std::array<Memory, 2> memory;  ///< state of each triad, indexed by Triad
+    std::array<Memory, 2> memory;  ///< state of gyro and accelerometer, indexed by Triad
     const RepeatedReading& of(Triad triad) const { return memory[static_cast<std::size_t>(triad)].now; }
     bool operator==(const State&) const = default;
   };
 
-  /// Processes the next finite sample. Cost: O(1), no allocation. A `clipped` gyro repeats its reading at any update
-  /// rate, so clipped samples are not counted.
+  /// Processes the next finite sample. Cost: O(1), no allocation. A clipped gyro repeats its reading at any update
+  /// rate, so RepeatDetector ignores samples that are `clipped`.
   void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 

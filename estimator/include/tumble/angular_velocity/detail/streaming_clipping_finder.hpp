@@ -12,31 +12,31 @@
 
 namespace tumble {
 
-/// Detects saturation levels and planes of gyro and accelerometer from all readings so far. StreamingClippingFinder is
-/// the causal form of ClippingFinder.
+/// Detects saturation limits and saturation planes of gyro and accelerometer from all readings so far.
+/// StreamingClippingFinder is the causal form of ClippingFinder.
 ///
-/// For gyro and accelerometer, StreamingClippingFinder stores up to `readings_max` distinct readings each. The latest
-/// readings and readings near the extremes have priority. The search for saturation planes is that of ClippingFinder.
-/// StreamingClippingFinder searches after each segment of readings near an extreme. Within a segment,
+/// For each of the two sensors, StreamingClippingFinder stores up to `readings_max` distinct readings. The latest
+/// readings and readings near the extremes have priority. StreamingClippingFinder searches for saturation planes after
+/// each segment of readings near an extreme, with the method of ClippingFinder. Within a segment,
 /// StreamingClippingFinder also searches whenever the number of readings near the extremes has grown by an eighth. A
-/// run of n readings at the extreme therefore needs O(log n) searches instead of n searches. A saturation plane remains
-/// valid after its readings were dropped, until readings contradict the plane. StreamingClippingFinder detects
-/// saturation some samples after the saturation first occurs, so users must classify the samples before the detection
-/// again. The limitations of RailPlaneFinder apply to StreamingClippingFinder.
+/// run of n readings at the extreme therefore needs only O(log n) searches. A saturation plane remains valid after its
+/// readings were dropped, until readings contradict the plane. StreamingClippingFinder detects saturation some samples
+/// after the saturation first occurs, so users must classify the samples before the detection again. The limitations of
+/// RailPlaneFinder apply to StreamingClippingFinder.
 class StreamingClippingFinder {
  public:
   struct Params {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
       visit(p.readings_max, {"readings_max", "1", 64, 65536, "maximum number of distinct readings stored per triad"});
     }
   };
-  /// Stored readings of one sensor (gyro or accelerometer), rad/s or m/s^2.
+  /// Memory contains the stored readings of the gyro [rad/s] or of the accelerometer [m/s^2].
   struct Memory {
     std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
@@ -59,18 +59,18 @@ class StreamingClippingFinder {
   State start() const;
 
   /// Updates the state with one finite sample. Cost: O(1), sometimes a search. Returns whether the known saturation
-  /// levels or planes changed.
+  /// limits or planes changed.
   bool observe(const ImuSample& sample, State& state) const;
 
-  /// Classifies a finite sample by the saturation levels found so far and by the flags of the device. Cost: O(1).
-  /// `before` and `after` are the neighbours of the sample, null at the ends. The neighbours reveal saturation during a
-  /// part of the sample's window.
+  /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the flags of the
+  /// device. Cost: O(1). The arguments `before` and `after` are the neighbours of the sample, or null at the ends. The
+  /// neighbours reveal saturation during a part of the sample.
   Clipping classify(const ImuSample* before, const ImuSample& sample, const State& state,
                     const ImuSample* after = nullptr) const;
 
   const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
 
-  /// Returns whether two states will give identical results, bit for bit.
+  /// Returns whether two states lead to identical results, bit for bit.
   static bool equal(const State& a, const State& b);
 
   /// Returns whether a state that was loaded from a file fits into the preallocated memory.

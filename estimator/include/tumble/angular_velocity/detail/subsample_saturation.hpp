@@ -7,32 +7,32 @@
 
 namespace tumble {
 
-/// SubsampleSaturation is the saturation deficit of a reading whose window is saturated for a part of its length. The
-/// mean of a partly saturated window is below the saturation level. A reading below the saturation level is therefore
-/// still a measurement, but slightly too small.
+/// SubsampleSaturation is the saturation deficit of a reading whose averaging window is saturated during a part of its
+/// length. The mean of a partly saturated window is below the saturation limit. A reading from a partly saturated
+/// window is therefore a measurement that is slightly too small.
 struct SubsampleSaturation {
   bool saturated = false;
   double expected_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
-  double sigma_rad_s = 0.0;             ///< standard deviation of the deficit
+  double sigma_rad_s = 0.0;             ///< standard deviation of the saturation deficit
 };
 
-/// Estimates the saturation deficit of a flagged reading from its unsaturated neighbour. The model is a rate with
-/// constant slope (D per window) that passes the saturation level c within two successive windows. If the fraction p of
-/// the window is clipped, the reading is m = c - (1-p)^2 D/2. The saturation deficit is p^2 D/2, and the neighbour
+/// Estimates the saturation deficit of a partly saturated reading from its unsaturated neighbour. The model is a rate
+/// with constant slope (D per window) that passes the saturation limit c within two successive windows. If the fraction
+/// p of the window is clipped, the reading is m = c - (1-p)^2 D/2. The saturation deficit is p^2 D/2, and the neighbour
 /// reads m + p^2 D/2 - D. The fraction p follows from (c - m) / (m - neighbour) in closed form. The saturation deficit
-/// is zero if the reading is at the saturation level or within noise of the neighbour. The saturation deficit is also
-/// zero if more than kShareMax of the window is clipped. `neighbour_rad_s` is the smaller of the neighbours' readings,
-/// with a sign for which the saturation level is positive. A slope that changes within the two windows is not modelled;
-/// sigma_rad_s covers a change of slope (measured on impacts of tumbling bodies).
+/// is zero if the reading is at the saturation limit or within noise of the neighbour. The saturation deficit is also
+/// zero if more than kShareMax of the window is clipped. The argument `neighbour_rad_s` is the smaller of the
+/// neighbours' readings, with a sign for which the saturation limit is positive. The standard deviation sigma_rad_s
+/// covers a change of slope within the two windows (measured on impacts of tumbling bodies).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 
 /// Returns the smaller neighbouring reading, as evaluated by `read` (neighbours may be null). Returns the saturation
-/// level if there is no usable neighbour. A neighbour whose axis is flagged is used only if most of its window was
-/// unsaturated. The window of a flagged neighbour was mostly unsaturated if its reading differs by twice the distance
-/// of `reading_rad_s` from the saturation level. A rate of constant slope that passes the saturation level in the
-/// current window was unsaturated in the window before. Flagged readings that decrease one by one along a tilted plane
-/// are not rates. See rails.md (R70).
+/// limit if there is no usable neighbour. The function uses a flagged neighbour only if most of the neighbour's window
+/// was unsaturated. The window of a flagged neighbour was mostly unsaturated if its reading differs by twice the
+/// distance of `reading_rad_s` from the saturation limit. A rate of constant slope that passes the saturation limit in
+/// the current window was unsaturated in the window before. Flagged readings that decrease one by one along a tilted
+/// plane are not rates. See rails.md (R70).
 template <class Read>
 double unsaturated_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                              const ImuSample* after, const Read& read) {

@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-/// Triad is one of the two sensors of an IMU, each with three axes.
+/// Triad names one of the two sensors of an IMU, gyro or accelerometer, each with three axes.
 enum class Triad : std::uint8_t { gyro, accelerometer };
 
 /// Returns the reading of the gyro [rad/s] or of the accelerometer [m/s^2].

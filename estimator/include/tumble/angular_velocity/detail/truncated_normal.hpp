@@ -17,9 +17,9 @@ struct GaussianSite {
   double precision = 0.0, shift = 0.0;
 };
 
-/// Returns the Gaussian factor (site) that gives `marginal` the moments of a distribution truncated at `bound`. `now`
-/// is the current site. `share` in (0, 1] is the weight of the new site, which damps the update. The standard deviation
-/// of the marginal without its site is limited to sqrt(`variance_max`).
+/// Returns the Gaussian factor (site) that gives `marginal` the moments of a distribution truncated at `bound`. The
+/// argument `now` is the current site. The argument `share` in (0, 1] is the weight of the new site, which damps the
+/// update. The standard deviation of the marginal without its site is limited to sqrt(`variance_max`).
 GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
                            double variance_max, double share);
 

@@ -6,18 +6,18 @@
 
 namespace tumble {
 
-/// AxisLabels assigns the axes of an accelerometer to the axes of the IMU's gyro.
+/// AxisLabels assigns the axes of an accelerometer to the axes of the gyro in the same IMU.
 ///
-/// The assignment is needed because a file from another source may use other axis names, or a z axis that points down.
-/// The rotation of gravity distinguishes 24 assignments of axis labels. The rotation of gravity does not reveal a flip
-/// of all three axes, because flipped axes rotate like the unflipped axes. An inverted gyro doubles the number of
-/// assignments to 48. AxisLabels does not describe rotations of less than a right angle.
+/// A file from another source may use other axis names, or a z axis that points down. The rotation of gravity
+/// distinguishes 24 assignments of axis labels. The rotation of gravity does not reveal a flip of all three axes,
+/// because flipped axes rotate like the unflipped axes. An inverted gyro doubles the number of assignments to 48.
+/// AxisLabels describes only rotations by multiples of a right angle.
 struct AxisLabels {
-  std::array<int, 3> axis = {0, 1, 2};        ///< index of the reading along x, y, z of the gyro
+  std::array<int, 3> axis = {0, 1, 2};        ///< index of the accelerometer reading along x, y, z of the gyro
   std::array<double, 3> sign = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
   bool gyro_flipped = false;                  ///< all three rates are inverted
 
-  /// Returns the force in the gyro's axes.
+  /// Returns the force in the axes of the gyro.
   Eigen::Vector3d relabelled(const Eigen::Vector3d& force) const {
     return {sign[0] * force[axis[0]], sign[1] * force[axis[1]], sign[2] * force[axis[2]]};
   }
@@ -25,7 +25,7 @@ struct AxisLabels {
 
 inline constexpr int kAxisLabels = 48;
 
-/// Returns all 48 assignments of axis labels. The assignment at index 0 is the identity.
+/// Returns all 48 assignments of axis labels. Index 0 is the identity.
 const std::array<AxisLabels, kAxisLabels>& axis_labels();
 
 }  // namespace tumble

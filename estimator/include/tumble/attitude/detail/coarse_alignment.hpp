@@ -10,17 +10,17 @@
 
 namespace tumble {
 
-/// CoarseAlignment finds the vertical after the attitude was lost, while the body continues to move. The method is the
-/// coarse alignment of inertial navigation. In axes that the gyro propagates, the integral of the specific force is the
-/// sum of gravity's integral and the change of velocity. The integral of gravity grows with time, but the change of
-/// velocity is bounded. See attitude.md (A19), (A20). The method is not a linearisation, and works from any initial
-/// attitude, including upside down. CoarseAlignment does not model the gyro's error; the caller adds the gyro's error
-/// to `tilt_variance_growth_rad2`.
+/// CoarseAlignment estimates the vertical after a loss of the attitude, while the body continues to move. The method is
+/// the coarse alignment of inertial navigation. In axes that the gyro propagates, the integral of the specific force is
+/// the sum of gravity's integral and the change of velocity. The integral of gravity grows with time, but the change of
+/// velocity is bounded. See attitude.md (A19), (A20). The method works from any initial attitude, including upside
+/// down, because it does not linearise. CoarseAlignment does not model the gyro's error; the caller adds the gyro's
+/// error to `tilt_variance_growth_rad2`.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
-  double velocity_m2_s2 = 0.0;                            ///< variance of the velocity at the start, one axis
-  double start_tilt_variance_rad2 = 0.0;                  ///< variance of the tilt at the start, one axis
+  double velocity_m2_s2 = 0.0;                            ///< variance of the velocity at the start, per axis
+  double start_tilt_variance_rad2 = 0.0;                  ///< variance of the tilt at the start, per axis
   double tilt_variance_growth_rad2 = 0.0;                 ///< growth of the tilt's variance since the start
   Eigen::Vector3d force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
   bool operator==(const CoarseAlignment&) const = default;
@@ -32,25 +32,26 @@ struct CoarseAlignment {
     start_tilt_variance_rad2 = tilt_variance_rad2;
   }
 
-  /// Adds `more_W_m_s`, the integral of the specific force over `length_s`.
+  /// Adds `more_W_m_s`, the integral of the specific force over the time `length_s`.
   void add(const Eigen::Vector3d& more_W_m_s, double length_s) {
     force_W_m_s += more_W_m_s;
     time_s += length_s;
   }
 
-  /// Returns the variance of the tilt without the alignment, one axis.
+  /// Returns the variance of the tilt per axis without the coarse alignment.
   double tilt_rad2() const { return start_tilt_variance_rad2 + tilt_variance_growth_rad2; }
 
   /// Returns the variance of the tilt after a correction by levelling(). The tilt variance depends on the velocities at
-  /// the start and end of the alignment, and on the gyro's errors between start and end. A difference of the mean
-  /// force's magnitude from gravity reveals a part of the velocity change.
+  /// the start and end of the alignment, and on the gyro's errors between start and end. A difference between the mean
+  /// force's magnitude and gravity reveals a part of the velocity change.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);
     return std::max(velocity_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + tilt_variance_growth_rad2;
   }
 
-  /// Return the rotation of W that makes the mean force point up without changing the heading, and its angle.
+  /// Return the rotation in world axes that makes the mean force point up without changing the heading, and the angle
+  /// of this rotation.
   Eigen::Quaterniond levelling() const { return tumble::levelling(force_W_m_s.normalized()); }
   double mean_force_tilt_rad() const { return std::atan2(force_W_m_s.head<2>().norm(), force_W_m_s.z()); }
 };

@@ -10,38 +10,38 @@ namespace tumble {
 
 /// Estimates the errors of several accelerometers on one rigid body from the differences between their readings.
 ///
-/// In fast rotation, IMUs (units) at different positions measure large forces that cancel in the mean of all units. The
-/// force errors due to scale and misalignment do not cancel in the mean. For each unit k, a Kalman filter estimates
-/// bias b_k, scale and misalignment M_k, and position error dp_k. The measurement model is f_k = c + A p_k + b_k + M_k
-/// f_k + A dp_k, with A = [a]x + [w]x[w]x. Here c is the common force, p_k the position of the unit, w the rate and a
-/// the angular acceleration. The measurement is the difference of each unit's force from the mean of all units,
-/// averaged over kSpan_s. The model is linear in the forces, so averaging loses only the rotation within kSpan_s.
-/// Errors that all units share do not appear in the differences, and their estimates remain close to zero.
+/// In fast rotation, IMUs at different positions measure large forces that cancel in the mean of all IMUs. The force
+/// errors due to scale and misalignment do not cancel in the mean. For each IMU k, a Kalman filter estimates bias b_k,
+/// scale and misalignment M_k, and position error dp_k. The measurement model is f_k = c + A p_k + b_k + M_k f_k + A
+/// dp_k, with A = [a]x + [w]x[w]x. The symbols are the common force c, the position p_k of the IMU, the rate w and the
+/// angular acceleration a. The measurement is the difference of each IMU's force from the mean of all IMUs, averaged
+/// over kSpan_s. The model is linear in the forces, so averaging loses only the rotation within kSpan_s. Errors that
+/// all IMUs share do not appear in the differences, and their estimates remain close to zero.
 ///
-/// ForceErrors does not model errors that change, or a body that bends.
+/// ForceErrors assumes constant errors and a rigid body.
 class ForceErrors {
  public:
   static constexpr int kUnits = 4;
-  static constexpr int kPerUnit = 15;  ///< bias, rows of M, error of position
+  static constexpr int kPerUnit = 15;  ///< bias, rows of M, position error
   static constexpr int kStates = kUnits * kPerUnit;
   static constexpr double kSpan_s = 0.032;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
-    std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the units
+    std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the IMUs
     int count = 1;                                ///< bound [1, kUnits]
     double bias_sigma_m_s2 = 0.05;                ///< prior of the bias; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
     double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
-    double noise_m_s2 = 0.06;                     ///< noise of one force difference, over a span; bound (0, 1e3]
-    double acceleration_share = 0.02;             ///< additional noise, as a fraction of a x r; bound [0, 1]
-    double gate_sigmas = 5.0;                     ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
+    double noise_m_s2 = 0.06;          ///< noise of one force difference, averaged over kSpan_s; bound (0, 1e3]
+    double acceleration_share = 0.02;  ///< additional noise, as a fraction of a x r; bound [0, 1]
+    double gate_sigmas = 5.0;          ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();
     Covariance P = Covariance::Zero();
-    // Sums over the current averaging span.
+    // Sums over the current averaging time kSpan_s.
     Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix3d jacobian_position = Eigen::Matrix3d::Zero();
@@ -55,15 +55,15 @@ class ForceErrors {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ForceErrors(const Params& params);
 
-  /// Processes the forces of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
-  /// the time of the forces. The filter is updated one time per kSpan_s. Cost: O((kPerUnit count)^2), no allocation.
+  /// Processes the forces of all IMUs in common axes C, measured over `dt_s`, with the rate and angular acceleration at
+  /// the time of the forces. The filter is updated once per kSpan_s. Cost: O((kPerUnit count)^2), no allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 
-  /// Returns the force of unit `k` corrected for its bias, scale and misalignment.
+  /// Returns the force of IMU `k`, corrected for the estimated bias, scale and misalignment.
   static Eigen::Vector3d corrected(int k, const Eigen::Vector3d& force_m_s2, const State& state);
 
-  /// Returns the position error of unit `k`.
+  /// Returns the estimated position error of IMU `k`.
   static Eigen::Vector3d position_error_m(int k, const State& state) {
     return state.x.segment<3>(kPerUnit * k + kPerUnit - 3);
   }

@@ -8,21 +8,21 @@
 
 namespace tumble {
 
-/// The functions of hand_held_model.hpp describe hand-held motion as a least-squares problem: a chain of nodes at equal
-/// time steps, and constants of the device. Each function adds one factor to the normal equations H d = g and returns
-/// the factor's cost (minus two times its logarithm).
+/// The functions in hand_held_model.hpp formulate hand-held motion as a least-squares problem. The unknowns are a chain
+/// of states (nodes) at equal time steps, and constants of the device. Each function adds one residual to the normal
+/// equations H d = g and returns the cost of the residual.
 namespace hand_held {
 
-inline constexpr int kBlockSize = 18;  ///< size of a node's error: see Index
+inline constexpr int kBlockSize = 18;  ///< size of a node's error vector: see Index
 inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantIndex
 using System = ArrowSystem<kBlockSize, kBorderSize>;
 
-/// Index of the first component of each part of a node's error. The attitude error phi is defined by q_true = q_WI
-/// Exp(phi).
+/// Index of the first component of each part of a node's error vector. The attitude error phi is defined by q_true =
+/// q_WI Exp(phi).
 enum Index { kPhi = 0, kRate = 3, kAngularAcceleration = 6, kHandAcceleration = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// Node contains the motion at one time step. The held point is the point of the body at the hand, whose acceleration,
+/// Node is the motion at one time step. The held point is the point of the body at the hand, whose acceleration,
 /// velocity and position are bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
@@ -42,56 +42,57 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// ElementSums contains sums over the readings of one sensing element near a node, at times t from the node. Because of
-/// the sums, the cost of a solver step does not depend on the IMU's sample rate.
+/// ElementSums contains sums over the readings of one sensing element near a node, at times t from the node. The sums
+/// make the cost of a solver step independent of the IMU's sample rate.
 struct ElementSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
          reading_time_sum = 0.0;                           ///< count and sums of the unsaturated readings z
   double clipped = 0.0, clipped_time_s = 0.0, rail = 0.0;  ///< count, mean time and mean level of clipped readings
-  double sign = 0.0;  ///< sign of the saturation level: the true value is beyond the level
-  double unusable_count = 0.0, unusable_mean = 0.0;  ///< count and mean of unusable readings
-  double partial_saturation_sigma = 0.0;  ///< standard deviation of free readings in partly saturated windows
+  double sign = 0.0;                                       ///< sign of the saturation limit
+  double unusable_count = 0.0, unusable_mean = 0.0;        ///< count and mean of unusable readings
+  double partial_saturation_sigma = 0.0;  ///< standard deviation of unsaturated readings in partly saturated windows
 };
 
-/// NodeReadings contains all readings near a node.
+/// NodeReadings contains all IMU readings near a node.
 struct NodeReadings {
   std::array<ElementSums, 3> gyro;
-  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();   ///< mean force
-  Eigen::Vector3d force_bound = Eigen::Vector3d::Zero();  ///< sign of the level where an axis clips, otherwise 0
-  double force_count = 0.0;                               ///< number of force readings
-  double force_time_s = 0.0;                              ///< mean time of the force readings
-  double force_timing_sigma_m_s2 = 0.0;                   ///< force error from uncertain reading times
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean force
+  Eigen::Vector3d force_bound =
+      Eigen::Vector3d::Zero();           ///< sign of the saturation limit where an axis clips, otherwise 0
+  double force_count = 0.0;              ///< number of force readings
+  double force_time_s = 0.0;             ///< mean time of the force readings
+  double force_timing_sigma_m_s2 = 0.0;  ///< force error from uncertain reading times
   bool rest = false;
 };
 
-/// ReadingNoise contains the standard deviations that determine the weights of the factors.
+/// ReadingNoise contains the standard deviations that determine the weights of the residuals.
 struct ReadingNoise {
   double gyro_rad_s = 0.0;    ///< standard deviation of one gyro reading
   double window_rad_s = 0.0;  ///< difference between a window's mean and the rate at its centre
-  double tilt_share = 0.0;    ///< unclipped element's error per deficit of a clipped element
-  double rail_rad_s = 0.0;    ///< standard deviation of a saturation level
-  double bound = 1.0;         ///< fraction of the gyro's lower bounds that counts as information
-  double force_bound = 1.0;   ///< fraction of the accelerometer's lower bounds that counts
+  double tilt_share = 0.0;    ///< error of an unclipped element, per saturation deficit of a clipped element
+  double rail_rad_s = 0.0;    ///< standard deviation of a saturation limit
+  double bound = 1.0;         ///< weight of the gyro's lower bounds, as a fraction of full information
+  double force_bound = 1.0;   ///< weight of the accelerometer's lower bounds, as a fraction
   double accel_m_s2 = 0.0;    ///< standard deviation of one force reading
   double accel_share = 0.0;   ///< additional force noise per m/s^2 of difference from gravity
-  double rest_rad_s = 0.0;    ///< standard deviation of the rate at rest, one node
+  double rest_rad_s = 0.0;    ///< standard deviation of the rate at rest, per node
   double rest_m_s = 0.0;      ///< standard deviation of the velocity at rest
   double rest_m_s2 = 0.0;     ///< standard deviation of the acceleration at rest
 };
 
-/// Adds the factors of the gyro readings of one node, one factor per sensing element. Row i of `rows` is the sensing
-/// direction m_i of element i. Unsaturated readings measure m_i' (rate + bias). Clipped readings limit m_i' (rate +
-/// bias) from one side.
+/// Adds the residuals of the gyro readings of one node, one residual per sensing element. Row i of `rows` is the
+/// sensing direction m_i of element i. Unsaturated readings measure m_i' (rate + bias). Clipped readings limit m_i'
+/// (rate + bias) from one side.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the factor of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. Here R is the
-/// attitude, a the held point's acceleration, g gravity, w the rate, alpha the angular acceleration and r the lever
-/// arm.
+/// Adds the residual of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. The symbols are
+/// the attitude R, the held point's acceleration a, gravity g, the rate w, the angular acceleration alpha and the lever
+/// arm r.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the factor of a stationary node, whose rate, velocity and acceleration are close to zero.
+/// Adds the residuals of a stationary node, whose rate, velocity and acceleration are close to zero.
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
 /// Motion is the motion model between two nodes that are `step_s` apart. The angular jerk is white noise. The held
@@ -101,7 +102,7 @@ class Motion {
  public:
   struct Params {
     double step_s = 0.01;
-    double jerk_rad_s3_sqrts = 0.0;     ///< root of the density of the angular jerk
+    double jerk_rad_s3_sqrts = 0.0;     ///< square root of the density of the angular jerk
     double rotation_error_sqrts = 0.0;  ///< random walk of the attitude per rad/s of rotation: scale, misalignment
     double hand_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
@@ -109,11 +110,11 @@ class Motion {
   };
   explicit Motion(const Params& params);
 
-  /// Adds the factor of a step between two nodes. `hand` multiplies the density of the held point's acceleration, and
-  /// `jerk` multiplies the root density of the angular jerk.
+  /// Adds the residual of a step between two nodes. The argument `hand` multiplies the density of the held point's
+  /// acceleration, and `jerk` multiplies the root density of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
-  /// Adds the prior of one node that velocity and position of the held point are close to zero.
+  /// Adds to one node the prior that velocity and position of the held point are close to zero.
   double add_bounds(const Node& node, System::Block& block) const;
   /// Adds the prior of the first node. The prior fixes the heading; every other unknown has the stationary variance of
   /// its process.
@@ -123,8 +124,8 @@ class Motion {
   double add_attitude(const Node& from, const Node& to, double jerk, System::Block& block, System::Block& next) const;
 
   Params params_;
-  Eigen::Matrix4d jerk_;  // information of (rate, angular acceleration) of both nodes, one axis
-  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // information of (acceleration, velocity, position), one axis
+  Eigen::Matrix4d jerk_;  // information matrix of (rate, angular acceleration) of both nodes, one axis
+  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // information matrix of (acceleration, velocity, position), one axis
   double phi_variance_;
 };
 

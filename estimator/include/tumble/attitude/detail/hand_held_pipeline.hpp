@@ -13,16 +13,16 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. HandHeldPipeline detects
-/// the saturation levels that HandHeldStream needs as input. After each detection of a saturation level,
-/// HandHeldPipeline processes the window again. HandHeldPipeline does not model flight and contact; RegimeStream
-/// distinguishes flight and contact from hand-held motion.
+/// the saturation limits that HandHeldStream needs as input. After each detection of a saturation limit,
+/// HandHeldPipeline processes the window again. HandHeldPipeline assumes hand-held motion; RegimeStream also handles
+/// flight and contact.
 class HandHeldPipeline {
  public:
   struct Params {
     HandHeldStream::Params stream;
     StreamingClippingFinder::Params rails;
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);
@@ -33,7 +33,7 @@ class HandHeldPipeline {
     HandHeldStream::State stream;
     StreamingClippingFinder::State rails;
     RepeatDetector::State repeat_state;
-    bool levels_changed = false;   ///< whether the last sample changed the known saturation levels
+    bool levels_changed = false;   ///< whether the last sample changed the known saturation limits
     std::vector<ClipSigns> signs;  ///< buffer, not part of the state
   };
 
@@ -43,14 +43,15 @@ class HandHeldPipeline {
   /// Returns the state before the first sample.
   State start() const;
 
-  /// Processes one sample. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills.
-  /// On error (`non_finite`, `time_order`, `gap`) the saturation levels are unchanged and `out` is empty.
+  /// Processes one sample. The output `out` is the rate of the sample that is `lag_s` old, and is empty while the
+  /// window fills. On error (`non_finite`, `time_order`, `gap`), the saturation limits are unchanged and `out` is
+  /// empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
-  /// Appends the rates of all samples that are not yet reported to `out`, oldest first.
+  /// Appends the unreported rates of the samples in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
   Status check_state(const State& state) const;
 
  private:

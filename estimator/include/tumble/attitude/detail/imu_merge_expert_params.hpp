@@ -3,18 +3,18 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of ImuMerge::Params::Expert.
+/// The structs in imu_merge_expert_params.hpp are parts of ImuMergeParams::Expert.
 namespace tumble {
 
-/// Parameters of outliers: a reading far from the readings of all other units is excluded from its sample.
+/// ImuOutlierParams defines when ImuMerge excludes a reading that differs from the readings of all other IMUs.
 struct ImuOutlierParams {
-  double rate_rad_s = 0.15;  ///< difference from the median
+  double rate_rad_s = 0.15;  ///< maximum difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
-  double force_m_s2 = 3.0;   ///< difference from the median
-  /// A reading above the fraction subsample_saturation_share of the range may have been saturated for a part of its
+  double force_m_s2 = 3.0;   ///< maximum difference from the median
+  /// A reading above the fraction subsample_saturation_share of the range may have been saturated during a part of its
   /// sample.
   double subsample_saturation_share = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< largest force difference that subsample saturation explains
+  double hidden_force_m_s2 = 3.0;  ///< largest force difference that partial saturation explains
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -34,14 +34,15 @@ struct ImuOutlierParams {
   }
 };
 
-/// Parameters of frozen units. A frozen unit repeats its reading while the readings of other units change, or repeats
-/// its force while gravity rotates. Repetition by sample and hold is shorter than `after_s`.
+/// FrozenImuParams defines when ImuMerge treats an IMU as frozen. A frozen IMU repeats its reading while the readings
+/// of other IMUs change, or repeats its force while gravity rotates. Repetition by sample and hold is shorter than
+/// `after_s`.
 struct FrozenImuParams {
   double after_s = 0.1;
-  double rate_rad_s = 0.03;  ///< minimum change of the rates of other units
+  double rate_rad_s = 0.03;  ///< minimum change of the rates of other IMUs
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all units repeat readings
-  double thawed_after_s = 0.5;  ///< duration of changing readings after which a unit is used again
+  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all IMUs repeat readings
+  double thawed_after_s = 0.5;  ///< duration of changing readings after which an IMU is used again
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -58,8 +59,8 @@ struct FrozenImuParams {
   }
 };
 
-/// Parameters of permanent exclusion of a unit. A unit is excluded permanently if its mean over half a second differs
-/// from the median of all units for `after_s`.
+/// DisagreeingImuParams defines when ImuMerge permanently excludes an IMU: its mean over half a second differs from the
+/// median of all IMUs for `after_s`.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
   double rate_share = 0.06;  ///< additional difference, as a fraction of the rate
@@ -79,8 +80,7 @@ struct DisagreeingImuParams {
   }
 };
 
-/// Parameters of ImuMergeParams that few users change, grouped by meaning. The fields have the names that are used in
-/// tables and on command lines.
+/// ImuMergeExpertParams contains the rarely changed parameters of ImuMerge, grouped by topic.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};
   FrozenImuParams frozen = {};

@@ -14,7 +14,7 @@
 /// State of ImuMerge.
 namespace tumble {
 
-/// ImuRepeat describes the repetition of a reading: its duration, the readings of other units at its start, and the
+/// ImuRepeat describes the repetition of a reading: its duration, the readings of other IMUs at its start, and the
 /// rotation since its start.
 struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
@@ -24,18 +24,18 @@ struct ImuRepeat {
   bool operator==(const ImuRepeat&) const = default;
 };
 
-/// ImuMergeUnit contains the errors of one unit's rate relative to the mean of all units.
+/// ImuMergeUnit contains the rate errors of one IMU relative to the mean of all IMUs.
 struct ImuMergeUnit {
   static constexpr int kErrorCount = 13;  ///< bias, scale and misalignment, time offset
 
   Eigen::Matrix<double, kErrorCount, 1> x = Eigen::Matrix<double, kErrorCount, 1>::Zero();
   Eigen::Matrix<double, kErrorCount, kErrorCount> P = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
-  ImuAverage window;  ///< average of the unit's readings since the last window
-  /// Mean rate and force over the last window. For an absent unit, the means are predicted from the readings of the
-  /// remaining units.
+  ImuAverage window;  ///< average of the IMU's readings since the last window
+  /// Mean rate and force over the last window. For an absent IMU, the means are predicted from the readings of the
+  /// other IMUs.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double exclusion_left_s = 0.0;      ///< remaining time of exclusion from the mean force
-  std::int64_t excluded_windows = 0;  ///< number of windows without this unit
+  std::int64_t excluded_windows = 0;  ///< number of windows without this IMU
   ImuRepeat rate_repeat, force_repeat;
   double changing_readings_s = 0.0;
   double rate_disagreement_rad_s = 0.0, force_disagreement_m_s2 = 0.0, disagreement_s = 0.0;
@@ -48,7 +48,7 @@ struct ImuMergeUnit {
   bool operator==(const ImuMergeUnit&) const = default;
 };
 
-/// Complete state of ImuMerge.
+/// ImuMergeState is the complete state of ImuMerge.
 struct ImuMergeState {
   static constexpr int kImus = 4;
   static constexpr int kAccelerationWindows = 3;  ///< windows needed for an angular acceleration
@@ -65,9 +65,9 @@ struct ImuMergeState {
   UnitSignCheck senses;
   std::int64_t samples = 0, windows = 0;
   int unclipped_windows =
-      kAccelerationWindows;  ///< windows since a gyro was clipped or a unit absent, at most kAccelerationWindows
+      kAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most kAccelerationWindows
   TimeNs last_time_ns = 0;
-  bool all_frozen = false;  ///< all units present in the last window are frozen
+  bool all_frozen = false;  ///< all IMUs in the last window are frozen
   bool operator==(const ImuMergeState&) const = default;
 };
 

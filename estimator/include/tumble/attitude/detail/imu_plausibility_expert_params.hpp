@@ -3,13 +3,13 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of ImuPlausibility::Params::Expert.
+/// The structs in imu_plausibility_expert_params.hpp are parts of ImuPlausibilityParams::Expert.
 namespace tumble {
 
-/// Magnitude of a constant force, as a fraction of gravity.
+/// SteadyForceParams limits the magnitude of a constant force, as a fraction of gravity.
 struct SteadyForceParams {
   double share_min = 0.5, share_max = 2.0;  ///< bounds of the mean magnitude over windows with a constant force
-  int windows_min = 5;                      ///< minimum number of constant windows
+  int windows_min = 5;                      ///< minimum number of windows with a constant force
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -22,15 +22,15 @@ struct SteadyForceParams {
   }
 };
 
-/// Comparison of the rotation of gravity's direction with the gyro.
+/// GravityRotationParams contains the parameters for comparing the rotation of gravity's direction with the gyro.
 struct GravityRotationParams {
   /// Range of plausible regression slopes of gravity's rotation on the gyro's rotation. Pendulums and hand-held wands
   /// give slopes of 0.75 to 1.21.
   double slope_min = 0.65, slope_max = 1.5;
   double rotation_min_rad2 = 0.5;    ///< minimum sum of squared rotations for a decision
   double rotation_least_rad = 0.15;  ///< minimum rotation of a window
-  /// Minimum number of windows in which the force rotated. In one or two windows, a push or the centripetal force of a
-  /// spin in flight may be mistaken for gravity.
+  /// Minimum number of windows in which the force rotated. In one or two windows, the check may mistake a push or the
+  /// centripetal force of a spin in flight for gravity.
   double rotated_windows_min = 5.0;
   /// Maximum residual of a gyro scaled by the regression slope, as a fraction of the residual of the unscaled gyro. The
   /// maximum residual applies to slopes outside of 0 to 1.
@@ -57,10 +57,10 @@ struct GravityRotationParams {
   }
 };
 
-/// Detection of wrong axis labels.
+/// AxisNamingParams contains the parameters for detecting wrong axis labels.
 struct AxisNamingParams {
-  double unexplained_share_max = 0.33;  ///< maximum residual of better labels, as a fraction of the current residual
-  double unexplained_least = 0.01;      ///< minimum unexplained fraction at which labels are compared
+  double unexplained_share_max = 0.33;  ///< maximum ratio of the residuals of better labels and current labels
+  double unexplained_least = 0.01;      ///< minimum unexplained fraction for comparing labels
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -74,11 +74,11 @@ struct AxisNamingParams {
   }
 };
 
-/// Detection of a gyro or accelerometer that repeats its reading.
+/// FrozenTriadParams contains the parameters for detecting a gyro or accelerometer that repeats its reading.
 struct FrozenTriadParams {
   double repeats_s = 1.0;          ///< minimum duration of a repetition
   double longest_share = 10.0;     ///< minimum ratio to the longest earlier repetition
-  double unexplained_least = 0.5;  ///< minimum unexplained fraction, for a gyro that never changed
+  double unexplained_least = 0.5;  ///< minimum unexplained fraction, for a gyro with constant readings
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -92,7 +92,7 @@ struct FrozenTriadParams {
   }
 };
 
-/// Parameters of ImuPlausibilityParams that few users change, grouped by meaning.
+/// ImuPlausibilityExpertParams contains the rarely changed parameters of ImuPlausibility, grouped by topic.
 struct ImuPlausibilityExpertParams {
   SteadyForceParams force = {};
   GravityRotationParams turning = {};

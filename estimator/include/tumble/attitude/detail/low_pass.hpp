@@ -8,11 +8,10 @@
 
 namespace tumble {
 
-/// LowPass filters a vector by a second-order Butterworth low-pass (bilinear transform, corner frequency sqrt(2) / (2
-/// pi tau)). Until the time tau has passed, the output is the mean of all inputs, so that no single sample determines
-/// the start. The state of LowPass is the output and its slope, instead of the delayed inputs and outputs of a biquad.
-/// At a constant sample period, the transfer function equals that of a biquad. A change of the sample period causes no
-/// transient.
+/// LowPass filters a vector with a second-order Butterworth low-pass filter (bilinear transform, corner frequency
+/// sqrt(2) / (2 pi tau)). Until the time tau has passed, the output is the mean of all inputs, so that no single sample
+/// determines the start. The state of LowPass consists of the output and its slope. At a constant sample period, the
+/// transfer function equals that of a biquad filter. A change of the sample period causes no transient.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
@@ -23,8 +22,8 @@ struct LowPass {
   double averaged_s = 0.0;
   double samples = 0.0;
 
-  /// Processes the next input, `dt_s` after the previous input. `warp` is the result of low_pass_prewarp() for tau and
-  /// dt.
+  /// Processes the next input, `dt_s` after the previous input. The argument `warp` is the result of low_pass_prewarp()
+  /// for tau and dt.
   void advance(const Vector& next, double tau_s, double dt_s, double warp) {
     if (averaged_s < tau_s) {
       samples += 1.0;
@@ -43,8 +42,8 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// Returns the warped frequency tan(pi f_c dt) for LowPass. The result is bounded, so that a sample period much longer
-/// than tau passes the input unfiltered.
+/// Returns the warped frequency tan(pi f_c dt) for LowPass. The warped frequency is bounded, so that a sample period
+/// much longer than tau passes the input unfiltered.
 inline double low_pass_prewarp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

@@ -16,24 +16,24 @@ namespace tumble {
 /// Parameters of PivotCheck.
 struct PivotCheckParams {
   double gravity_m_s2 = 9.80665;
-  double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
+  double accel_range_m_s2 = 0.0;    ///< range from the data sheet; 0: unknown
   double reading_s = 0.01;          ///< averaging time of readings
-  double segment_s = 2.0;           ///< duration of a segment of motion; the minimum is half of segment_s
+  double segment_s = 2.0;           ///< duration of a motion segment; the minimum is half of segment_s
   double rotation_least_rad = 1.0;  ///< minimum rotation within a segment
-  double explains_m_s = 0.3;        ///< rms velocity below which a set of rates explains a segment
-  double noise_m_s = 0.03;          ///< rms velocity below which segments explain equally well
+  double explains_m_s = 0.3;        ///< rms velocity below which gyro rates explain a segment
+  double noise_m_s = 0.03;          ///< rms velocity below which two alternatives explain a segment equally well
   double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares
   double evidence_of_each = 0.6;    ///< minimum mean of the log ratio per segment
   double segments_least = 6.0;      ///< minimum number of better explained segments; segments overlap by half
   double better_over_worse = 4.0;   ///< minimum ratio of better to worse explained segments
   double arm_most_m = 0.25;         ///< maximum pivot distance of segments that determine the scale
-  double scale_off = 0.025;         ///< minimum difference of the scale from 1, in addition to five deviations
+  double scale_off = 0.025;         ///< minimum difference of the scale from 1, in addition to five standard deviations
   double scale_deviations = 5.0;
   double scale_segments_least = 10.0;  ///< minimum number of segments that determine the scale
   double scale_share_least = 0.5;
   double gap_max_s = 0.1;  ///< a longer gap ends a segment
 
-  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -68,24 +68,25 @@ struct PivotCheckParams {
   }
 };
 
-/// Checks the plausibility of rates for a body that never rests but is held by a hand, a hinge, or the ground on which
-/// the body rocks. During one or two seconds, a held body rotates about one of its points (the pivot), which hardly
-/// moves. The forces, rotated by the rates, then integrate to gravity times the duration plus the effect of rotation
-/// about the pivot. PivotCheck evaluates the integral for the actual rates, for relabelled or inverted gyro axes, and
-/// for half or twice the rate. The rates are wrong if only one of the alternatives fits the integral, in many segments.
-/// If the pivot is near the sensor, as in hand-held motion, PivotCheck determines the gyro's scale to a per cent.
+/// Checks whether rates are plausible for a body that never rests but is held by a hand, a hinge, or the ground. During
+/// one or two seconds, a held body rotates about one of its points (the pivot), which hardly moves. The forces, rotated
+/// by the rates, then integrate to gravity times the duration plus the effect of rotation about the pivot. PivotCheck
+/// evaluates the integral for the actual rates, for relabelled or inverted gyro axes, and for half or twice the rate.
+/// The rates are wrong if only one of the alternatives fits the integral, in many segments. If the pivot is near the
+/// sensor, as in hand-held motion, PivotCheck determines the gyro's scale to a per cent.
 ///
-/// The equations of PivotCheck are imu_merge.md (I27), (I28), (I29), (I30). PivotCheck uses only measured rates: a
+/// The equations of PivotCheck are imu_merge.md (I27), (I28), (I29), (I30). PivotCheck uses only unsaturated rates: a
 /// segment ends where the gyro saturates. PivotCheck does not detect wrong rates in three cases. First, no alternative
 /// explains the motion of a body that flies or rolls. Second, several axis labels explain rotation about a single axis
-/// equally well. Third, an accelerometer with all three axes flipped only has an estimated pivot on the opposite side.
+/// equally well. Third, flipping all three axes of the accelerometer only moves the estimated pivot to the opposite
+/// side.
 class PivotCheck {
  public:
   using Params = PivotCheckParams;
 
   /// Found is the result of PivotCheck over all segments.
   struct Found {
-    int reading = 0;                    ///< index of the gyro alternative that explains most; 0: unchanged gyro
+    int reading = 0;                    ///< index of the best gyro alternative; 0: unchanged gyro
     double evidence = 0.0;              ///< evidence against the unchanged rates: sum of logarithms
     std::size_t compared_segments = 0;  ///< segments that the alternative or the unchanged rates explain
     std::size_t better_segments = 0, worse_segments = 0;  ///< segments that the alternative explains better or worse
@@ -97,8 +98,8 @@ class PivotCheck {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit PivotCheck(const Params& params);
 
-  /// Compares all alternatives of the gyro over a recording. Cost: O(samples). `rates` contains the estimated rate of
-  /// each sample.
+  /// Compares all alternatives of the gyro over a recording. Cost: O(samples). The argument `rates` contains the
+  /// estimated rate of each sample.
   Found find(std::span<const ImuSample> samples, std::span<const RateState> rates) const;
 
   /// Returns `out_of_range` if an alternative of the gyro explains clearly more segments than the unchanged gyro, or if

@@ -15,16 +15,16 @@ namespace tumble {
 /// accelerometers.
 ///
 /// An extended Kalman filter estimates rate w, angular acceleration a and specific force c at the mean position of the
-/// units, and the error of each lever arm r_k. The measurement model of unit k is f_k = c + a x r_k + w x (w x r_k). In
+/// IMUs, and the error of each lever arm r_k. The measurement model of IMU k is f_k = c + a x r_k + w x (w x r_k). In
 /// body axes, the specific force c rotates as gravity does. The filter runs while a gyro is clipped or reads more than
-/// the fraction kActiveRangeRatio of its range. The lever arms are therefore calibrated before a gyro saturates.
-/// RateRecovery treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the
-/// flags for devices that clip below their range without reporting saturation. Clipped readings of gyro and
-/// accelerometer are lower bounds, not measurements.
+/// the fraction kActiveRangeRatio of its range. RateRecovery therefore calibrates the lever arms before a gyro
+/// saturates. RateRecovery treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder
+/// sets the flags for devices that clip below their range without reporting saturation. Clipped readings of gyro and
+/// accelerometer are lower bounds.
 ///
-/// RateRecovery does not model scale errors; the lever arms are calibrated relative to the gyro's scale. Units at one
-/// position provide no information about the rate. An impact increases the uncertainty of the rate, and does not change
-/// the estimated rate.
+/// RateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
+/// provide no information about the rate. An impact increases the uncertainty of the rate, and does not change the
+/// estimated rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
@@ -44,24 +44,24 @@ class RateRecovery {
     double force_share = 0.004;  ///< additional noise, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
-    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< poses of the units relative to their mean position
+    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< poses of the IMUs relative to their mean position
     int count = 1;                                  ///< bound [1, kUnits]
-    double gyro_range_rad_s = 1e3;                  ///< readings at or above this value are saturated; bound (0, 1e3]
+    double gyro_range_rad_s = 1e3;                  ///< readings at or above this rate are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
     double lever_arm_sigma_m = 1.5e-3;              ///< prior of the lever arm error; bound (0, 10]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< random walk of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
-    double recovered_sigma_rad_s = 1.0;             ///< rates with a larger deviation remain clipped; bound (0, 1e3]
+    double recovered_sigma_rad_s = 1.0;  ///< rates with a larger standard deviation remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// Sensing directions of the units' sensing elements. While a sensing element clips, its saturation deficit
-    /// corrupts the readings of all axes of the triad. RateRecovery then uses the unsaturated sensing elements along
-    /// their sensing directions.
+    /// Sensing directions of the IMUs' sensing elements. While a sensing element clips, its saturation deficit corrupts
+    /// the readings of all axes of the sensor. RateRecovery then uses the unsaturated sensing elements along their
+    /// sensing directions.
     std::array<SensingDirections, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
     Vector x = Vector::Zero();  ///< rate, angular acceleration, force, lever arm errors (axes C)
     Covariance P = Covariance::Zero();
-    bool started = false;  ///< lever arms have their prior uncertainty
+    bool started = false;  ///< whether the filter has been initialised
     bool running = false;
     bool operator==(const State&) const = default;
   };
@@ -69,12 +69,13 @@ class RateRecovery {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateRecovery(const Params& params);
 
-  /// Processes the readings of all units, each in its own axes, `dt_s` after the previous readings. Units whose
-  /// readings are not finite are ignored. `merged` contains the mean of the used units in axes C. Where saturation
-  /// corrupts the mean, `merged` receives rate and force of the filter. The gyro flags of `merged` are set if the rate
-  /// could not be recovered. The accelerometer flags are set if most accelerometers are saturated, or if one
-  /// accelerometer and a gyro are saturated. All remaining flags are cleared, because a recovered rate is not clipped.
-  /// Cost: O(count), no allocation; almost no computation while the body rotates slowly and no gyro is clipped.
+  /// Processes the readings of all IMUs, each in its own axes, `dt_s` after the previous readings. IMUs whose readings
+  /// are not finite are ignored. The argument `merged` contains the mean of the used IMUs in axes C. Where saturation
+  /// corrupts the mean, step() replaces rate and force in `merged` by the estimates of the filter. The gyro flags of
+  /// `merged` are set if the rate could not be recovered. The accelerometer flags are set if most accelerometers are
+  /// saturated, or if one accelerometer and a gyro are saturated. All other flags are cleared, because a recovered rate
+  /// is not clipped. Cost: O(count), no allocation; almost no computation while the body rotates slowly and no gyro is
+  /// clipped.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:

@@ -11,7 +11,8 @@
 #include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
 #include "tumble/attitude/regime_smoother.hpp"
 
-/// recording_rates.hpp estimates the rates of a whole recording, and replaces gyro readings by the estimated rates.
+/// The functions in recording_rates.hpp estimate the rates of a whole recording, and replace gyro readings by the
+/// estimated rates.
 namespace tumble {
 
 /// Estimates the rates of a recording with additional IMUs, see RegimeSmoother. Returns the errors of align() and of
@@ -20,30 +21,32 @@ Status estimate_rates(std::span<const ImuSample> samples, std::span<const Auxili
                       const RegimeSmoother::Params& params, std::vector<RateState>& rates,
                       RegimeSmoother::Report& report);
 
-/// Readings of a recording for methods that process gyro readings instead of rates.
+/// RecoveredRates contains a recording with replaced gyro readings, for methods that need gyro readings instead of
+/// rates.
 struct RecoveredRates {
-  std::vector<ImuSample> samples;                    ///< the recording with replaced gyro readings
-  std::vector<Eigen::Matrix3d> covariances_rad2_s2;  ///< one per sample, sensor axes; zero for unmodified readings
-  std::vector<RateSource> sources;                   ///< one per sample; all `measured` if no rate was estimated
-  bool estimated = false;                            ///< a reading clips, and the rates were estimated
-  std::size_t replaced = 0;                          ///< number of clipped or suspect readings that were replaced
-  RegimeSmoother::Report report;                     ///< valid if `estimated`
+  std::vector<ImuSample> samples;  ///< the recording with replaced gyro readings
+  std::vector<Eigen::Matrix3d>
+      covariances_rad2_s2;          ///< one covariance per sample, in sensor axes; zero for unmodified readings
+  std::vector<RateSource> sources;  ///< one per sample; all `measured` if no rate was estimated
+  bool estimated = false;           ///< whether a reading clips and the rates were estimated
+  std::size_t replaced = 0;         ///< number of clipped or suspect readings that were replaced
+  RegimeSmoother::Report report;    ///< valid if `estimated`
   SaturationLevels rails;
 };
 
-/// Gyro readings that recover_rates() replaces.
+/// ReplacedReadings selects the gyro readings that recover_rates() replaces.
 enum class ReplacedReadings : std::uint8_t {
   clipped,  ///< readings with a clipped axis
-  /// Readings with a clipped or suspect axis. If the gyro's response is slower than its output rate, all readings are
-  /// replaced, because RateSmoother removes the gyro's delay. Smoothers with their own motion limits perform better
-  /// with `clipped`.
+  /// Readings with a clipped or suspect axis. If the gyro's response is slower than its output rate, recover_rates()
+  /// replaces all readings, because RateSmoother removes the gyro's delay. Smoothers with their own motion limits
+  /// perform better with `clipped`.
   unreliable,
 };
 
 /// Replaces all three axes of readings by estimated rates, because a tilted saturation plane also corrupts the
-/// unclipped axes. The gyro bias is added to the rates: the mean difference between readings and rates of the other
-/// samples. If no reading clips or the estimation fails, all readings are unchanged. The exception are the readings of
-/// a slow gyro with `unreliable`, which are interpolated. O(N).
+/// unclipped axes. The function adds the gyro bias to the replaced readings, so that replaced and original readings
+/// have equal bias. If no reading clips or the estimation fails, all readings are unchanged. An exception are the
+/// readings of a slow gyro with `unreliable`, which are interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const RegimeSmoother::Params& params, ReplacedReadings replaced);
 

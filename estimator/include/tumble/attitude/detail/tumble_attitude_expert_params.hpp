@@ -4,16 +4,15 @@
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Groups of TumbleAttitude::Params::Expert.
+/// The structs in tumble_attitude_expert_params.hpp are parts of TumbleAttitudeParams::Expert.
 namespace tumble {
 
-/// Parameters of a body at rest: standard deviations of its velocity and rate from zero.
+/// AttitudeRestParams contains the standard deviations of velocity and rate from zero while the body is at rest.
 struct AttitudeRestParams {
   double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity per node at rest
   double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
   /// Maximum difference of the mean rate from the bias at rest, in standard deviations of rate and bias. With a known
-  /// bias, a rotation of 0.5 deg/s counts as motion. With an unknown bias, a bias above 1.5 deg/s is mistaken for
-  /// motion.
+  /// bias, a rotation of 0.5 deg/s counts as motion. With an unknown bias, a bias above 1.5 deg/s counts as motion.
   double rate_sigmas = 3.0;
 
   template <class Self, class Visitor>
@@ -27,10 +26,11 @@ struct AttitudeRestParams {
   }
 };
 
-/// Parameters of a rolling sphere: accuracy of the rolling constraint, and detection of slip.
+/// AttitudeRollingParams contains the parameters of a rolling sphere: accuracy of the rolling constraint, and detection
+/// of slip.
 struct AttitudeRollingParams {
   double velocity_sigma_m_s = 0.03;  ///< standard deviation of the rolling velocity per node while gripping
-  double slip_velocity_m_s = 0.12;   ///< velocity error at which slip starts; half of it ends slip
+  double slip_velocity_m_s = 0.12;   ///< velocity error at which slip starts; slip ends at half of this error
   double slip_quiet_s = 0.2;         ///< minimum duration of a small velocity error that ends slip
   double slip_timeout_s = 3.0;       ///< maximum duration of a slip
 
@@ -48,14 +48,14 @@ struct AttitudeRollingParams {
   }
 };
 
-/// Motion during a gap of the readings.
+/// AttitudeGapParams contains the parameters of motion during a gap of the readings.
 struct AttitudeGapParams {
   double least_s = 0.05;  ///< a longer time between two samples is a gap
-  /// Random walks of the true rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
-  /// walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
+  /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
+  /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
-  /// Standard deviations of the tilt, one axis. Above lost_tilt_rad, the linearisation of the filter is not valid and
-  /// coarse alignment starts. Below aligned_tilt_rad, the coarse alignment is complete.
+  /// Limits of the tilt's standard deviation, per axis. Above lost_tilt_rad, the linearisation of the filter is invalid
+  /// and coarse alignment starts. Below aligned_tilt_rad, the coarse alignment is complete.
   double lost_tilt_rad = 0.3, aligned_tilt_rad = 0.4;
 
   template <class Self, class Visitor>
@@ -73,20 +73,19 @@ struct AttitudeGapParams {
   }
 };
 
-/// Parameters of TumbleAttitudeParams that few users change, grouped by meaning. The fields have the names that are
-/// used in tables and on command lines.
+/// TumbleAttitudeExpertParams contains the rarely changed parameters of TumbleAttitude, grouped by topic.
 struct TumbleAttitudeExpertParams {
   double bias_walk_rad_s_sqrts = 2e-6;         ///< random walk of the bias per sqrt(s)
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
   double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
   double node_s = 0.04;                        ///< time between two corrections
-  /// Averaging time of readings. The thresholds of TumbleAttitude are valid for the default averaging time. An
-  /// averaging time of zero disables averaging.
+  /// Averaging time of the readings. The thresholds of TumbleAttitude assume the default averaging time. An averaging
+  /// time of 0 disables averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  /// Parameters of rest detection. The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s from
-  /// the mean rate. The limits of 2 deg/s are wide enough for low-cost sensors, and only affect the bias estimate. The
-  /// mean rate has a time constant of half a second, so rest is detected after one second.
+  /// Parameters of the rest detector. The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s
+  /// from the mean rate. The limits of 2 deg/s are wide enough for low-cost sensors, and only affect the bias estimate.
+  /// The mean rate has a time constant of half a second, so TumbleAttitude detects rest after one second.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,

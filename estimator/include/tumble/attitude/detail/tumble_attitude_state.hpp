@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// State of TumbleAttitude between two samples.
+/// TumbleAttitudeState is the state of TumbleAttitude between two samples.
 struct TumbleAttitudeState {
   static constexpr int kStates = 10;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
@@ -20,8 +20,8 @@ struct TumbleAttitudeState {
   Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d displacement_W_m = Eigen::Vector2d::Zero();
   /// Covariance of the errors, in this order: tilt error (phi_x, phi_y) in W, bias in I, velocity, displacement, and
-  /// heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI, and the heading error is not
-  /// corrected.
+  /// heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI. TumbleAttitude does not correct the
+  /// heading error.
   Covariance covariance = Covariance::Zero();
   ImuAverage average;  ///< average of the readings that are not yet processed
   Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean covariance of the averaged rates
@@ -31,17 +31,17 @@ struct TumbleAttitudeState {
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
   double squared_rate_integral_rad2_s = 0.0;
   Eigen::Vector2d recovered_variance_rad2 =
-      Eigen::Vector2d::Zero();  ///< variance of tilt and heading due to recovered rates
+      Eigen::Vector2d::Zero();  ///< variances of tilt and heading due to recovered rates
   double node_s = 0.0;
   Eigen::Vector2d recovered_sigma_sum_rad =
       Eigen::Vector2d::Zero();        ///< sum of the standard deviations of recovered rates
-  double velocity_power_m2_s2 = 0.0;  ///< variance of the body's velocity, one axis
+  double velocity_power_m2_s2 = 0.0;  ///< variance of the body's velocity, per axis
   double displacement_power_m2 = 0.0;
   CoarseAlignment alignment;
   RestDetector::State rest;
   bool at_rest = false;
   // State of a rolling sphere.
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, without bias
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, minus the bias
   double slip_s = 0.0, grip_s = 0.0;
   bool slipping = false;
   TimeNs last_time_ns = 0;

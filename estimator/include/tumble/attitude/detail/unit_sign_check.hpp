@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-/// Detects wrong axes that all units share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
-/// UnitSignCheck compares force differences between units at different positions of one rigid body, summed over a whole
+/// Detects wrong axes that all IMUs share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
+/// UnitSignCheck compares force differences between IMUs at different positions of one rigid body, summed over a whole
 /// run. See imu_merge.md (I9).
 struct UnitSignCheck {
   static constexpr std::size_t kAlternatives =
@@ -20,8 +20,8 @@ struct UnitSignCheck {
 
   std::array<double, kAlternatives> explained_m2_s3{}, effect_m2_s3{};
 
-  /// Adds the readings of one unit over `length_s`, in common axes. Cost: O(1), no allocation. `force_m_s2` and
-  /// `position_m` are the unit's force and position, both relative to the mean of all units.
+  /// Adds the readings of one IMU over the time `length_s`, in common axes. Cost: O(1), no allocation. The arguments
+  /// `force_m_s2` and `position_m` are the IMU's force and position, both relative to the mean of all IMUs.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 
@@ -29,7 +29,8 @@ struct UnitSignCheck {
     std::size_t sense = 0;
     double share = 0.0;
   };
-  /// Returns the alternative that explains most, if the alternative explains more than kExplainedRatioMin.
+  /// Returns the alternative that explains most of the force differences, if the alternative explains more than
+  /// kExplainedRatioMin.
   std::optional<Detected> detected() const;
 
   bool operator==(const UnitSignCheck&) const = default;

@@ -24,8 +24,8 @@ struct ArrowSystem {
   using BorderMatrix = Eigen::Matrix<double, Border, Border>;
   using BorderVector = Eigen::Matrix<double, Border, 1>;
 
-  /// Block is one block row. Before elimination, a Block contains D, E, B and g; after elimination, L^-1, L^-1 E, L^-1
-  /// B and L^-1 g, with D = L L'.
+  /// Block is one block row of the arrow matrix. Before elimination, a Block contains D, E, B and g; after elimination,
+  /// L^-1, L^-1 E, L^-1 B and L^-1 g, with D = L L'.
   struct Block {
     StateMatrix diagonal = StateMatrix::Zero();
     StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
@@ -41,8 +41,8 @@ struct ArrowSystem {
     }
   };
 
-  /// Corner is the border. Before elimination, a Corner contains C and its gradient; after elimination, their Schur
-  /// complement.
+  /// Corner is the border block of the arrow matrix. Before elimination, a Corner contains C and its gradient; after
+  /// elimination, the Schur complements of both.
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
@@ -55,7 +55,7 @@ struct ArrowSystem {
   };
 
   /// Conditional is the distribution of a block for a known border: covariance of the block, and derivative of the
-  /// block's mean by the border.
+  /// block's mean with respect to the border.
   struct Conditional {
     StateMatrix state;
     CrossMatrix jacobian_border;
@@ -67,8 +67,8 @@ struct ArrowSystem {
     CrossMatrix cross;
   };
 
-  /// Eliminates `block`, and adds its Schur complement to `next` (null for the last block) and to the corner. A window
-  /// marginalises its oldest block by eliminate(). Returns false if the block is not positive definite.
+  /// Eliminates `block`, and adds its Schur complement to the corner and to `next` (null for the last block). A sliding
+  /// window calls eliminate() to marginalise its oldest block. Returns false if the block is not positive definite.
   static bool eliminate(Block& block, Block* next, Corner& corner);
 
   /// Computes the step of the border and its covariance, after all blocks are eliminated. Returns false if the corner
@@ -79,7 +79,8 @@ struct ArrowSystem {
   /// border.
   static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
-  /// Returns the conditional distribution of an eliminated block from that of the next block (null for the last block).
+  /// Returns the conditional distribution of an eliminated block, computed from the conditional distribution of the
+  /// next block (null for the last block).
   static Conditional back_conditional(const Block& block, const Conditional* next);
 
   /// Returns the marginal covariance of a block, which includes the uncertainty of the border.
@@ -90,8 +91,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` by L^-1, where a = L L' and L is lower triangular. The function uses plain loops over columns, because
-// Eigen's general triangular solvers are several times slower for small blocks. Each column needs one division.
+// Replaces `a` with L^-1, where a = L L' and L is lower triangular. The function uses plain loops over columns, because
+// Eigen's general triangular solvers are several times slower for small blocks.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;

@@ -8,10 +8,10 @@
 
 namespace tumble {
 
-/// Averages IMU readings over windows of one length. After averaging, bandwidth and thresholds of a filter do not
-/// depend on the IMU's sample rate. A single reading that is as long as the window is returned bit for bit.
+/// Averages IMU readings over windows of one length. The bandwidth and thresholds of a filter after the average do not
+/// depend on the IMU's sample rate. If one reading fills the window, the average equals the reading bit for bit.
 ///
-/// ImuAverage does not model coning and sculling within the window.
+/// ImuAverage neglects coning and sculling within the window.
 struct ImuAverage {
   ImuSample mean;                ///< time stamp of the last reading, clip flags of all readings
   double length_s = 0.0;         ///< total duration of the readings
@@ -19,7 +19,7 @@ struct ImuAverage {
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;
 
-  /// Adds a reading that covers the `dt_s` before its time stamp.
+  /// Adds a reading that covers the time `dt_s` before its time stamp.
   void add(const ImuSample& sample, double dt_s) {
     length_s += dt_s;
     if (++readings == 1) {
@@ -35,7 +35,8 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Returns whether the average is full: another reading of `dt_s` would increase the difference from `window_s`.
+  /// Returns whether the average is complete: another reading of length `dt_s` would increase the difference from
+  /// `window_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
   bool operator==(const ImuAverage& other) const {

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// ImuNeighbours is the position of a time between the samples of an IMU.
+/// ImuNeighbours contains the two samples next to a given time, and the interpolation weight.
 struct ImuNeighbours {
   std::size_t before = 0, after = 0;  ///< neighbouring samples; beyond an end, the two samples at that end
   double share = 0.0;                 ///< interpolation weight; outside of [0, 1] beyond either end
@@ -17,11 +17,11 @@ struct ImuNeighbours {
 };
 
 /// Interpolates the readings of one IMU at the time stamps of another IMU. A time stamp is the end of the sample's
-/// window. The linear interpolation of two readings approximates the mean over a window that ends at the time stamp.
-/// ImuInterpolation does not model different window lengths, or rotation within a window.
+/// averaging window. The linear interpolation of two readings approximates the mean over a window that ends at the time
+/// stamp. ImuInterpolation neglects different window lengths, and rotation within a window.
 class ImuInterpolation {
  public:
-  /// Constructs from at least two samples with increasing stamps, which must outlive the ImuInterpolation.
+  /// Constructs from at least two samples with increasing time stamps. The samples must outlive the ImuInterpolation.
   explicit ImuInterpolation(std::span<const ImuSample> samples) : samples_(samples) {}
 
   /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Cost: amortised O(1).

@@ -13,25 +13,24 @@ namespace tumble {
 
 /// Rejects single wild readings of an IMU, which bus faults cause. A rejected reading counts as missing.
 ///
-/// A reading is an outlier if it jumps in one direction from two neighbours that agree with each other, and no cause
-/// explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump of
-/// the accelerometer. A time stamp that is later than the next time stamp is also an outlier. The equations of
-/// OutlierFilter are outliers.md (O1) to (O6).
+/// A reading is an outlier if it jumps in one direction from two neighbours that agree with each other, and nothing
+/// else explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump
+/// of the accelerometer. A reading whose time stamp is later than the next time stamp is also an outlier. The equations
+/// of OutlierFilter are outliers.md (O1) to (O6).
 ///
-/// The filter is causal. OutlierFilter delays a reading that jumps further than the other triad explains until the next
-/// reading confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or
-/// kForceMax_m_s2 never pass. A wild first reading passes, but the next two readings refute it (first_is_outlier()).
-/// Cost: O(1) per reading, no allocation. OutlierFilter does not model two wild readings in a row, or a wild reading
-/// during an impact that is hard enough to explain it.
+/// The filter is causal. OutlierFilter delays an unexplained jump by one sample, until the next reading confirms or
+/// refutes the jump. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never
+/// pass. A wild first reading passes, but the next two readings refute it (first_is_outlier()). Cost: O(1) per reading,
+/// no allocation. OutlierFilter does not detect two wild readings in a row, or a wild reading during a hard impact.
 class OutlierFilter {
  public:
   /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of
   /// a robot measures forces above kForceMax_m_s2 (10 000 g).
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
-  /// Devices read up to kStatedRangesMax times the range in their data sheet.
+  /// Maximum reading of a device, as a multiple of the range in its data sheet.
   static constexpr double kStatedRangesMax = 2.0;
 
-  /// Properties of the device, from its data sheet; 0 means not stated.
+  /// Device contains the properties of the IMU from its data sheet; 0 means unknown.
   struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
@@ -48,24 +47,24 @@ class OutlierFilter {
 
   explicit OutlierFilter(const Device& device) : device_(device) {}
 
-  /// Decides about the delayed sample from `next`, which must be later than all samples that passed. Returns the
-  /// delayed sample if `next` confirms the delayed sample. Returns nothing if the delayed sample is rejected or no
-  /// sample was delayed. After the call, no sample is delayed.
+  /// Decides about the delayed sample with the help of `next`, which must be later than all samples that passed.
+  /// Returns the delayed sample if `next` confirms the delayed sample. Returns empty if the delayed sample is rejected
+  /// or no sample was delayed. After the call, no sample is delayed.
   std::optional<ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
-  /// Returns whether filter_sample() confirms the second sample of a run, which was delayed because it contradicts the
-  /// first. The first sample is then an outlier, and the run should restart with the second. Call this function before
-  /// filter_sample().
+  /// Returns whether filter_sample() will confirm the second sample of a run, which was delayed because it contradicts
+  /// the first sample. The first sample is then an outlier, and the run should restart with the second. Call
+  /// first_is_outlier() before filter_sample().
   bool first_is_outlier(const ImuSample& next, const State& state) const {
     return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
   }
 
-  /// Returns true if a finite sample must not be used now, because it is delayed, or rejected as larger than any sensor
-  /// reads. Call filter_sample() before must_delay().
+  /// Returns whether a finite sample must not be used now, because it is delayed, or larger than any plausible reading.
+  /// Call filter_sample() before must_delay().
   bool must_delay(const ImuSample& sample, State& state) const;
 
-  /// Records that a sample was used: a sample that filter_sample() returned, or a sample for which must_delay()
-  /// returned false.
+  /// Records that a sample was used. Call pass() for each sample that filter_sample() returned or for which
+  /// must_delay() returned false.
   static void pass(const ImuSample& sample, State& state);
 
   /// Rejects the delayed sample, if any, because no further reading can confirm the sample.
@@ -83,8 +82,8 @@ class OutlierFilter {
   Device device_;
 };
 
-/// Finds the inliers of a recording whose samples are finite and in order of time. Cost: O(N). Element k of the result
-/// is true if sample k passes.
+/// Finds the inliers of a recording whose samples are finite and in time order. Cost: O(N). Element k of the result is
+/// true if sample k passes.
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples);
 
 }  // namespace tumble

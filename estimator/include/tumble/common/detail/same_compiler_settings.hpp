@@ -4,11 +4,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-/// A program must lay out Eigen's matrices and the standard library's containers as the compiled library does. If the
-/// layouts differ, program and library misread each other's memory. The CMake targets of the library ensure equal
-/// layouts. A program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or
-/// _GLIBCXX_DEBUG, does not link. The linker then reports SameCompilerSettings<...>::linked as missing, and the
-/// template arguments show the settings of the program.
+/// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
+/// containers. With different layouts, program and library misread each other's memory. The CMake targets of the
+/// library ensure equal layouts. A program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES,
+/// EIGEN_DONT_VECTORIZE or _GLIBCXX_DEBUG, does not link. The linker then reports SameCompilerSettings<...>::linked as
+/// missing, and the template arguments show the settings of the program.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG

@@ -11,11 +11,11 @@ namespace tumble {
 /// finite. The function check_sample() returns `out_of_range` for larger readings.
 inline constexpr double kReadingMax = 1e6;
 
-/// Checks a stamp's magnitude. Returns `out_of_range` beyond kStampMax_ns.
+/// Checks the magnitude of a time stamp. Returns `out_of_range` beyond kStampMax_ns.
 Status check_stamp(TimeNs stamp_ns, const char* field);
 
 /// Returns the first error in a sequence of samples: `empty`, the error of a single sample (check_sample()), or the
-/// error of a pair (check_stamp_order()). O(N).
+/// error of a pair (check_stamp_order()). Cost: O(N).
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s);
 
 }  // namespace tumble

@@ -6,15 +6,16 @@
 
 namespace tumble {
 
-// Measurement update of a Kalman filter, which all filters of the library use. The function scalar_update() processes
-// one number. Several measured numbers with independent noise are processed in sequence, which needs no matrix inverse.
-// The function vector_update() processes a few numbers together, as published filters do. All functions return the
-// correction of the state of N numbers, and update its covariance P (N x N, kept symmetric to rounding). The cost is
-// O(N^2) per measured number, without allocation for fixed N. P must be positive semidefinite and the noise variance
-// positive (Kalman, J. Basic Eng. 82, 1960). The functions do not use Joseph's form, because P is well conditioned.
+// The functions in scalar_update.hpp compute the measurement update of a Kalman filter. The function scalar_update()
+// processes one measured number. To process several numbers with independent noise without a matrix inverse, call
+// scalar_update() for each number. The function vector_update() processes a few numbers together, as published filters
+// do. All functions return the correction of the state of N numbers, and update its covariance P (N x N, kept symmetric
+// to rounding). The cost is O(N^2) per measured number, without allocation for fixed N. P must be positive semidefinite
+// and the noise variance positive (Kalman, J. Basic Eng. 82, 1960). The functions do not use Joseph's form, because P
+// is well conditioned.
 
-/// Updates state and covariance with one measured number. `row` (N numbers) is the derivative of the measurement by the
-/// state, and `innovation` is the measurement minus its prediction.
+/// Updates state and covariance with one measured number. The argument `row` (N numbers) is the derivative of the
+/// measurement with respect to the state, and `innovation` is the measurement minus its prediction.
 template <typename Row, int N>
 Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, double innovation, double variance,
                                           Eigen::Matrix<double, N, N>& P) {
@@ -37,8 +38,9 @@ Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovati
   return column * (innovation / s);
 }
 
-/// Updates with M measured numbers. `H` (M x N) is their derivative, and `noise` (M x M) is their noise covariance,
-/// which may have correlations. M is at most 4, because the function inverts an M x M matrix.
+/// Updates state and covariance with M measured numbers. The matrix `H` (M x N) is the derivative of the numbers with
+/// respect to the state. The matrix `noise` (M x M) is the noise covariance, which may have correlations. M is at most
+/// 4, because the function inverts an M x M matrix.
 template <int M, int N>
 Eigen::Matrix<double, N, 1> vector_update(const Eigen::Matrix<double, M, N>& H,
                                           const Eigen::Matrix<double, M, 1>& innovation,

@@ -3,7 +3,8 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The fields are shared by all `Params` that state the accuracy of the lidar's mounting and time offset.
+/// Descriptions of parameters that state the accuracy of the lidar's mounting and time offset. Several `Params` structs
+/// use the descriptions in calibration_fields.hpp.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -6,22 +6,22 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/mapping/detail/flight_arc.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: model of the IMU in motion.
+/// The structs in inertial_params.hpp are parts of OdometryParams::Expert and describe the IMU in motion.
 namespace tumble {
 
-/// Errors of inertial integration after kSpan_s, in addition to the uncertainty in RateState. The standard deviations
-/// of inertial integration grow in proportion to time. Choose larger standard deviations if unsure. Smaller standard
-/// deviations constrain the pose in a world with few features.
+/// InertialNoiseParams contains the errors of inertial integration after kSpan_s, in addition to the uncertainty in
+/// RateState. The standard deviations of inertial integration grow in proportion to time. Choose larger standard
+/// deviations if unsure. Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// Rotation error as a fraction of the angle turned, due to scale, misalignment, and rate changes within a sample.
+  /// Rotation error as a fraction of the rotation angle, due to scale, misalignment, and rate changes within a sample.
   double rotation_share = 0.001;
-  /// Velocity error as a fraction of the integral of the specific force. The velocity error matters at impacts.
+  /// Velocity error as a fraction of the integral of the specific force. The velocity error is important at impacts.
   double force_share = 0.03;
-  /// Velocity and rate are random walks over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
+  /// Random walks of velocity and rate over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
   /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
   /// gap, the true rate walks are 3 to 11 rad/s per sqrt(s).
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
@@ -53,10 +53,11 @@ struct InertialNoiseParams {
   }
 };
 
-/// Parameters of a saturated IMU. Accelerometer readings at or above accel_m_s2, and readings that the device flags,
-/// are saturated. While a reading is saturated, the true force may be larger by force_sigma_m_s2 (standard deviation).
+/// SaturatedImuParams contains the parameters of a saturated IMU. Accelerometer readings are saturated if they are at
+/// or above `accel_m_s2` or if the device flags them. The standard deviation of a saturated force reading is
+/// `force_sigma_m_s2`.
 ///
-/// If estimate_deficit is true, the registration estimates the saturation deficit of the rate on clipped axes, at
+/// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
 /// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
 /// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
 /// uncertainty, but at least deficit_sigma_min_rad_s, correlated over deficit_time_s. If saturation lasts across the
@@ -68,7 +69,7 @@ struct SaturatedImuParams {
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
-  double deficit_carry_max = 3.0;    ///< maximum growth of the deficit across a sweep boundary
+  double deficit_carry_max = 3.0;    ///< maximum growth of the saturation deficit across a sweep boundary
   double deficit_knot_share = 0.05;  ///< standard deviation between adjacent knots, as a fraction
 
   template <class Self, class Visitor>
@@ -94,9 +95,9 @@ struct SaturatedImuParams {
   }
 };
 
-/// Parameters of the ballistic arc of a body in flight. Where the specific force at the centre of mass is below
-/// force_m_s2, the force predicted by free flight replaces the accelerometer's reading. The ballistic arc also bridges
-/// a gap of the IMU that begins in flight.
+/// FlightParams contains the parameters of the ballistic arc of a body in flight. Where the specific force at the
+/// centre of mass is below force_m_s2, the force of free flight replaces the accelerometer's reading. The ballistic arc
+/// also bridges a gap of the IMU that begins in flight.
 struct FlightParams {
   std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
   double force_m_s2 = 4.0;

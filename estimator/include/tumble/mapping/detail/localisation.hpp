@@ -9,27 +9,27 @@
 
 namespace tumble {
 
-/// Detects tracking failure from what the mapper reports for each sweep (docs/maths/mapping.md, section 11). Either of
-/// two findings of verdict() is sufficient and permanent:
-///  - The position's standard deviation exceeded the matching distance of surfaces. A sweep can then match any nearby
-///    surface, and a relocalisation is ambiguous.
-///  - Surfaces corrected two or more sweeps beyond their priors. A single correction may come from saturation that the
-///    rates underestimated. An IMU or a lidar that does not meet its data sheet causes more.
+/// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, section
+/// 11). The function verdict() reports one of two permanent findings. First, the position's standard deviation exceeded
+/// the matching distance of surfaces. A sweep can then match any nearby surface, and a relocalisation is ambiguous.
+/// Second, surfaces corrected two or more sweeps beyond their priors. A single large correction may come from
+/// saturation that the rates underestimated. An IMU or a lidar that does not meet its data sheet causes several large
+/// corrections.
 ///
-/// Before the first sweep with surfaces there is no map, so tracking cannot fail. The number of well constrained sweeps
-/// is not used because the standard deviation accounts for it. Localisation does not detect a map of another scale (see
-/// SweepScale), or errors of clocks or mounting that the calibration explains.
+/// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
+/// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
 ///
-/// The function present() judges the pose relative to the map at the newest sweep. Its findings end: the position
-/// relative to the map is again certain, or the contradictions are older than kMemory_s.
+/// The function current_verdict() judges the pose relative to the map at the newest sweep. Findings of
+/// current_verdict() end when the position relative to the map is certain again, or when the contradictions are older
+/// than kMemory_s.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;
 
-  /// `matched_m`: MatchingParams::distance_m of the mapper.
+  /// Constructs with the matching distance `matched_m` of the mapper (MatchingParams::distance_m).
   explicit Localisation(double matched_m) : matched_m_(matched_m) {}
 
-  /// Processes a sweep that has a pose. Cost: O(1). Sweeps must be in time order.
+  /// Processes a sweep that has a pose. Sweeps must be in time order. Cost: O(1).
   void add(const SweepReport& sweep);
 
   double largest_sigma_m() const { return largest_sigma_m_; }
@@ -37,10 +37,10 @@ class Localisation {
   double second_largest_innovation() const { return second_largest_innovation_; }
   /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.
   Status verdict() const;
-  /// Returns `out_of_range` with the present finding and the violated limit. Returns `ok` without a finding.
+  /// Returns `out_of_range` with the current finding and the violated limit, or `ok` without a finding.
   Status current_verdict() const;
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -48,10 +48,10 @@ class Localisation {
   double matched_m_;
   bool map_started_ = false;
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
-  double sigma_m_ = 0.0;  ///< of the newest sweep, relative to the map
+  double sigma_m_ = 0.0;  ///< standard deviation of the newest position, relative to the map
   TimeNs newest_ns_ = 0;
   std::optional<TimeNs> last_contradicted_ns_,
-      previous_contradicted_ns_;  ///< the last two sweeps that surfaces corrected beyond the prior
+      previous_contradicted_ns_;  ///< last two sweeps that surfaces corrected beyond the prior
 };
 
 }  // namespace tumble

@@ -3,10 +3,10 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: extent and accuracy of the map.
+/// The structs in map_params.hpp are parts of OdometryParams::Expert and describe the size and accuracy of the map.
 namespace tumble {
 
-/// Extent and resolution of the local map.
+/// LocalMapParams contains the size and resolution of the local map.
 struct LocalMapParams {
   static constexpr double kPruneRatio = 0.1;  ///< motion that deletes distant points, as a fraction of radius_m
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
@@ -30,13 +30,14 @@ struct LocalMapParams {
   }
 };
 
-/// Uncertainty of the map relative to the world, see docs/maths/mapping.md, section 8.
+/// WorldCovarianceParams contains the uncertainty of the map relative to the world, see docs/maths/mapping.md, section
+/// 8.
 struct WorldCovarianceParams {
-  double tilt_sigma_rad = 0.002;  ///< tilt error of the levelled start: accelerometer bias of 2 mg
-  /// Drift per sweep where surfaces do not constrain a direction, as a fraction of the standard deviation of the
-  /// weakest direction. The drift fraction is a measured value.
+  double tilt_sigma_rad = 0.002;  ///< tilt error at the start: accelerometer bias of 2 mg
+  /// Measured drift per sweep where surfaces do not constrain a direction, as a fraction of the standard deviation in
+  /// the weakest direction.
   double drift_share = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation from which drift is computed
+  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation for computing the drift
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -11,20 +11,20 @@
 namespace tumble {
 
 /// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
-/// LidarInertialOdometry fuses a reading with the prediction from the IMU and earlier sweeps, weighted by the
-/// covariances of reading and prediction. The registration of the sweep starts from the fused prediction. Times of
-/// odometer readings are in the IMU's clock. The errors of a reading are assumed to be independent of all other errors.
+/// LidarInertialOdometry fuses an odometer reading with the prediction from the IMU and earlier sweeps, weighted by
+/// their covariances. The registration of the sweep starts from the fused prediction. Times of odometer readings are in
+/// the IMU's clock. LidarInertialOdometry assumes that the errors of a reading are independent of all other errors.
 /// Wheel slip beyond the stated uncertainty therefore corrupts the estimate.
 
-/// VelocityReading is the velocity of the IMU at one time.
+/// VelocityReading is a measured velocity of the IMU at one time.
 struct VelocityReading {
   TimeNs time_ns = 0;
   Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();  ///< velocity in IMU axes at the reading's time
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// MotionReading is the motion of the IMU between two times, also known as the initial guess of a registration. From
-/// poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
+/// MotionReading is a measured motion of the IMU between two times, also known as the initial guess of a registration.
+/// For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;

@@ -5,12 +5,13 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: registration of a sweep to the map.
+/// The structs in placing_params.hpp are parts of OdometryParams::Expert and describe the registration of a sweep to
+/// the map.
 namespace tumble {
 
-/// Matching of a sweep with the map.
+/// MatchingParams contains the parameters for matching a sweep with the map.
 struct MatchingParams {
-  int neighbours = 12;                    ///< number k of neighbours of a plane fit
+  int neighbours = 12;                    ///< number of nearest neighbours for a plane fit
   double distance_m = 1.0;                ///< maximum distance of matched map points
   std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
   std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
@@ -51,17 +52,17 @@ struct MatchingParams {
   }
 };
 
-/// Stages of a registration: few iterations with all points, further iterations with a subsample, and a coarse stage
-/// for starts far from the prior.
+/// RegistrationStagesParams defines the stages of a registration. The stages are iterations with all points, further
+/// iterations with a subsample, and a coarse stage for starting poses far from the prior.
 struct RegistrationStagesParams {
   int full_iterations = 8;              ///< iterations with all points, before iterations with a subsample
-  std::size_t subsample_points = 1000;  ///< sufficient to decide whether a start converges
-  int coarse_iterations = 15;           ///< iterations of a start far from the prior
-  std::size_t coarse_points = 300;      ///< number of points of a coarse start
-  std::size_t coarse_matches_min = 50;  ///< minimum number of matches of a coarse start
-  double coarse_kernel_min_m = 0.5;     ///< minimum width of the robust kernel of a coarse start
+  std::size_t subsample_points = 1000;  ///< enough points to decide whether a starting pose converges
+  int coarse_iterations = 15;           ///< iterations for a starting pose far from the prior
+  std::size_t coarse_points = 300;      ///< number of points in the coarse stage
+  std::size_t coarse_matches_min = 50;  ///< minimum number of matches in the coarse stage
+  double coarse_kernel_min_m = 0.5;     ///< minimum width of the robust kernel in the coarse stage
   double coarse_rematch_m = 0.2;        ///< motion of a point after which its plane is searched again
-  double coarse_step_m = 5e-3;          ///< convergence bound of a step, together with coarse_step_rad
+  double coarse_step_m = 5e-3;          ///< converged if a step is below coarse_step_m and coarse_step_rad
   double coarse_step_rad = 2e-3;
   double coarse_fitting_share_min = 0.2;  ///< minimum fraction of coarse matches within three standard deviations
 
@@ -87,16 +88,16 @@ struct RegistrationStagesParams {
   }
 };
 
-/// Handling of sweeps without a registration, and of tracking failure.
+/// TrackingParams contains the parameters for sweeps without a registration, and for tracking failure.
 struct TrackingParams {
-  /// A sweep with too few matches still extends the map, as `degenerate`, while the standard deviations of the inertial
-  /// prediction are below extend_sigma_max_m and extend_sigma_max_rad. A lidar at rest scans only rings, which give no
-  /// planes until the lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain at their range
-  /// because of the attitude.
+  /// Largest standard deviations of the inertial prediction at which a sweep with too few matches still extends the
+  /// map, as `degenerate`. A lidar at rest scans only rings, which give no planes until the lidar rotates.
+  /// LocalMapParams::sigma_max_m excludes points that are too uncertain because of their range and the uncertain
+  /// attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max sweeps, the
-  /// mapper continues by inertial prediction and reports `degenerate`.
+  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max sweeps,
+  /// LidarInertialOdometry continues by inertial prediction and reports `degenerate`.
   int lost_sweeps_max = 30;
   /// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The
   /// expected fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.
@@ -119,14 +120,15 @@ struct TrackingParams {
   }
 };
 
-/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, sections 5 and 10.
+/// RelocalisationParams defines the starting poses for a sweep that was not registered from its prior, see
+/// docs/maths/mapping.md, sections 5 and 10.
 struct RelocalisationParams {
-  static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starts converge to one pose
+  static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starting poses converge to one pose
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
-  double deficit_try_rad_s = 3.0;  ///< smallest tried deficit; two, three and five times this value follow
-  int starts_per_sweep = 3;        ///< number of starts after tracking failure, including the prior
-  double shift_m = 1.0;            ///< initial distance of the further starts from the prior
-  double rotation_rad = 0.3;       ///< initial rotation of the further starts from the prior
+  double deficit_try_rad_s = 3.0;  ///< smallest tried saturation deficit; two, three and five times this value follow
+  int starts_per_sweep = 3;        ///< number of starting poses after tracking failure, including the prior
+  double shift_m = 1.0;            ///< initial distance of the other starting poses from the prior
+  double rotation_rad = 0.3;       ///< initial rotation of the other starting poses from the prior
   int rounds = 3;                  ///< number of rounds; each round adds the initial distances
 
   template <class Self, class Visitor>

@@ -3,14 +3,14 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: detection of rest, at the start and later.
+/// The structs in rest_params.hpp are parts of OdometryParams::Expert and describe the detection of rest.
 namespace tumble {
 
-/// Limits of rest detection (`mapper_rest.hpp`): at rest, the rate differs from the bias and from its mean by at most
-/// rate_rad_s. At rest, the specific force differs from gravity and from its mean by at most force_m_s2. During the
-/// initial rest the robot is stationary, and the mean rate becomes the estimate of the gyro's bias.
+/// RestBoundsParams limits rate and force at rest (`mapper_rest.hpp`). At rest, the rate differs from the bias and from
+/// its mean by at most rate_rad_s. At rest, the specific force differs from gravity and from its mean by at most
+/// force_m_s2. During the initial rest, the mean rate becomes the estimate of the gyro's bias.
 struct RestBoundsParams {
-  double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that is used for levelling
+  double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
   double rate_rad_s = 0.05;
   double force_m_s2 = 0.5;
 
@@ -27,10 +27,10 @@ struct RestBoundsParams {
   }
 };
 
-/// Parameters of the start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
+/// OdometryStartParams contains the accuracy of the state at the start, and limits the corrections by the first sweeps.
 struct OdometryStartParams {
-  /// Standard deviation of the levelled attitude in the registration: five times the tilt that WorldCovarianceParams
-  /// reports. The larger standard deviation allows for a start that was not at rest.
+  /// Standard deviation of the initial tilt in the registration: five times the tilt that WorldCovarianceParams
+  /// reports. The larger standard deviation allows for a start in motion.
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< residual speed of a robot that seems to be at rest
   double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
@@ -45,7 +45,7 @@ struct OdometryStartParams {
   }
 };
 
-/// Parameters of a stationary robot, at the start or while the IMU measures only gravity.
+/// StandstillParams contains the parameters of a stationary robot, at the start or while the IMU measures only gravity.
 struct StandstillParams {
   double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
   double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
@@ -53,7 +53,7 @@ struct StandstillParams {
   /// surface constrains the pose. The limit prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
   int sweeps_min = 3;         ///< minimum number of consecutive sweeps for using creep_max_m_s
-  double noise_share = 0.02;  ///< fraction of the standard deviations of inertial prediction in motion
+  double noise_share = 0.02;  ///< noise at rest, as a fraction of the inertial prediction's noise in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -8,12 +8,12 @@
 
 namespace tumble {
 
-/// SpatialHash is a hash table from the integer coordinates of a cube to a number, with open addressing. Single keys
-/// cannot be removed.
+/// SpatialHash is a hash table with open addressing that maps the integer coordinates of a cube to a number. Single
+/// keys cannot be removed.
 class SpatialHash {
  public:
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
-  static constexpr int kLimit = 1 << 20;  ///< coordinates are in [-kLimit, kLimit)
+  static constexpr int kLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
 
   /// Packs three coordinates within the limit into one number.
   static std::uint64_t key(const Eigen::Vector3i& cube) {
@@ -23,7 +23,7 @@ class SpatialHash {
 
   explicit SpatialHash(std::size_t expected = 64);
 
-  /// Returns the value of a key, or kAbsent.
+  /// Returns the value of a key, or kAbsent if the key is not stored.
   std::uint32_t find(std::uint64_t key) const {
     for (std::size_t slot = slot_of(key);; slot = (slot + 1) & mask_) {
       if (keys_[slot] == key) return values_[slot];
@@ -51,7 +51,7 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // The eight cubes of a 2 x 2 x 2 block are in one cache line, because successive queries are usually close
+    // One cache line contains the eight cubes of a 2 x 2 x 2 block, because successive queries are usually close
     // together. Fibonacci hashing distributes the blocks.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;

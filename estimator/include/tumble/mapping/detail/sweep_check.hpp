@@ -10,12 +10,12 @@
 
 namespace tumble::mapping {
 
-/// Returns `out_of_range` if a point was fired after the end of the sweep.
+/// Returns `out_of_range` if a point was fired after the end of the sweep, and otherwise `ok`.
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// Checks whether a sweep is usable. Returns `empty` (no points), `non_finite` (no finite point), `too_few` (no point
-/// in range) or `degenerate`. `degenerate` means that all points have one time stamp although the sweep has a duration.
-/// Equal time stamps indicate that the driver lost the time stamps, so that deskewing would fail unnoticed.
+/// in range) or `degenerate`. The error `degenerate` means that all points have one time stamp although the sweep has a
+/// duration. The driver has then probably lost the time stamps, which deskewing needs.
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

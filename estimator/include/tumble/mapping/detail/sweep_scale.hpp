@@ -13,7 +13,7 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
-/// sweep_scale.hpp compares the scale of the lidar's ranges with the IMU.
+/// The functions in sweep_scale.hpp compare the scale of the lidar's ranges with the IMU.
 namespace tumble {
 
 /// SweepScale is the ratio of displacements between sweeps to the displacements that the IMU measured.
@@ -28,41 +28,41 @@ struct SweepScale {
   Status verdict() const;
 };
 
-/// Estimates the lidar's range scale over the sweeps of a run. The function compares the mean velocities of two
+/// Estimates the scale of the lidar's ranges over the sweeps of a run. The function compares the mean velocities of two
 /// consecutive spans of 0.4 s. The difference of the two velocities equals the integrated acceleration, from gravity in
-/// flight and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
-/// differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the mapper's confidence in the IMU.
-/// The attitudes come from the run's estimate. Intervals with a saturated accelerometer or with unconstrained sweeps
-/// are skipped. The standard deviation is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude
-/// of gravity. Without acceleration, the scale is not observable. Gravity at rest detects an accelerometer's scale
-/// error instead. The standard deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt,
-/// which changes in one direction do not average out. O(N).
+/// flight and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's velocity differences on
+/// the IMU's differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the weight of the IMU in the
+/// mapping. The attitudes come from the run's estimate. The function skips intervals with a saturated accelerometer or
+/// with unconstrained sweeps. The standard deviation is heteroscedasticity-consistent (White, 1980). The argument
+/// `gravity_m_s2` is the magnitude of gravity. Without acceleration, the scale is not observable. The standard
+/// deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt, which does not average out over
+/// changes in one direction. Cost: O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
-/// Estimates the lidar's range scale while samples and sweeps arrive, from the changes of velocity of the last minute,
-/// at most 1000. The estimate uses the first pose of each sweep and is therefore less accurate than an estimate from
-/// the final poses of a whole run.
+/// Estimates the scale of the lidar's ranges while samples and sweeps arrive. SweepScaleEstimator uses the velocity
+/// changes of the last minute, at most 1000. SweepScaleEstimator uses the first pose of each sweep, so
+/// find_sweep_scale() is more accurate.
 class SweepScaleEstimator {
  public:
-  /// Change is the change of velocity from one span to the next span.
+  /// Change is the change of velocity from one time span to the next.
   struct Change {
     TimeNs time_ns = 0;
     Eigen::Vector3d imu_change_m_s = Eigen::Vector3d::Zero(), sweeps_change_m_s = Eigen::Vector3d::Zero();
   };
 
-  /// Buffers `samples_max` samples, which should cover two seconds. If more than `samples_max` samples arrive between
-  /// sweeps, nothing is compared.
+  /// Constructs with a buffer for `samples_max` samples, which should cover two seconds. If more than `samples_max`
+  /// samples arrive between sweeps, the estimator skips the comparison.
   SweepScaleEstimator(double gravity_m_s2, std::size_t samples_max);
 
   /// Adds an IMU sample in time order, with its saturated axes flagged. The function does not allocate.
   void add(const ImuSample& sample);
-  /// Adds a sweep of the mapper, as soon as all samples up to the end of the sweep are added. Cost: O(changes).
+  /// Adds a sweep after all samples up to the end of the sweep. Cost: O(changes).
   void add(const SweepReport& sweep);
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

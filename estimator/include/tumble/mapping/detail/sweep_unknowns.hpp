@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// SweepUnknowns defines the unknowns of a sweep, in the order of vectors and matrices. The order is position, attitude
-/// (left perturbation in W) and velocity at the start of the trajectory, saturation deficit of clipped axes,
+/// SweepUnknowns defines the unknowns of a sweep and their order in vectors and matrices. The order is position,
+/// attitude (left perturbation in W) and velocity at the start of the trajectory, saturation deficit of clipped axes,
 /// calibration.
 struct SweepUnknowns {
   static constexpr int kMotionSize = 9;              ///< position, attitude, velocity
@@ -24,18 +24,18 @@ struct SweepUnknowns {
 
   /// Estimate contains the current values of the unknowns.
   struct Estimate {
-    MotionState state;  ///< motion state, whose covariance is not used
+    MotionState state;  ///< motion state; its covariance is not used
     SweepCalibration calibration;
     Deficit deficit_rad_s = Deficit::Zero();
 
     /// Adds small errors, in the order of the unknowns.
     void add(const Vector& error);
-    /// Returns the errors that transform `other` to this estimate.
+    /// Returns the errors that transform `other` to this estimate, in the order of the unknowns.
     Vector minus(const Estimate& other) const;
   };
 
-  /// Prior is the prior distribution of the unknowns, from the inertial prediction. Unknowns of the saturation deficit
-  /// or the calibration are not estimated if their variance is 0.
+  /// Prior is the prior distribution of the unknowns, from the inertial prediction. A variance of 0 fixes the
+  /// saturation deficit or a calibration value.
   struct Prior {
     Estimate mean;
     Matrix covariance = Matrix::Zero();

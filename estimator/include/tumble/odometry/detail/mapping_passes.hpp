@@ -14,56 +14,56 @@
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
-/// mapping_passes.hpp processes a whole recording with LidarInertialOdometry, in one or several passes.
+/// The functions in mapping_passes.hpp process a whole recording with LidarInertialOdometry, in one or several passes.
 namespace tumble {
 
-/// Sets the clip flags of saturated accelerometer readings that the device did not flag. Returns the saturation levels
-/// of the recording. O(N), plus the search of ClippingFinder.
+/// Sets the clip flags of saturated accelerometer readings that the device did not flag. Returns the saturation limits
+/// of the recording. Cost: O(N), plus the search of ClippingFinder.
 SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::span<ImuSample> samples);
 
-/// Data of a recording, in order of time.
+/// MappingInput contains the data of a recording, in time order.
 struct MappingInput {
   std::span<const ImuSample> samples;  ///< see flag_saturated_forces()
   std::span<const RateState> rates;    ///< one per sample
   std::size_t sweeps = 0;
-  std::function<WaitingSweep(std::size_t)> sweep;  ///< returns one of the sweeps
-  /// Returns the odometer reading for a sweep that ends at `to_ns`, after a sweep that ended at `from_ns`; may be
-  /// empty.
+  std::function<WaitingSweep(std::size_t)> sweep;  ///< function that returns the sweep with the given index
+  /// Returns the odometer reading for a sweep that ends at `to_ns`, after a sweep that ended at `from_ns`. The function
+  /// may be empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
 };
 
-/// Result of one sweep.
+/// MappedSweep contains the result of one sweep.
 struct MappedSweep {
   Status status;       ///< status of LidarInertialOdometry::add_sweep()
   SweepReport report;  ///< final poses; without a pose, `report.trajectory` is empty
 };
 
-/// Result of a recording. The map and all sweeps come from the last pass.
+/// MappedRecording contains the result of a recording. The map and all sweeps come from the last pass.
 struct MappedRecording {
   explicit MappedRecording(const LidarInertialOdometry::Params& params);
 
-  Status status;  ///< error of a sample or of an odometer reading, which ended the pass
+  Status status;  ///< error of a sample or of an odometer reading that ended the pass
   std::vector<MappedSweep> sweeps;
-  std::size_t unfinished_sweeps = 0;  ///< sweeps that end after the last sample and were not used
+  std::size_t unfinished_sweeps = 0;  ///< unused sweeps that end after the last sample
   LidarInertialOdometry mapper;
-  Localisation localisation;  ///< of all sweeps
+  Localisation localisation;  ///< tracking failures over all sweeps
   int passes = 1;
   /// Distance between the last calibration and the stated calibration (StatedCalibration::deviations).
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
 
-  /// Returns whether the calibration contradicts its stated uncertainty.
+  /// Returns whether the estimated calibration contradicts its stated uncertainty.
   bool calibration_is_off() const;
 };
 
-/// Processes a recording in one pass. A sweep that the IMU covers for the most part is cut at the last sample.
+/// Processes a recording in one pass. If the IMU covers most of the last sweep, the sweep is cut at the last sample.
 MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Processes a recording until the lidar's calibration has converged. The first pass estimates the calibration. The
-/// last pass starts from this calibration and builds a consistent map. If the calibration moves further than its stated
-/// uncertainty allows, another pass starts from the new value with the stated uncertainty, at most three times. Passes
-/// also end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
+/// last pass starts from the estimated calibration and builds a consistent map. If the calibration changes by more than
+/// its stated uncertainty allows, another pass starts from the new value, at most three times. Passes also end if more
+/// than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Estimates the scale of the lidar's ranges over all sweeps (see sweep_scale.hpp).

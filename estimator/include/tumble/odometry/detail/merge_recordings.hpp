@@ -17,52 +17,53 @@
 
 namespace tumble {
 
-/// All readings of one of several IMUs on a body, in order of time.
+/// UnitRecording contains all readings of one of several IMUs on a body, in time order.
 struct UnitRecording {
   ImuSheet sheet;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   std::vector<ImuSample> samples;
 };
 
-/// UnitFault is a fault of one unit. The readings of a faulty unit are not used.
+/// UnitFault is a fault of one IMU. The readings of a faulty IMU are not used.
 struct UnitFault {
   enum class Kind : std::uint8_t {
     silent,       ///< no readings for half a second or until the end
-    frozen,       ///< a triad repeats one reading while the other units' readings change
-    frozen_axis,  ///< `axis` repeats one reading; only the readings of its interval are not used
-    disagrees,    ///< the unit contradicts the others; none of its readings is used
+    frozen,       ///< gyro or accelerometer repeats one reading while the other IMUs' readings change
+    frozen_axis,  ///< `axis` repeats one reading; only the readings of this interval are not used
+    disagrees,    ///< the IMU contradicts the others; none of its readings is used
   };
   Kind kind = Kind::silent;
-  std::size_t unit = 0;  ///< index of the unit
+  std::size_t unit = 0;  ///< index of the IMU
   TimeNs since_ns = 0;
   FrozenAxis axis;
 };
 
-/// One IMU that replaces several.
+/// MergedRecordings is one virtual IMU that replaces several IMUs.
 struct MergedRecordings {
-  /// Calibration of one unit relative to the mean of all units.
+  /// Unit contains the calibration of one IMU relative to the mean of all IMUs.
   struct Unit {
-    std::size_t unit = 0;                                   ///< index of the unit
-    double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive is later
-    double rate_bias_rad_s = 0.0;                           ///< norm
+    std::size_t unit = 0;                                   ///< index of the IMU
+    double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU is late
+    double rate_bias_rad_s = 0.0;                           ///< norm of the gyro bias
   };
-  std::vector<ImuSample> samples;                         ///< body axes
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, body axes
-  std::vector<Unit> units;                                ///< units in use
+  std::vector<ImuSample> samples;                         ///< merged samples, in body axes
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, in body axes
+  std::vector<Unit> units;                                ///< IMUs in use
   std::vector<UnitFault> faults;
   std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
   std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
-  std::optional<UnitSignCheck::Detected> mislabelled_axes;  ///< axes of the units that ImuMerge found mislabelled
+  std::optional<UnitSignCheck::Detected> mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
 };
 
-/// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording.
-/// ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges
-/// them. A unit is excluded while an axis is frozen or no readings exist. If ImuMerge finds a frozen or contradicting
-/// unit, a second pass excludes the unit from the start of the fault. Units without samples are ignored. `params`
-/// states ranges and gaps; the units' number, mountings and sensing elements are set here.
+/// Merges the recordings of up to ImuMerge::kImus IMUs on one body with knowledge of the whole recording.
+/// ClippingFinder flags the clipped readings, UnitAlignment resamples the IMUs to common times, and ImuMerge merges the
+/// samples. The function excludes an IMU while an axis is frozen or no readings exist. If ImuMerge finds a frozen or
+/// contradicting IMU, a second pass excludes the IMU from the start of the fault. The function ignores IMUs without
+/// samples. The argument `params` contains ranges and gaps; the function sets the number, mountings and sensing
+/// directions of the IMUs.
 ///
-/// Errors: `empty` if no unit has a sample; `out_of_range` with the axis if frozen axes leave no unit (`out.faults`
-/// lists the excluded units); the errors of ImuMerge. O(N).
+/// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
+/// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).
 Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Params params, MergedRecordings& out);
 
 }  // namespace tumble

@@ -15,10 +15,10 @@
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps one time, in time order. RegimeStream estimates the rates.
-/// LidarInertialOdometry processes the samples and the sweeps for which rates are available. TumblingOdometry runs one
-/// OdometryPass live, and SecondPass runs a second OdometryPass with the estimated calibration. A copy of an
-/// OdometryPass contains the complete state.
+/// Processes IMU samples and lidar sweeps once, in time order. RegimeStream estimates the rates. LidarInertialOdometry
+/// processes the samples and the sweeps for which rates are available. TumblingOdometry runs one OdometryPass live, and
+/// SecondPass runs a second OdometryPass with the estimated calibration. A copy of an OdometryPass contains the
+/// complete state.
 class OdometryPass {
  public:
   /// Queue is a first-in, first-out queue of samples that reuses its memory.
@@ -35,33 +35,34 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Processes a sample like RegimeStream::push, and passes the rate that becomes available to the mapper.
+  /// Processes a sample like RegimeStream::push(), and passes the rate that becomes available to the mapper.
   Status add_imu(const ImuSample& sample);
   /// Sets the pose at which the map starts; see LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
   /// Sets the prior map; see LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
   void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
-  /// Returns whether rates are available up to this time of the lidar's clock.
+  /// Returns whether rates are available up to the time `end_ns` of the lidar's clock.
   bool covers(TimeNs end_ns) const;
-  /// Returns the lidar time up to which rates are available, or nothing before the first rate.
+  /// Returns the lidar time up to which rates are available, or empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
   /// Returns the IMU time of the first sample that covers the lidar time `end_ns` and whose rate is not yet available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
-  /// Registers a sweep. `reading` is the odometer reading within the sweep, if any.
+  /// Registers a sweep. The argument `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
-  /// Predicts the newest pose like TumblingOdometry::newest.
+  /// Predicts the newest pose like TumblingOdometry::newest().
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const;
 
-  /// Converts a time of the lidar's clock to the IMU's clock.
+  /// Converts a time from the lidar's clock to the IMU's clock.
   TimeNs oldest_needed_ns(TimeNs lidar_ns) const;
   /// Reports all rates up to the first sample at or after `time_ns`, even if the lag is not full.
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
   void start_rate_estimation(const RegimeStream::Params& rate);
-  /// Replaces the map and all dependent state by that of `other`, including the sample buffers. The rate estimation of
-  /// this OdometryPass continues after the last sample of `other`. `other` must not be used afterwards.
+  /// Replaces the map and the state that depends on it by those of `other`, including the sample buffers. The rate
+  /// estimation of this OdometryPass continues after the last sample of `other`. The argument `other` must not be used
+  /// afterwards.
   void adopt_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
@@ -74,10 +75,10 @@ class OdometryPass {
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants that relate several members of a loaded state. Returns the first violated invariant.
+  /// Checks that the members of a loaded state are consistent with each other. Returns the first violated condition.
   Status check_state() const;
 
  private:

@@ -15,13 +15,14 @@
 
 namespace tumble {
 
-/// Results of TumblingOdometry for a whole recording, in addition to the sweeps of take().
+/// RecordingEstimate contains the results of TumblingOdometry for a whole recording, in addition to the sweeps of
+/// take().
 struct RecordingEstimate {
   explicit RecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped(mapping) {}
 
-  std::vector<TimeNs> stamps_ns;  ///< received time stamps of the samples in use; their rates have corrected times
-  std::vector<RateState> rates;   ///< one per sample in use; their covariances include `suspect_rad2_s2`
-  std::vector<Eigen::Matrix3d> suspect_rad2_s2;  ///< see suspect_covariance(); empty without such a finding
+  std::vector<TimeNs> stamps_ns;  ///< received time stamps of the used samples; `rates` contains corrected times
+  std::vector<RateState> rates;   ///< one per used sample; the covariances include `suspect_rad2_s2`
+  std::vector<Eigen::Matrix3d> suspect_rad2_s2;  ///< see suspect_covariance(); empty without a finding
   RegimeSmoother::Report report;                 ///< report of the rate estimation, with the calibration of the IMU
   SaturationLevels rails;
   ImuFindings findings;

@@ -11,13 +11,14 @@
 namespace tumble {
 
 /// Saves a map: position, normal and standard deviation of each point, in the order of `points`. The saved bytes are
-/// equal on every machine. They contain the version of the format, the number of points and a checksum. A point needs
-/// 28 bytes. Cost: O(points).
+/// equal on every machine. The bytes contain the version of the format, the number of points and a checksum. A point
+/// needs 28 bytes. Cost: O(points).
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
-/// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error `points` is unchanged. The
-/// returned status names the field, the value and the bound. The error is `too_few` (truncated bytes), `non_finite` or
-/// `out_of_range` (another kind of data, another version, damaged bytes, or points that check_prior_map() rejects).
+/// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the
+/// returned status names the field, the value and the bound. The error `too_few` means truncated bytes. The errors
+/// `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
+/// check_prior_map() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 
 }  // namespace tumble

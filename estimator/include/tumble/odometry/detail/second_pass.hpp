@@ -16,20 +16,19 @@ namespace tumble {
 
 /// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble with a lever arm, a mounting and a time offset that are still uncertain.
-/// SecondPass therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion,
-/// SecondPass processes the buffer with the current calibration, and with rates that are smoothed with a lag of
-/// `lag_s`. SecondPass processes `sweeps` buffered sweeps per new sweep. When all buffered sweeps are processed, map
-/// and pose of the second pass replace those of the first pass, and the buffer is freed. The result is discarded if
-/// tracking of the second pass has failed, or if the second pass has rejected clearly more sweeps than the first pass.
+/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondPass
+/// therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, SecondPass
+/// processes the buffer with the current calibration, and with rates that are smoothed with a lag of `lag_s`.
+/// SecondPass processes `sweeps` buffered sweeps per new sweep. At the end of the second pass, map and pose of the
+/// second pass replace the map and pose of the first pass. SecondPass discards the result if tracking failed in the
+/// second pass, or if the second pass rejected clearly more sweeps than the first.
 ///
-/// If tracking of the first pass has failed for `lost_s`, SecondPass processes the whole buffer immediately, one time.
-/// The regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose
-/// jumps by the error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, SecondPass processes the whole buffer immediately, once. The
+/// regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps
+/// by the error of the first pass.
 ///
 /// SecondPass stores samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and a second map of the
-/// same motion. SecondPass does not model a third pass with the calibration of the second pass, or a jolt that ends the
-/// rest long before the tumble.
+/// same motion. A jolt that ends the rest long before the tumble starts the second pass too early.
 class SecondPass {
  public:
   struct Params {
@@ -42,7 +41,7 @@ class SecondPass {
     double inflation = 4.0;
     double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
-    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
@@ -63,13 +62,14 @@ class SecondPass {
     }
   };
 
-  /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
+  /// Constructs with the parameters `rate` and `mapping` of the first pass. Throws InvalidParams if a parameter is out
+  /// of bounds.
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
   /// Sets the gyro's zero offset, before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
 
-  /// Buffers a sample that the first pass has processed. No allocation.
+  /// Buffers a sample that the first pass has processed, without allocating memory.
   void store(const ImuSample& sample);
   /// Buffers a sweep that the first pass has registered, with the odometer reading of the sweep, if any.
   void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
@@ -87,11 +87,11 @@ class SecondPass {
   /// Returns whether the first pass received the map of the second pass.
   bool applied() const { return applied_; }
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants that relate the members to each other and to the first pass. Returns the first violated
-  /// invariant.
+  /// Checks that the members are consistent with each other and with the first pass. Returns the first violated
+  /// condition.
   Status check_state(const OdometryPass& first) const;
 
  private:
@@ -130,7 +130,7 @@ class SecondPass {
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
   bool last_sweep_rejected_ = false;  ///< the second pass rejected its last sweep
   bool started_by_tracking_failure_ = false,
-       early_pass_tried_ = false;  ///< started due to tracking failure; a pass of this kind was tried
+       early_pass_tried_ = false;  ///< a pass was started because of tracking failure; a pass of this kind was tried
 };
 
 }  // namespace tumble

@@ -8,25 +8,24 @@
 
 namespace tumble {
 
-/// First and last of the rejected stamps that follow each other.
+/// RejectedStamps contains the first and last of consecutive rejected time stamps.
 struct RejectedStamps {
   TimeNs first_ns = 0, last_ns = 0;
 };
 
-/// Decides which IMU stamps continue a run, and when the run restarts because the clock changed. TumblingOdometry and
-/// RollingOdometry use the same rules:
-/// - A stamp that is not later than the last accepted stamp is rejected with `time_order`.
-/// - A stamp more than `gap_max_s` after the last accepted stamp is rejected with `gap`.
-/// - The run restarts after a gap when the next stamp confirms the rejected stamp.
-/// - The run restarts after the clock stepped back when rejected stamps have increased for kStepBack_s. One confirming
-///   stamp is enough if the run consists of one sample, since that sample may have the wrong stamp.
-/// A single wrong stamp thus costs one sample. Stamps that are ahead by less than a gap are found by OutlierFilter.
+/// Decides which IMU time stamps continue a run, and when the run restarts because the clock changed. TumblingOdometry
+/// and RollingOdometry use StampOrder. StampOrder rejects a time stamp that is not later than the last accepted time
+/// stamp with `time_order`. StampOrder rejects a time stamp more than `gap_max_s` after the last accepted time stamp
+/// with `gap`. The run restarts after a gap when the next time stamp confirms the rejected time stamp. After a backward
+/// step of the clock, the run restarts when rejected time stamps have increased for kStepBack_s. If the run consists of
+/// one sample, one confirming time stamp is enough, because the first sample may have the wrong time stamp. A single
+/// wrong time stamp causes the loss of one sample. OutlierFilter detects time stamps that are ahead by less than a gap.
 class StampOrder {
  public:
   static constexpr double kStepBack_s = 0.2;
 
   struct State {
-    std::optional<TimeNs> newest_ns;  ///< last accepted stamp
+    std::optional<TimeNs> newest_ns;  ///< last accepted time stamp
     bool single = false;              ///< only one sample was accepted
     std::optional<RejectedStamps> rejected;
   };
@@ -34,11 +33,11 @@ class StampOrder {
 
   explicit StampOrder(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Judges a stamp. On an error, which is `out_of_range` beyond kStampMax_ns, `time_order` or `gap`, the sample must
-  /// not be used. Otherwise `verdict` states whether the run must restart with this sample.
+  /// Classifies a time stamp. Returns `out_of_range` beyond kStampMax_ns, `time_order` or `gap` if the sample must not
+  /// be used. Otherwise, `verdict` states whether the run must restart with this sample.
   Status classify_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
 
-  /// Records that the sample with this stamp was used.
+  /// Records that the sample with the time stamp `stamp_ns` was used.
   static void accept(TimeNs stamp_ns, State& state);
 
  private:

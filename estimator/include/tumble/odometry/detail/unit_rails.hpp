@@ -14,16 +14,15 @@
 
 namespace tumble {
 
-/// Detects the saturation levels of several IMUs (units) on one body from their readings, causally. UnitRails flags
-/// readings that a device clips without reporting saturation, before ImuMerge processes the readings. Each unit has a
-/// StreamingClippingFinder with the rule of ConfirmedSaturation. ClippingFinder applies the rule of ConfirmedSaturation
-/// to whole recordings.
+/// Detects the saturation limits of several IMUs on one body from their readings, causally. UnitRails flags readings
+/// that a device clips without reporting saturation, before ImuMerge processes the readings. UnitRails uses only
+/// confirmed saturation limits, as defined by ConfirmedSaturation.
 ///
-/// A sample is classified by the saturation levels that earlier samples revealed. The first two to ten samples at a
-/// saturation level are therefore not flagged. UnitRails does not report sensing directions of the units to ImuMerge.
+/// UnitRails classifies a sample by the saturation limits that earlier samples revealed. The first two to ten samples
+/// at a saturation limit are therefore not flagged.
 class UnitRails {
  public:
-  /// State of one unit.
+  /// Unit contains the detection state of one IMU.
   struct Unit {
     StreamingClippingFinder::State rails;
     std::optional<ImuSample> before;  ///< last finite sample
@@ -31,21 +30,21 @@ class UnitRails {
   using State = std::array<Unit, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
 
-  /// Constructs from the data sheets of the units, at most ImuMerge::kImus. Throws InvalidParams if a stated range is
+  /// Constructs from the data sheets of the IMUs, at most ImuMerge::kImus. Throws InvalidParams if a stated range is
   /// out of bounds.
   explicit UnitRails(std::span<const ImuSheet> sheets);
 
-  /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per unit.
+  /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per IMU.
   State start() const;
 
-  /// Copies `samples`, one per unit, to `out` and sets the flags of saturated axes. The function does not allocate.
-  /// Samples that are not finite are copied unchanged.
+  /// Copies `samples`, one per IMU, to `out` and sets the flags of saturated axes, without allocating memory. The
+  /// function copies samples that are not finite unchanged.
   void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// Updates the state with raw samples. Cost: O(1), sometimes a search; no allocation.
+  /// Updates the state with unflagged samples. Cost: O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
+  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
   Status check_state(const State& state) const;
 
  private:

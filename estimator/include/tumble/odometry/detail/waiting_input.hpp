@@ -27,23 +27,23 @@ class WaitingReadings {
   /// Time by which a reading may extend beyond its sweep, because clocks differ.
   static constexpr auto kExtrapolation_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
 
-  /// Stores a reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end of the
-  /// last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the reading's
-  /// sweep is already registered, or `out_of_range` (too late, or more than `most` waiting readings).
+  /// Stores an odometer reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end
+  /// of the last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the
+  /// reading's sweep is already registered, or `out_of_range` (too late, or more than `most` waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kReadingsMax);
 
-  /// Returns the reading of the sweep from `from_ns` to `end_ns`. If the sweep has several readings, only the last
-  /// reading is returned, because the errors of the readings are correlated. The function deletes all readings up to
-  /// `end_ns`.
+  /// Returns the odometer reading of the sweep from `from_ns` to `end_ns`. If the sweep has several readings, the
+  /// function returns only the last reading, because the errors of the readings are correlated. The function deletes
+  /// all readings up to `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 
-  /// Returns the last reading within a sweep, like take(), and keeps all readings. Cost: O(log n).
+  /// Returns the last odometer reading within a sweep, like take(), but keeps all readings. Cost: O(log n).
   std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
   /// Returns the number of dropped readings that span two sweeps.
   std::size_t spanning_two_sweeps() const { return spanning_two_sweeps_; }
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

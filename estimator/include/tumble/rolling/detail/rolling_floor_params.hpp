@@ -3,10 +3,11 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the floor. All fields of the groups have unique names, so groups add no prefix.
+/// The structs in rolling_floor_params.hpp are parts of RollingParams::Expert and describe the floor. All parameters
+/// have unique names without a group prefix.
 namespace tumble {
 
-/// Contact of sphere and floor: accuracy of the rolling constraint and properties of floors.
+/// RollingContactParams contains the accuracy of the rolling constraint and the properties of floors.
 struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
   double grip_sigma_share = 1.5e-3;  ///< additional standard deviation, as a fraction of the rolling speed
@@ -20,7 +21,7 @@ struct RollingContactParams {
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest
-  double speed_sigma_m_s = 1.0;         ///< standard deviation of the mean velocity over a second, while unknown
+  double speed_sigma_m_s = 1.0;         ///< standard deviation of the mean velocity over 1 s, while unknown
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -54,7 +55,7 @@ struct RollingContactParams {
   }
 };
 
-/// Rates of changes between contact modes, and rules for events (slip or bump).
+/// RollingModeParams contains the rates of changes between contact modes, and rules for events (slip or bump).
 struct RollingModeParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;

@@ -3,21 +3,22 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the IMU in the sphere. All fields of the groups have unique names, so groups add no
-/// prefix.
+/// The structs in rolling_imu_params.hpp are parts of RollingParams::Expert and describe the IMU in the sphere. All
+/// parameters have unique names without a group prefix.
 namespace tumble {
 
-/// Prior standard deviations of the IMU's errors. A prior standard deviation of zero means exactly known.
+/// RollingPriorParams contains the prior standard deviations of the IMU's errors. A standard deviation of 0 marks an
+/// exact quantity.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
   double gyro_bias_sigma_rad_s = 8.7e-4;  ///< 0.05 deg/s
   double accel_bias_sigma_m_s2 = 0.04;
-  double accel_scale_sigma = 3.5e-3;  ///< each entry of scale and misalignment
+  double accel_scale_sigma = 3.5e-3;  ///< each entry of the scale and misalignment matrix
   double gyro_scale_sigma = 2.5e-3;
   double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
-  /// A first rate above start_rate_rad_s means a start in motion. If the sphere starts in motion, the initial
-  /// uncertainty of attitude and velocity is larger.
+  /// Minimum rate of the first sample that indicates a start in motion. If the sphere starts in motion, RollingFilter
+  /// increases the initial uncertainty of attitude and velocity.
   double start_rate_rad_s = 0.1;
 
   template <class Self, class Visitor>
@@ -66,16 +67,16 @@ struct RollingImuNoiseParams {
   }
 };
 
-/// Parameters of saturated readings: standard deviations of the saturation deficit.
+/// RollingRailParams contains the standard deviations of the saturation deficit for saturated readings.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. If the standard deviation is
-  /// zero, rates are not recovered.
+  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. If recovered_rate_sigma_rad_s is
+  /// 0, ImuMerge does not recover rates.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// Standard deviation of the force that subsample saturation removes, as a fraction of the force. A short impact may
-  /// saturate the accelerometer within a sample although the mean stays below the range. The full standard deviation
-  /// applies from 0.6 of the range on; below 0.3 of the range, the standard deviation is zero.
+  /// Standard deviation of the force that saturation shorter than a sample removes, as a fraction of the force. A short
+  /// impact may saturate the accelerometer within a sample although the mean stays below the range. The full standard
+  /// deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
   double subsample_saturation_share = 0.25;
 
   template <class Self, class Visitor>
@@ -93,9 +94,9 @@ struct RollingRailParams {
   }
 };
 
-/// Parameters of gaps in the readings. If two readings are further apart than gap_from_s, the force between the
-/// readings is unknown. The rate is interpolated linearly, with the uncertainty of an angular acceleration of
-/// gap_acceleration_rad_s2.
+/// RollingGapParams contains the parameters of gaps in the readings. If two readings are further apart than gap_from_s,
+/// the force between the readings is unknown. RollingFilter interpolates the rate linearly, with the uncertainty of an
+/// angular acceleration of gap_acceleration_rad_s2.
 struct RollingGapParams {
   double gap_from_s = 0.06;
   double gap_max_s = 1.0;  ///< a longer gap ends the run
