@@ -105,7 +105,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
-    throw BadInput("the truth does not belong to this recording, because it has no rates of the primary IMU");
+    throw BadInput("the truth contains no rates of the primary IMU, so it does not belong to this recording");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
