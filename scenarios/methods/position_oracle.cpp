@@ -182,8 +182,8 @@ Method position_oracle() {
   info.name = "oracle";
   info.kind = Kind::position;
   info.doc =
-      "Shows the bound: our smoother receives the true attitude. The remaining error is that of the accelerometer and "
-      "of the contact state.";
+      "Gives an upper bound of the accuracy: our smoother receives the true attitude. Errors of the accelerometer and "
+      "of the contact state remain.";
   info.ours = true;
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
@@ -196,8 +196,8 @@ Method position_oracle_contact() {
   info.name = "oracle_contact";
   info.kind = Kind::position;
   info.doc =
-      "Shows the bound: our smoother receives the true contact state (grip, slip or none). The remaining error is that "
-      "of the sensors.";
+      "Gives an upper bound of the accuracy: our smoother receives the true contact state (grip, slip or none). Errors "
+      "of the sensors remain.";
   info.ours = true;
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;

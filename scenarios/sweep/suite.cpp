@@ -115,7 +115,7 @@ void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
     if (each.draws.empty()) scenarios.fail("each class needs at least one draw");
     suite.classes.push_back(std::move(each));
   }
-  if (seen.empty()) node.fail("each class needs at least one draw");
+  if (seen.empty()) node.fail("the suite needs at least one draw");
   const auto by_seed = [](const auto& a, const auto& b) { return a.second < b.second; };
   suite.first_seed = std::min_element(seen.begin(), seen.end(), by_seed)->second;
   suite.last_seed = std::max_element(seen.begin(), seen.end(), by_seed)->second;
