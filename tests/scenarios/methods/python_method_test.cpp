@@ -182,9 +182,10 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
 // each was once taken for the numbers that a conversion makes of it
 TEST_F(PythonMethod, WhatWouldLoseAPartOfItselfIsRefused) {
   const std::string q = "np.tile([0, 0, 0, 1], (n, 1))";
-  EXPECT_THAT(wrong("rate", "imu.gyro * 1j"), HasSubstr("rate is no array of numbers but of complex128"));
+  EXPECT_THAT(wrong("rate", "imu.gyro * 1j"),
+              HasSubstr("rate must be an array of numbers; it is an array of complex128"));
   EXPECT_THAT(wrong("rate", "(imu.gyro * 1j).tolist()"), HasSubstr("no array of numbers but list"));
-  EXPECT_THAT(wrong("position", "t, np.zeros((n, 3)) + 1j, " + q), HasSubstr("position is no array of numbers"));
+  EXPECT_THAT(wrong("position", "t, np.zeros((n, 3)) + 1j, " + q), HasSubstr("position must be an array of numbers"));
   EXPECT_THAT(wrong("rate", "imu.gyro.astype(str)"), HasSubstr("no array of numbers but of <U"));
   EXPECT_THAT(wrong("rate", "imu.gyro.astype(str).astype(object)"), HasSubstr("but of object"));
   EXPECT_THAT(wrong("rate", "imu.gyro > 0"), HasSubstr("no array of numbers but of bool"));
