@@ -92,7 +92,7 @@ def numbers(name, given, *shape):
             raise TypeError
         out = found.astype(np.float64)
     except (TypeError, ValueError, OverflowError):
-        what = f"an array of {given.dtype}" if isinstance(given, np.ndarray) else type(given).__name__
+        what = f"an array of {given.dtype}" if isinstance(given, np.ndarray) else f"a {type(given).__name__}"
         raise Refused(f"{name} must be an array of numbers; it is {what}") from None
     if out.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in zip(out.shape, shape)):
         bound = ", ".join("N" if size is None else str(size) for size in shape)
