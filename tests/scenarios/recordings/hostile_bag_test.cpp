@@ -94,7 +94,7 @@ TEST_F(Lz4Bag, DamageIsOneLine) {
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "more.bag", {}); }), HasSubstr("the LZ4 frame"));
   copy_ros1_bag(folder_ / "plain.bag", folder_ / "fewer.bag", states(1));
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "fewer.bag", {}); }),
-              HasSubstr("bytes, but the chunk states"));
+              HasSubstr("bytes, but its stated size is"));
 }
 
 // a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed
