@@ -301,9 +301,9 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 - *Raw gyro* means the published mapping method with unchanged gyro readings (`rate/raw`, `slam/icp_raw`).
 - *Published* means the published method with the constants of the authors' launch files (`rate/saave`,
   `slam/published`).
-- *Threshold 10.0 rad/s* means the published method with `{threshold}`. The authors' threshold of 10.45 rad/s
-  fits their gyro, which saturates at 10.5 rad/s. Each of our simulated gyros has a different saturation limit: on
-  {unseen} of the clipped samples, no axis exceeds 10.45 rad/s.
+- *Threshold 10.0 rad/s* means the published method with `{threshold}`. The authors' threshold of
+  10.45 rad/s fits their gyro, which saturates at 10.5 rad/s. Each of our simulated gyros has a different
+  saturation limit: on {unseen} of the clipped samples, no axis exceeds 10.45 rad/s.
 - *Ours* means the methods `rate/tumble` and `slam/tumble` (whole recording), and `rate/tumble_lag` and
   `slam/tumble_lag` (fixed lag).
 - The gyro clips in {clipping} simulated runs, on {clipped} samples. The median peak of a run is {speed} rad/s and
@@ -311,15 +311,15 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 - The end error is the error of the motion from the sixth registered sweep to the last sweep, as in the paper.
 - The map overlap is the share of map points within 0.25 m of the reference. A map fails below 85 % overlap, as in
   the paper.
-- A failed run has the rank of the largest error, an overlap of 0 and a failed map. The paper reports rotation errors
-  above 90° as 90°; our rotation errors reach 180°.
+- A failed run counts as the largest error, an overlap of 0 and a failed map. The paper reports rotation errors above
+  90° as 90°; our rotation errors reach 180°.
 
 ## What is reproduced
 
 - The published rate method reduces the rate error nearly as much as in the paper under three conditions: one sensing
   element is clipped, the centre of mass is exact, and the threshold is 10.0 rad/s.
 - The published mapping method reduces the median localisation errors at least as much as in the paper. On the
-  simulated runs most similar to the paper, the map overlap also rises as in the paper.
+  simulated runs most similar to the paper, the published method also raises the map overlap as in the paper.
 - With the published recovery, some mapping failures remain in our simulation. Some simulated motions are faster than
   the motions of the paper. Our maps are not registered to a reference map.
 
@@ -360,8 +360,8 @@ One of the gyro's three sensing elements is clipped in {one} of the clipped samp
 
 The figure of localisation errors shows a failed run as an error of 10 m and 180°.
 
-The following table shows only the {alike_draws} of {draws} simulated runs that are most similar to the paper. In
-these runs, at most 2 % of the clipped samples have two or three clipped sensing elements.
+The following table shows only the {alike_draws} of {draws} simulated runs that are most similar to the paper. In a
+run of this table, at most 2 % of the clipped samples have two or three clipped sensing elements.
 
 {alike}
 ## Map outliers
