@@ -51,7 +51,7 @@ nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
 }  // namespace
 
 void raise_input(const char* error_code, const std::string& field, nb::handle value, nb::handle bound) {
-  const std::string text = field + " is " + text_of(value) + ", must be " + text_of(bound);
+  const std::string text = field + " is " + text_of(value) + "; it must be " + text_of(bound);
   const nb::object type = error_class();
   const nb::object error = type(text.c_str(), error_code, field.c_str(), value, bound);
   PyErr_SetObject(type.ptr(), error.ptr());
@@ -68,8 +68,8 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
     // a bound that was rounded down must not make the time look valid
     if (status.error_code == ErrorCode::time_order && PyObject_RichCompareBool(bound.ptr(), value.ptr(), Py_LT) == 1)
       bound = value;
-    message = std::string(to_string(status.error_code)) + ": " + status.field + " is " + text_of(value) + ", bound " +
-              text_of(bound);
+    message = std::string(to_string(status.error_code)) + ": " + status.field + " is " + text_of(value) +
+              "; the bound is " + text_of(bound);
   }
   nb::object at = nb::none();
   if (index) {

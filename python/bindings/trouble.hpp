@@ -17,7 +17,7 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Raises TumbleError with the message "FIELD is VALUE, must be BOUND". `error_code`: the name of a Trouble, or `type`,
+/// Raises TumbleError with the message "FIELD is VALUE; it must be BOUND". `error_code`: the name of a Trouble, or `type`,
 /// `shape`, `unknown` of an argument. `bound`: a number or a text.
 [[noreturn]] void raise_input(const char* error_code, const std::string& field, nb::handle value, nb::handle bound);
 

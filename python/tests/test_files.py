@@ -113,7 +113,7 @@ def test_a_series(tmp_path):
         with pytest.raises(tumble.TumbleError, match=about):
             tumble.write(tmp_path / "wrong.h5", dataclasses.replace(recording, series=[dataclasses.replace(barometer, **wrong)], truth=None))
     recording.truth.series = []
-    with pytest.raises(tumble.TumbleError, match="truth.series has 0 entries, must have 1"):
+    with pytest.raises(tumble.TumbleError, match="truth.series has 0 entries; it must have 1"):
         tumble.write(tmp_path / "wrong.h5", recording)
     assert not (tmp_path / "wrong.h5").exists()
 

@@ -67,7 +67,7 @@ def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
         take(times, *spin[1:3])
     said = caught.value
     assert (type(said.value), said.value, type(said.bound), said.bound) == (int, times[20], int, times[19])
-    assert f"time_ns is {times[20]}, bound {times[19]}" in str(said)
+    assert f"time_ns is {times[20]}; the bound is {times[19]}" in str(said)
 
 
 def test_times_of_another_call_are_told_to_the_nanosecond(spin):

@@ -97,7 +97,7 @@ std::span<const ComplicationLine> of_imu() {
   static const std::vector<ComplicationLine> kLines = {
       {"rail of the gyro", {{"gyro_rail_rad_s"}, {"gyro_range_rad_s", kBeyondRates_rad_s}}},
       {"rail of the accelerometer", {{"accel_rail_m_s2"}, {"accel_range_m_s2", kBeyondForces_m_s2}}},
-      {"tilt, scale and offset of the rails",
+      {"tilt, scale and offset of the saturation limits",
        {{"gyro_element_misalignment"},
         {"gyro_element_scale"},
         {"gyro_element_offset_rad_s"},
@@ -165,7 +165,7 @@ std::span<const ComplicationLine> of_lidar() {
       {"lost sweeps", {{"sweep_dropout_share"}}, Sort::size},
       {"late start", {{"start_delay_s"}}, Sort::size},
       {"beam width", {{"beam_rays", 1.0}}},
-      {"returns from its own cage", {{"sees_own_cage"}}},
+      {"lidar returns from the robot's own cage", {{"sees_own_cage"}}},
       {"faulty time stamps", {{"driver_stamp_fault"}}},
   };
   return kLines;

@@ -39,7 +39,7 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
   }
   std::string doc = fmt::format(
       "The method {} fails ({}) on a simplified form of draw {} of scenario {}. The failure still needs: {}", method,
-      shrunk.failure, seed, scenario, needed.empty() ? "no part that can be removed on its own" : needed);
+      shrunk.failure, seed, scenario, needed.empty() ? "no single part that can be removed" : needed);
   if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " other parts were not tried";
   return doc + ".";
 }

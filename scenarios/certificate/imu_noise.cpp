@@ -115,7 +115,7 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
     const sim::AllanPoint& long_walk = sim::nearest_point(walk, 10.0);
     entries.push_back(
         entry("imu_bias_walk", subject,
-              "bias random walk at rest, Allan deviation of this part alone at 10 s: ratio to the data sheet",
+              "bias random walk at rest, Allan deviation of the random walk alone at 10 s: ratio to the data sheet",
               long_walk, stated.walk(long_walk.tau_s), sim::AllanNoise::walk));
   }
   return entries;

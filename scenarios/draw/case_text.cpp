@@ -28,7 +28,7 @@ Expectation expectation_from(const YamlNode& node) {
   if (fields.contains("metric")) out.metric = fields.at("metric").text();
   const auto number = [&](const std::string& key, std::optional<double>& value) {
     if (!fields.contains(key)) return;
-    if (out.metric.empty()) fields.at(key).fail("needs key 'metric', which names the metric of this value");
+    if (out.metric.empty()) fields.at(key).fail("this key needs key 'metric', which names the metric of the value");
     value = fields.at(key).number();
   };
   number("worse_than", out.worse_than);
@@ -68,7 +68,7 @@ NamedCase case_from_yaml(const YamlNode& node) {
     }
     out.expected.push_back(std::move(expected));
   }
-  if (out.expected.empty()) fields.at("expect").fail("must name at least one expected result");
+  if (out.expected.empty()) fields.at("expect").fail("the case must name at least one expected result");
   return out;
 }
 

@@ -16,7 +16,7 @@ DataSheet::Entry parse_entry(const std::string& name, const YamlNode& node, cons
   const auto fields = node.fields(kKeys);
   DataSheet::Entry entry{name, fields.at("value").number(), fields.at("unit").text(), fields.at("source").text()};
   if (entry.unit != parameter.unit) {
-    fields.at("unit").fail(fmt::format("is '{}'; it must be '{}'", entry.unit, parameter.unit));
+    fields.at("unit").fail(fmt::format("the value is '{}'; it must be '{}'", entry.unit, parameter.unit));
   }
   if (!(entry.value >= parameter.low && entry.value <= parameter.high)) {
     std::ostringstream text;

@@ -30,9 +30,9 @@ std::string count_problem(const Distribution& d) {
     case Shape::log_uniform:
       return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
     case Shape::normal:
-      return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
+      return n == 2 || n == 4 ? "" : "the distribution normal needs [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
-      return n >= 1 ? "" : "choice must list at least one value";
+      return n >= 1 ? "" : "the distribution choice must list at least one value";
   }
   return "unknown shape";
 }
@@ -95,7 +95,7 @@ const char* to_string(Distribution::Shape shape) {
 std::string find_problem(const Distribution& d) {
   if (const std::string problem = count_problem(d); !problem.empty()) return problem;
   if (!std::all_of(d.numbers.begin(), d.numbers.end(), [](double x) { return std::isfinite(x); })) {
-    return "contains a number that is not finite";
+    return "the distribution contains a number that is not finite";
   }
   switch (d.shape) {
     case Shape::uniform:
@@ -103,7 +103,8 @@ std::string find_problem(const Distribution& d) {
     case Shape::normal:
       return normal_problem(d.numbers);
     case Shape::log_uniform: {
-      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers greater than 0";
+      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0)
+        return "the distribution log_uniform needs numbers greater than 0";
       return range_problem(d.numbers[0], d.numbers[1]);
     }
     case Shape::constant:

@@ -29,9 +29,10 @@ Distribution parse_distribution(const YamlNode& node) {
     out.numbers = {node.number()};
     return out;
   }
-  if (!node.is_map()) node.fail("must be a number or one of {uniform|normal|log_uniform|choice: [...]}");
+  if (!node.is_map()) node.fail("the value must be a number or one of {uniform|normal|log_uniform|choice: [...]}");
   const auto entries = node.entries();
-  if (entries.size() != 1) node.fail("must have exactly one of the keys uniform, normal, log_uniform, choice");
+  if (entries.size() != 1)
+    node.fail("the value must have exactly one of the keys uniform, normal, log_uniform, choice");
   const auto& [name, values] = entries[0];
   const auto shape = std::find(kShapes.begin(), kShapes.end(), name);
   if (shape == kShapes.end()) values.fail("unknown distribution '" + name + "'" + suggestion(name, kShapes));
@@ -119,11 +120,12 @@ std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry
     Scenario::Sensor sensor = parse_sensor(item, registry);
     for (const Scenario::Sensor& other : out) {
       if (other.name == sensor.name)
-        item.fail(fmt::format("a sensor '{}' exists already in line {}", sensor.name, other.line));
+        item.fail(fmt::format("a sensor with the name '{}' exists already in line {}; choose another name", sensor.name,
+                              other.line));
     }
     out.push_back(std::move(sensor));
   }
-  if (out.empty()) list.fail("needs at least one sensor");
+  if (out.empty()) list.fail("the scenario needs at least one sensor");
   return out;
 }
 

@@ -64,7 +64,8 @@ void require_one_document(const std::string& text, const std::string& file) {
   YAML::Parser parser(stream);
   Counter counter(text, file);
   if (!parser.HandleNextDocument(counter)) throw BadInput(file + ": is empty");
-  if (parser.HandleNextDocument(counter)) throw BadInput(file + ": holds more than one document");
+  if (parser.HandleNextDocument(counter))
+    throw BadInput(file + ": the file must contain one YAML document, but contains more than one document");
 }
 
 std::string join(const std::string& place, const std::string& name) {
@@ -93,7 +94,7 @@ std::string read_text_file(const std::filesystem::path& path) {
 std::string suggestion(const std::string& name, std::span<const std::string> known) {
   const std::string near = sim::nearest_name(name, known);
   if (!near.empty()) return "; did you mean '" + near + "'?";
-  if (known.empty()) return "; no names are known";
+  if (known.empty()) return "; there are no valid names";
   std::string text = "; known names:";
   for (const std::string& each : known) text += " " + each;
   return text;
@@ -118,7 +119,7 @@ void YamlNode::fail(const std::string& what) const {
 }
 
 std::string YamlNode::any_text() const {
-  if (!node_.IsScalar()) fail(std::string("must be text; it is ") + kind_of(node_));
+  if (!node_.IsScalar()) fail(std::string("the value must be text; it is ") + kind_of(node_));
   return node_.Scalar();
 }
 
@@ -135,7 +136,7 @@ std::string YamlNode::identifier() const {
     fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
   }
   if (name.size() > kIdentifierMax) {
-    fail(fmt::format("has {} characters; it must have at most {}", name.size(), kIdentifierMax));
+    fail(fmt::format("the name has {} characters; it must have at most {}", name.size(), kIdentifierMax));
   }
   return name;
 }
@@ -148,18 +149,18 @@ double YamlNode::number_or_infinity() const {
 }
 
 double YamlNode::parse_number(bool infinity_allowed) const {
-  if (!node_.IsScalar()) fail(std::string("must be a number; it is ") + kind_of(node_));
+  if (!node_.IsScalar()) fail(std::string("the value must be a number; it is ") + kind_of(node_));
   const std::string& written = node_.Scalar();
   // The parser gives the tag "!" to quoted text.
-  if (node_.Tag() == "!") fail("must be a number; it is the text \"" + written + "\"");
+  if (node_.Tag() == "!") fail("the value must be a number; it is the text \"" + written + "\"");
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
   double value = 0.0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
   if (error == std::errc::result_out_of_range) fail("'" + written + "' is too large for a double");
-  if (error != std::errc() || stop != end) fail("must be a number; it is '" + written + "'");
-  if (!std::isfinite(value)) fail("must be finite; it is '" + written + "'");
+  if (error != std::errc() || stop != end) fail("the value must be a number; it is '" + written + "'");
+  if (!std::isfinite(value)) fail("the value must be finite; it is '" + written + "'");
   return value;
 }
 
@@ -168,12 +169,13 @@ std::uint64_t YamlNode::unsigned_integer() const {
   std::uint64_t value = 0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
-  if (error != std::errc() || stop != end) fail("must be an integer from 0 to 2^64-1; it is '" + written + "'");
+  if (error != std::errc() || stop != end)
+    fail("the value must be an integer from 0 to 2^64-1; it is '" + written + "'");
   return value;
 }
 
 std::vector<YamlNode> YamlNode::items() const {
-  if (!node_.IsSequence()) fail(std::string("must be a list; it is ") + kind_of(node_));
+  if (!node_.IsSequence()) fail(std::string("the value must be a list; it is ") + kind_of(node_));
   std::vector<YamlNode> out;
   for (const YAML::Node& item : node_)
     out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
@@ -181,7 +183,7 @@ std::vector<YamlNode> YamlNode::items() const {
 }
 
 std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
-  if (!node_.IsMap()) fail(std::string("must be a map of keys and values; it is ") + kind_of(node_));
+  if (!node_.IsMap()) fail(std::string("the value must be a map of keys and values; it is ") + kind_of(node_));
   std::vector<std::pair<std::string, YamlNode>> out;
   std::set<std::string> seen;
   for (const auto& entry : node_) {
@@ -203,7 +205,7 @@ std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> re
   if (!node_.IsMap() && !required.empty()) {
     std::string keys;
     for (const std::string& name : required) keys += (keys.empty() ? "" : ", ") + name;
-    fail(fmt::format("must be a map with the keys {}; it is {}", keys, kind_of(node_)));
+    fail(fmt::format("the value must be a map with the keys {}; it is {}", keys, kind_of(node_)));
   }
   std::map<std::string, YamlNode> out;
   for (auto& [name, value] : entries()) {

@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 std::string yaml_number(double value, const std::string& place) {
-  if (std::isnan(value)) throw BadInput(place + ": is not a number");
+  if (std::isnan(value)) throw BadInput(place + ": the value is not a number");
   if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
   std::array<char, 32> text;
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);

@@ -52,11 +52,12 @@ std::optional<RecordingFinding> lost_items(const std::string& name, const char* 
   }
   const double share = static_cast<double>(missing) / static_cast<double>(missing + std::ssize(times_ns));
   if (missing < kLeastLost || share <= kLostShareMax) return std::nullopt;
-  return RecordingFinding{name,
-                          fmt::format("{} of {} {} are lost ({}, limit {}); the longest step is {} s", missing,
-                                      missing + std::ssize(times_ns), items, percent_text(share),
-                                      percent_text(kLostShareMax), rounded(1e-9 * static_cast<double>(longest_ns))),
-                          "record without loss: larger queues, a faster disk; the estimators bridge gaps up to 1 s"};
+  return RecordingFinding{
+      name,
+      fmt::format("{} of {} {} are lost ({}, limit {}); the longest step is {} s", missing,
+                  missing + std::ssize(times_ns), items, percent_text(share), percent_text(kLostShareMax),
+                  rounded(1e-9 * static_cast<double>(longest_ns))),
+      "record without loss, for example with larger queues or a faster disk; the estimators bridge gaps up to 1 s"};
 }
 
 std::optional<RecordingFinding> late_start(const sim::Sensors& sensors) {
@@ -67,12 +68,12 @@ std::optional<RecordingFinding> late_start(const sim::Sensors& sensors) {
   const double late_s = seconds_between(imu.time_ns.front(), lidar.sweep_start_ns.front());
   if (std::abs(late_s) <= kApart_s) return std::nullopt;
   const bool lidar_late = late_s > 0.0;
-  return RecordingFinding{lidar_late ? lidar.name : imu.name,
-                          fmt::format("starts {} s after '{}' (limit {} s)", rounded(std::abs(late_s)),
-                                      lidar_late ? imu.name : lidar.name, rounded(kApart_s)),
-                          lidar_late
-                              ? "start recording after the lidar's first sweep; the map starts at the first sweep"
-                              : "start recording after the IMU; sweeps before the IMU are left out"};
+  return RecordingFinding{
+      lidar_late ? lidar.name : imu.name,
+      fmt::format("the sensor starts {} s after '{}' (limit {} s)", rounded(std::abs(late_s)),
+                  lidar_late ? imu.name : lidar.name, rounded(kApart_s)),
+      lidar_late ? "start the recording after the lidar has started; the map starts at the first sweep"
+                 : "start the recording after the IMU has started; sweeps before the first IMU reading are left out"};
 }
 
 std::optional<RecordingFinding> moving_start(const sim::ImuRecord& imu) {
@@ -94,10 +95,12 @@ std::optional<RecordingFinding> moving_start(const sim::ImuRecord& imu) {
   const RestDetector::Params limits;
   return RecordingFinding{
       imu.name,
-      fmt::format("moves during the first second: rates vary by {} rad/s (limit {}), forces by {} m/s^2 (limit {})",
-                  rounded(rate_rad_s), rounded(limits.rate_spread_rad_s), rounded(force_m_s2),
-                  rounded(limits.force_spread_m_s2)),
-      "keep the robot still for 1 s after the start of the recording; attitude and gyro bias start less accurately"};
+      fmt::format(
+          "the robot moves during the first second: rates vary by {} rad/s (limit {}), forces by {} m/s^2 (limit {})",
+          rounded(rate_rad_s), rounded(limits.rate_spread_rad_s), rounded(force_m_s2),
+          rounded(limits.force_spread_m_s2)),
+      "keep the robot still for 1 s after the start of the recording; otherwise the initial attitude and gyro bias are "
+      "less accurate"};
 }
 
 void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& out) {
@@ -110,7 +113,8 @@ void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& ou
                    fmt::format("the gyro is saturated in {} of the samples, at {} rad/s and more{}",
                                percent_text(found.gyro_share), rounded(found.gyro_rad_s),
                                range(imu.stated_gyro_range_rad_s, "rad/s")),
-                   "set a larger gyro range in the IMU's driver; odometry estimates the hidden rates"});
+                   "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the rates "
+                   "beyond the range"});
   if (found.accel_share > 0.0)
     out.push_back({imu.name,
                    fmt::format("the accelerometer is saturated in {} of the samples, at {} m/s^2 and more{}",
@@ -181,8 +185,9 @@ std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors) 
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     add(lost_items(lidar.name, "sweeps", lidar.sweep_period_ns, lidar.sweep_start_ns));
     if (lidar.point_times == sim::PointTimes::unknown)
-      out.push_back({lidar.name, "the points have no times, so sweeps cannot be deskewed",
-                     "--time-field NAME, or point times in the lidar's driver"});
+      out.push_back(
+          {lidar.name, "the points have no times, so sweeps cannot be deskewed",
+           "name the field with the point times by --time-field NAME, or enable point times in the lidar's driver"});
   }
   return out;
 }
@@ -198,16 +203,16 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
   const double share = sweeps > 0 ? static_cast<double>(registered) / static_cast<double>(sweeps) : 0.0;
   if (share < kRegisteredShareMin)
     out.push_back({"odometry",
-                   fmt::format("{} of {} sweeps are registered ({}, minimum {})", registered, sweeps,
+                   fmt::format("only {} of {} sweeps are registered with the map ({}, minimum {})", registered, sweeps,
                                percent_text(share), percent_text(kRegisteredShareMin)),
-                   "check --T-body-lidar and the other findings"});
+                   "check the option --T-body-lidar and the other findings"});
   const double moved_sigmas = estimate.lidar_calibration_sigmas.value_or(0.0);
   if (moved_sigmas > StatedCalibration::kDistanceMax_sigmas)
     out.push_back({"odometry",
-                   fmt::format("the estimated pose or clock of the lidar is {} standard deviations from the stated one "
-                               "(limit {})",
+                   fmt::format("the estimated pose or clock of the lidar differs by {} standard deviations from the "
+                               "stated pose or clock (limit {})",
                                rounded(moved_sigmas), rounded(StatedCalibration::kDistanceMax_sigmas)),
-                   "--T-body-lidar with the measured pose of the lidar"});
+                   "measure the pose of the lidar and state it with --T-body-lidar"});
   return out;
 }
 

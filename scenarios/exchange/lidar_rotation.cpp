@@ -197,8 +197,8 @@ std::string pairs_text(const RotationAgreement& found) {
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
-      "if the rates are in {}, the lidar rotates {} times as far as the gyro (accurate to {}){}; this ratio must be "
-      "within 0.5 and 2",
+      "if the rates are in {}, the lidar rotates {} times as far as the gyro measures (accurate to {}){}; this ratio "
+      "must be within 0.5 and 2",
       degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
@@ -216,11 +216,11 @@ std::string delay_text(const RotationAgreement& found) {
 
 std::string axes_text(const RotationAgreement& found) {
   if (found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error) {
-    return fmt::format("the rotations of lidar and gyro agree{} within {}{}", pairs_text(found),
-                       percent(found.error_as_read),
-                       kConclusive * found.next_error > found.axes_error
-                           ? ": units, signs and axes agree"
-                           : ": units agree; this motion does not suffice to check all axes");
+    return fmt::format(
+        "the rotations of lidar and gyro agree{} within {}{}", pairs_text(found), percent(found.error_as_read),
+        kConclusive * found.next_error > found.axes_error
+            ? ": units, signs and axes agree"
+            : ": the units agree; this motion does not rotate about all axes, so some axes are not checked");
   }
   const std::string off =
       fmt::format("caution: the rotations of lidar and gyro differ{} (difference {}). They would agree if ",
@@ -327,11 +327,12 @@ Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix
 std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
   const Eigen::Quaterniond q(better_BL.linear());
   const Eigen::Vector3d p = better_BL.translation();
-  return fmt::format(
-      "{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
-      is_inverse(lidar.T_BL.linear(), better_BL.linear()) ? "; the stated pose may be that of the body in the lidar"
-                                                          : "",
-      rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()));
+  return fmt::format("{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
+                     is_inverse(lidar.T_BL.linear(), better_BL.linear())
+                         ? "; the stated pose may be the pose of the body in the lidar frame"
+                         : "",
+                     rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()), rounded(q.y()), rounded(q.z()),
+                     rounded(q.w()));
 }
 
 }  // namespace

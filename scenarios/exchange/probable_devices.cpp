@@ -118,8 +118,8 @@ std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std:
     for (std::size_t k = 0; k < seen.size(); ++k) off = std::max(off, std::abs(seen[k] - stated[k]));
     if (off >= best_off) continue;
     best_off = off;
-    best = ProbableDevice{sheet.device,
-                          fmt::format("{} rings within {} deg of its beams", seen.size(), rounded(off / kDegree_rad))};
+    best = ProbableDevice{sheet.device, fmt::format("{} rings are within {} deg of the beams of this device",
+                                                    seen.size(), rounded(off / kDegree_rad))};
   }
   return best ? best : by_name(lidar.name, sheets, "lidar");
 }
@@ -129,7 +129,7 @@ std::optional<ProbableDevice> probable_imu(const sim::ImuRecord& imu, std::span<
   constexpr std::pair<const char*, const char*> kBuiltIn[] = {{"ouster", "ouster_imu"}, {"livox", "mid360_imu"}};
   for (const auto& [maker, device] : kBuiltIn) {
     if (!out && letters_of(imu.name).find(maker) != std::string::npos)
-      out = ProbableDevice{device, fmt::format("name of the sensor contains '{}'", maker)};
+      out = ProbableDevice{device, fmt::format("the name of the sensor contains '{}'", maker)};
   }
   if (!out) return std::nullopt;
   const auto sheet = std::ranges::find(sheets, out->device, &DataSheet::device);

@@ -114,12 +114,13 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
   const std::string name = file.filename().string();
   // Rejects symbolic links, which could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
-    throw BadInput(name + ": is not a regular file; the method must write a regular file");
+    throw BadInput(name + ": this path is not a regular file; the method must write a regular file");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw BadInput(name + ": " + error.message());
   if (size > bytes)
-    throw BadInput(fmt::format("{}: has {} bytes; for this recording, it may have at most {}", name, size, bytes));
+    throw BadInput(
+        fmt::format("{}: the file has {} bytes; for this recording, it may have at most {}", name, size, bytes));
 }
 
 void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {

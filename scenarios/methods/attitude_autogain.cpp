@@ -24,8 +24,8 @@ Method attitude_autogain() {
   info.name = "autogain";
   info.kind = Kind::attitude;
   info.doc =
-      "Combines a step of Madgwick's filter and a step of a complementary filter; the rate determines their weights. "
-      "Made for rolling spheres.";
+      "Combines a step of Madgwick's filter and a step of a complementary filter; the angular rate determines the "
+      "weights. The filter is made for rolling spheres.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-5";
   info.settings = {&attitude_autogain_settings()};
   return make_method(std::move(info), run_attitude_autogain);

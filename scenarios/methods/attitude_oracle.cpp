@@ -52,7 +52,8 @@ Method attitude_oracle() {
   info.name = "oracle";
   info.kind = Kind::attitude;
   info.doc =
-      "Shows the bound: applies attitude/tumble to gyros without saturation; noise, bias and bandwidth are unchanged.";
+      "Gives an upper bound of the accuracy: applies attitude/tumble to gyro readings without saturation. Noise, bias "
+      "and bandwidth are unchanged.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.needs_truth = true;

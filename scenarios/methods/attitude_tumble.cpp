@@ -118,8 +118,8 @@ Method attitude_tumble() {
   info.name = "tumble";
   info.kind = Kind::attitude;
   info.doc =
-      "Estimates tilt and gyro bias from three velocity constraints: bounded in motion, rolling for a sphere, zero at "
-      "rest. Clipped rates are those of rate/tumble.";
+      "Estimates tilt and gyro bias from constraints on the velocity: bounded in motion, rolling without slip for a "
+      "sphere, zero at rest. Rates of clipped samples come from rate/tumble.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   return make_method(std::move(info), at_sample_times<run_without_truth>);

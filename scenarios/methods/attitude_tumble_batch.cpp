@@ -86,8 +86,8 @@ Method attitude_tumble_batch() {
   info.name = "tumble_batch";
   info.kind = Kind::attitude;
   info.doc =
-      "Smoother over the complete recording of a hand-held body, with bounded acceleration, velocity and position, "
-      "rest, and bounds for clipped gyro axes. It uses the rates of rate/tumble while nobody holds the body.";
+      "Smooths the complete recording of a hand-held body. The smoother assumes bounded acceleration, velocity and "
+      "position, and uses clipped gyro readings as bounds. While the body moves freely, rates come from rate/tumble.";
   info.ours = true;
   info.settings = {&carried_settings()};
   return make_method(std::move(info), at_sample_times<run_attitude_tumble_batch>);

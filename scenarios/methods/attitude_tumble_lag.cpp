@@ -55,7 +55,9 @@ Method attitude_tumble_lag() {
   MethodInfo info;
   info.name = "tumble_lag";
   info.kind = Kind::attitude;
-  info.doc = "The filter of attitude/tumble on the rates of rate/tumble_lag. It is causal and has the same lag.";
+  info.doc =
+      "Applies the filter of attitude/tumble to the rates of rate/tumble_lag. The method is causal and has the lag of "
+      "rate/tumble_lag.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.robots = {"rig", "pendulum"};

@@ -38,7 +38,7 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
   const double step_s = median_period_s(samples), stated_s = seconds(record.period_ns);
   if (step_s > stated_s / kPeriodsMax && step_s < stated_s * kPeriodsMax) return {};
   return {ErrorCode::out_of_range,
-          "median step of imu time_ns in s (must be within a factor of 20 of the stated period)", step_s,
+          "median step of imu time_ns in s (the step must be within a factor of 20 of the stated period)", step_s,
           step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
@@ -123,10 +123,10 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
     return {ErrorCode::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
   const Status gyro = beyond(gyro_rad_s, record.stated_gyro_range_rad_s,
-                             "angular_velocity_rad_s (must be within twice the stated range)");
+                             "angular_velocity_rad_s (the rate must be within twice the stated range)");
   if (!gyro.ok()) return gyro;
   return beyond(accel_m_s2, record.stated_accel_range_m_s2,
-                "specific_force_m_s2 (must be within twice the stated range)");
+                "specific_force_m_s2 (the force must be within twice the stated range)");
 }
 
 std::vector<bool> find_inliers(const sim::ImuRecord& record) {

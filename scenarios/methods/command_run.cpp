@@ -28,7 +28,7 @@ std::string without_trailing_folder(std::string text, const std::filesystem::pat
 }
 
 std::string with_output_tail(const std::string& what, const CommandEnd& end) {
-  return what + (end.output_tail.empty() ? "" : "; the last output of the command was: " + end.output_tail);
+  return what + (end.output_tail.empty() ? "" : "; the command printed at the end: " + end.output_tail);
 }
 
 void require_done(const CommandEnd& end) {
@@ -48,8 +48,8 @@ std::string reported_version(Command command, const std::string& place) {
   const std::string said = read_text_file(command.transcript);
   if (said.empty())
     throw BadInput(place + "the version command printed nothing; it must print a text that identifies this version");
-  return fmt::format("{}; digest of the output {:016x}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
-                     XXH3_64bits(said.data(), said.size()));
+  return fmt::format("{}; the digest of the complete output is {:016x}",
+                     said.substr(0, std::min(said.find('\n'), kFirstLineMax)), XXH3_64bits(said.data(), said.size()));
 }
 
 }  // namespace tumble::scenarios

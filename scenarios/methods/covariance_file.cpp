@@ -21,8 +21,8 @@ constexpr std::size_t kCovarianceColumns = 7;
 void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_ns) {
   const std::string path = table.path.string();
   if (table.rows.size() != stamps_ns.size()) {
-    throw BadInput(
-        fmt::format("{}: has {} rows; it must have {}, one per pose", path, table.rows.size(), stamps_ns.size()));
+    throw BadInput(fmt::format("{}: the file has {} rows; it must have {}, one per pose", path, table.rows.size(),
+                               stamps_ns.size()));
   }
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     const Table::Row& row = table.rows[k];
@@ -35,8 +35,9 @@ void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances) {
   if (covariances.size() != stamps_ns.size()) {
-    throw std::invalid_argument(fmt::format("there are {} covariances for {} stamps; their numbers must be equal",
-                                            covariances.size(), stamps_ns.size()));
+    throw std::invalid_argument(
+        fmt::format("the estimate has {} covariances for {} time stamps; their numbers must be equal",
+                    covariances.size(), stamps_ns.size()));
   }
   const auto unstated = [](const Eigen::Matrix3d& covariance) { return covariance.isZero(0.0); };
   if (std::all_of(covariances.begin(), covariances.end(), unstated)) return;

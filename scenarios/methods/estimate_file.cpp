@@ -226,8 +226,8 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   for (const Table::Row& row : poses.rows) {
     const std::int64_t index = poses.integer(row, 0);
     if (index < 0 || index >= static_cast<std::int64_t>(estimate.sweeps.size())) {
-      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) + ": the estimate has no sweep " +
-                     std::to_string(index));
+      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) +
+                     ": the row belongs to a sweep that the estimate does not contain: sweep " + std::to_string(index));
     }
     estimate.sweeps[static_cast<std::size_t>(index)].trajectory.push_back(read_pose(poses, row, 1, 2));
   }
@@ -295,7 +295,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
     throw BadInput(path.string() + ": the file does not exist, so the folder does not contain an estimate");
   std::ifstream file = open_regular_file(path);
   const json header = json::parse(file, nullptr, false);
-  if (!header.is_object()) throw BadInput(path.string() + ": not a JSON object");
+  if (!header.is_object()) throw BadInput(path.string() + ": the file is not a JSON object");
   const JsonMembers reader(path, header);
   if (reader.member("format") != kFormatVersion) reader.complain("format", std::to_string(kFormatVersion));
   method = reader.text("method");

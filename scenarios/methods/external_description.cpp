@@ -64,15 +64,15 @@ std::vector<std::string> words_of(const YamlNode& node) {
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
     if (words.back().size() > kWordMax)
-      item.fail(fmt::format("has an argument of {} characters; an argument may have at most {}", words.back().size(),
-                            kWordMax));
+      item.fail(
+          fmt::format("an argument has {} characters; an argument may have at most {}", words.back().size(), kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
       item.fail(error.what());
     }
   }
-  if (words.empty()) node.fail("must have at least one argument");
+  if (words.empty()) node.fail("the command must have at least one word");
   return words;
 }
 
@@ -133,7 +133,8 @@ bool names_output(const std::vector<std::string>& command) {
 
 void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfPython)
-    if (fields.contains(key)) fields.at(key).fail("applies to a Python function only, but this method is a command");
+    if (fields.contains(key))
+      fields.at(key).fail("this key applies only to a Python function, but the method is a command");
   out.command = words_of(fields.at("command"));
   if (!names_output(out.command))
     fields.at("command").fail(
@@ -149,7 +150,8 @@ void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescrip
 
 void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfCommands)
-    if (fields.contains(key)) fields.at(key).fail("applies to a command only, but this method is a Python function");
+    if (fields.contains(key))
+      fields.at(key).fail("this key applies only to a command, but the method is a Python function");
   out.python = out.file.parent_path() / fields.at("python").text();
   if (!std::filesystem::is_regular_file(out.python))
     fields.at("python").fail("'" + out.python.string() + "' is not a file");
@@ -176,8 +178,8 @@ Kind kind_of_function(const std::string& text, const std::string& file) {
   if (found.empty()) found = kinds_found(text, assigned);
   if (found.size() != 1)
     throw BadInput(
-        fmt::format("{}: defines {} functions named rate, attitude, position or slam; it must define exactly one (to "
-                    "use another function name, write a file NAME.yaml)",
+        fmt::format("{}: the file defines {} functions named rate, attitude, position or slam; it must define exactly "
+                    "one (to use another function name, write a file NAME.yaml)",
                     file, found.size()));
   return found.front();
 }
@@ -241,7 +243,8 @@ ExternalDescription read_external(const std::filesystem::path& file) {
       "version", "frame",  "environment", "output",      "time_limit_s", "memory_limit_mib"};
   const auto fields = root.fields(required, optional);
   const auto given = [&](const char* key) { return fields.contains(key); };
-  if (given("command") == given("python")) root.fail("must have exactly one of the keys 'command' and 'python'");
+  if (given("command") == given("python"))
+    root.fail("the description must have exactly one of the keys 'command' and 'python'");
 
   ExternalDescription out;
   out.file = std::filesystem::absolute(file);

@@ -57,8 +57,8 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
         file.filename().string(), header.substr(0, 120), kRateColumns));
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
-    throw BadInput(fmt::format("{}: has {} rows; it must have {}, one per sample of {}", file.filename().string(),
-                               table.rows.size(), stamps.size(), sensors.imus.front().name));
+    throw BadInput(fmt::format("{}: the file has {} rows; it must have {}, one per sample of {}",
+                               file.filename().string(), table.rows.size(), stamps.size(), sensors.imus.front().name));
   std::vector<RateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];

@@ -107,7 +107,8 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
   if (!status.ok() || *merged.lever_arm_agreement >= kArmShareMin) return status;
   add_finding({HealthFinding::About::readings}, estimate);
   return {ErrorCode::out_of_range,
-          "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms",
+          "difference between the specific forces of two IMUs, compared with the difference predicted from rotation "
+          "and lever arms",
           *merged.lever_arm_agreement, kArmShareMin};
 }
 

@@ -21,7 +21,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "maps are written in the byte order of memory");
+static_assert(std::endian::native == std::endian::little,
+              "this code writes maps in the byte order of a little-endian processor");
 
 constexpr std::array<const char*, 7> kProperties = {"x", "y", "z", "nx", "ny", "nz", "sigma"};
 using Row = std::array<float, kProperties.size()>;
@@ -88,7 +89,8 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   file.seekg(0, std::ios::end);
   const auto bytes = static_cast<std::uintmax_t>(file.tellg() - data);
   if (bytes / sizeof(Row) != points || bytes % sizeof(Row) != 0) {
-    throw BadInput(fmt::format("{}: truncated: it has {} bytes of data for {} points", path.string(), bytes, points));
+    throw BadInput(
+        fmt::format("{}: the file is truncated: it has {} bytes of data for {} points", path.string(), bytes, points));
   }
   file.seekg(data);
   std::vector<MapPoint> map(points);

@@ -105,7 +105,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
-    throw BadInput("the truth does not belong to this recording, because it has no rates of the primary IMU");
+    throw BadInput("the truth contains no rates of the primary IMU, so it does not belong to this recording");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
@@ -182,8 +182,8 @@ Method position_oracle() {
   info.name = "oracle";
   info.kind = Kind::position;
   info.doc =
-      "Shows the bound: our smoother receives the true attitude. The remaining error is that of the accelerometer and "
-      "of the contact state.";
+      "Gives an upper bound of the accuracy: our smoother receives the true attitude. Errors of the accelerometer and "
+      "of the contact state remain.";
   info.ours = true;
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
@@ -196,8 +196,8 @@ Method position_oracle_contact() {
   info.name = "oracle_contact";
   info.kind = Kind::position;
   info.doc =
-      "Shows the bound: our smoother receives the true contact state (grip, slip or none). The remaining error is that "
-      "of the sensors.";
+      "Gives an upper bound of the accuracy: our smoother receives the true contact state (grip, slip or none). Errors "
+      "of the sensors remain.";
   info.ours = true;
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;

@@ -32,7 +32,7 @@ VectorColumns find(const Cloud& cloud, const std::string& prefix) {
 std::vector<MapPoint> from_cloud(const std::filesystem::path& path) {
   const Cloud cloud = read_cloud(path);
   const VectorColumns position = find(cloud, "");
-  if (!position) throw BadInput(path.string() + ": has no columns x y z");
+  if (!position) throw BadInput(path.string() + ": the file has no columns x y z");
   VectorColumns normal = find(cloud, "n");
   if (!normal) normal = find(cloud, "normal_");
   if (!normal) {

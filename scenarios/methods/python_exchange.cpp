@@ -233,7 +233,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput(fmt::format("pose {} of the result has no valid attitude, or its time does not increase", k));
+      throw BadInput(fmt::format("pose {} of the result has an invalid attitude or a time that does not increase", k));
     poses[k].q_WA = q.normalized();
   }
   return poses;

@@ -23,8 +23,8 @@ import sys
 try:
     import numpy
 except ImportError:
-    sys.exit(sys.executable + " has no numpy, which a Python method needs: install it, or name "
-             "another Python by `interpreter:` or $TUMBLE_PYTHON")
+    sys.exit(sys.executable + " has no numpy, which a Python method needs: install numpy, or "
+             "name another Python with the key `interpreter:` or with $TUMBLE_PYTHON")
 print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";
 

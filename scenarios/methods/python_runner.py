@@ -78,7 +78,7 @@ def read_sensors(descriptor):
 def unmasked(name, given):
     """Converts to an array; rejects masked values."""
     if any(np.ma.is_masked(each) for each in (given, *(given if isinstance(given, (list, tuple)) else ()))):
-        raise Refused(f"{name} is masked in places, must be numbers everywhere")
+        raise Refused(f"{name} is masked in places; all values must be numbers")
     return np.asarray(given)
 
 
@@ -92,26 +92,26 @@ def numbers(name, given, *shape):
             raise TypeError
         out = found.astype(np.float64)
     except (TypeError, ValueError, OverflowError):
-        what = f"of {given.dtype}" if isinstance(given, np.ndarray) else type(given).__name__
-        raise Refused(f"{name} is no array of numbers but {what}") from None
+        what = f"an array of {given.dtype}" if isinstance(given, np.ndarray) else f"a {type(given).__name__}"
+        raise Refused(f"{name} must be an array of numbers; it is {what}") from None
     if out.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in zip(out.shape, shape)):
         bound = ", ".join("N" if size is None else str(size) for size in shape)
-        raise Refused(f"{name} has the shape {out.shape}, must be ({bound})")
+        raise Refused(f"{name} has the shape {out.shape}; it must be ({bound})")
     bad = np.flatnonzero(~np.isfinite(out).all(axis=tuple(range(1, out.ndim))))
     if len(bad):
-        raise Refused(f"{name}[{bad[0]}] is {out[bad[0]].tolist()}, must be finite ({len(bad)} of {len(out)} rows are not)")
+        raise Refused(f"{name}[{bad[0]}] is {out[bad[0]].tolist()}; it must be finite ({len(bad)} of {len(out)} rows are not)")
     return out
 
 
 def instants(given):
     out = unmasked("time_ns", given)
     if out.ndim != 1 or out.dtype.kind not in "iu":
-        raise Refused(f"time_ns is {out.dtype} of the shape {out.shape}, must be integers of the shape (N,)")
+        raise Refused(f"time_ns is {out.dtype} of the shape {out.shape}; it must be integers of the shape (N,)")
     if len(out) == 0:
-        raise Refused("time_ns is empty, must be at least one instant")
+        raise Refused("time_ns is empty; it must contain at least one time")
     back = np.flatnonzero(np.diff(out.astype(np.int64)) <= 0)
     if len(back):
-        raise Refused(f"time_ns[{back[0] + 1}] is {out[back[0] + 1]}, must be more than {out[back[0]]} before it")
+        raise Refused(f"time_ns[{back[0] + 1}] is {out[back[0] + 1]}; it must be more than {out[back[0]]} before it")
     return out.astype(np.int64)
 
 
@@ -121,21 +121,21 @@ def covariances(given, count):
     apart = np.abs(out - out.transpose(0, 2, 1)) > SYMMETRY_TOLERANCE * deviation[:, :, None] * deviation[:, None, :]
     bad = np.flatnonzero(apart.any(axis=(1, 2)))
     if len(bad):
-        raise Refused(f"covariance[{bad[0]}] is {out[bad[0]].tolist()}, must be symmetric ({len(bad)} of {count} are not)")
+        raise Refused(f"covariance[{bad[0]}] is {out[bad[0]].tolist()}; it must be symmetric ({len(bad)} of {count} matrices are not)")
     return out
 
 
 def parts(returned, names):
     """Returns the result's parts by name: from attributes, or from a tuple in this order, whose last entry may be missing or None."""
     if returned is None:
-        raise Refused(f"nothing was returned, must be {', '.join(names)}")
+        raise Refused(f"nothing was returned; the function must return {', '.join(names)}")
     if hasattr(returned, names[0]):
         return {name: getattr(returned, name) for name in names if getattr(returned, name, None) is not None}
     given = returned if isinstance(returned, tuple) else (returned,)
     if len(given) > 1 and given[-1] is None:
         given = given[:-1]
     if len(given) > len(names):
-        raise Refused(f"{len(given)} values were returned, must be at most {len(names)}: {', '.join(names)}")
+        raise Refused(f"{len(given)} values were returned; the function may return at most {len(names)}: {', '.join(names)}")
     return dict(zip(names, given))
 
 
@@ -151,7 +151,7 @@ def poses(returned, names):
     given = parts(returned, names)
     missing = [name for name in names[:names.index("quaternion") + 1] if name not in given]
     if missing:
-        raise Refused(f"what was returned has no {missing[0]}, must be {', '.join(names)} (a tuple, or attributes of these names)")
+        raise Refused(f"the returned value has no {missing[0]}; the function must return {', '.join(names)} (a tuple, or an object with these attributes)")
     out = {"time_ns": instants(given["time_ns"])}
     count = len(out["time_ns"])
     if "position" in names:
@@ -160,7 +160,7 @@ def poses(returned, names):
     norm = np.linalg.norm(out["quaternion"], axis=1)
     wrong = np.flatnonzero(np.abs(norm - 1.0) > UNIT_TOLERANCE)
     if len(wrong):
-        raise Refused(f"quaternion[{wrong[0]}] has the norm {norm[wrong[0]]:.6g}, must be 1 to {UNIT_TOLERANCE:g}")
+        raise Refused(f"quaternion[{wrong[0]}] has the norm {norm[wrong[0]]:.6g}; it must be 1 to {UNIT_TOLERANCE:g}")
     if "map" in given:
         out["map"] = numbers("map", given["map"], None, 3).astype(np.float32)
     return out

@@ -73,10 +73,10 @@ Method rate_accelerometers() {
   info.name = "accelerometers";
   info.kind = Kind::rate;
   info.doc =
-      "Estimates the rate with an extended Kalman filter from the differences of all accelerometers and from the "
-      "unclipped gyro axes. It also uses the accelerometer of the reference IMU. Made for long fast rotation with "
-      "accelerometers far apart.";
-  info.source = "the family of Pachter's and Lee's gyro-free inertial systems";
+      "Estimates the rate with an extended Kalman filter from the differences of all accelerometers, including the "
+      "reference IMU, and from the unclipped gyro axes. The method is made for long fast rotation with accelerometers "
+      "far apart.";
+  info.source = "similar to the gyro-free inertial systems of Pachter and Lee";
   info.settings = {&rate_accelerometers_settings()};
   return make_method(std::move(info), run_rate_accelerometers);
 }

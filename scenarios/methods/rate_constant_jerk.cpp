@@ -25,8 +25,8 @@ Method rate_constant_jerk() {
   info.name = "constant_jerk";
   info.kind = Kind::rate;
   info.doc =
-      "Smooths each axis with a random walk of the angular jerk; clipped readings are lower bounds of the rate. Made "
-      "for motions that exceed the saturation limit once, without impacts while clipped.";
+      "Smooths each axis with a random walk of the angular jerk; clipped readings are lower bounds of the rate. The "
+      "method is made for motions that exceed the saturation limit once, without impacts while clipped.";
   info.source = "textbook: smoother of Rauch, Tung and Striebel (1965) with a constant-jerk model (Matern 5/2)";
   info.settings = {&rate_constant_jerk_settings()};
   return make_method(std::move(info), run_rate_constant_jerk);

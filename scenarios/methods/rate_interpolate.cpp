@@ -27,7 +27,7 @@ Method rate_interpolate() {
   info.kind = Kind::rate;
   info.doc =
       "Interpolates each clipped gap with a cubic that has the values and slopes of both ends and stays beyond the "
-      "saturation limit. Made for gaps that are short relative to the motion and contain no impact.";
+      "saturation limit. The method is made for short gaps without impact.";
   info.source = "textbook: cubic interpolation";
   info.settings = {&rate_interpolate_settings()};
   return make_method(std::move(info), run_rate_interpolate);

@@ -34,8 +34,8 @@ Method rate_oracle() {
   info.name = "oracle";
   info.kind = Kind::rate;
   info.doc =
-      "Shows the bound: returns the readings of the same gyro without saturation; noise, bias and bandwidth are "
-      "unchanged.";
+      "Gives an upper bound of the accuracy: returns the readings of the same gyro without saturation. Noise, bias and "
+      "bandwidth are unchanged.";
   info.ours = true;
   info.needs_truth = true;
   return make_method(std::move(info), at_sample_times<run_rate_oracle>);

@@ -25,8 +25,8 @@ Method rate_reject() {
   info.name = "reject";
   info.kind = Kind::rate;
   info.doc =
-      "Drops clipped readings and predicts the rate as a random walk with the given process noise, forward in time. "
-      "Made for systems in which a lidar corrects the rate; this method has no lidar.";
+      "Drops clipped readings and predicts the rate as a random walk with the given process noise, forward in time. In "
+      "the original system, a lidar corrects the rate; this method has no lidar.";
   info.source = "He et al., Point-LIO, Advanced Intelligent Systems 2023: treatment of saturated readings";
   info.settings = {&rate_reject_settings()};
   return make_method(std::move(info), run_rate_reject);

@@ -167,11 +167,12 @@ Method rate_tumble() {
   info.name = "tumble";
   info.kind = Kind::rate;
   info.doc =
-      "Smoother over the whole recording with bounds for clipped axes, rigid-body flight at the lever arm, Euler's "
-      "equation and the rig constants. It uses further IMUs on the body (not imu_reference), and the hand-held "
-      "smoother where readings indicate hand-held motion.";
+      "Smooths the rates of the whole recording with bounds from clipped readings, the specific force at the lever arm "
+      "in free flight, and Euler's equation. The method also estimates the rig constants, uses further IMUs on the "
+      "body (not imu_reference), and runs the hand-held smoother during hand-held motion.";
   info.ours = true;
-  info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
+  info.source =
+      "our own method, which extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
   info.calibrates_rig = true;

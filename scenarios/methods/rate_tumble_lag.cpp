@@ -129,7 +129,8 @@ Method rate_tumble_lag() {
   MethodInfo info;
   info.name = "tumble_lag";
   info.kind = Kind::rate;
-  info.doc = "The smoother of rate/tumble as a stream: the same factors in a sliding window, with a fixed lag.";
+  info.doc =
+      "Runs the smoother of rate/tumble as a stream, with the same factors in a sliding window and with a fixed lag.";
   info.ours = true;
   info.settings = {&rate_tumble_lag_settings()};
   info.robots = {"rig", "pendulum"};

@@ -73,10 +73,10 @@ class CalibrationReader {
     const json& values = array(key, static_cast<std::size_t>(into.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
-        complain(key, "holds an element that is not a number");
+        complain(key, "an element is not a number; all elements must be numbers");
       // A number far beyond any rig constant would dominate all other numbers.
       if (std::abs(values[i].get<double>()) > kMost) {
-        complain(key, fmt::format("is {}; its magnitude must be at most 1e6", values[i].dump()));
+        complain(key, fmt::format("an element is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
       into.data()[i] = values[i].get<double>();
     }
@@ -87,7 +87,7 @@ class CalibrationReader {
     for (std::size_t j = 0; j < 3; ++j) {
       if (values[j].is_null()) continue;
       if (!values[j].is_number() || !(values[j].get<double>() > 0.0))
-        complain(key, "holds an invalid rail; a rail must be a positive number or null");
+        complain(key, "a saturation limit is invalid; it must be a positive number or null");
       rig.rail[first + j] = values[j].get<double>();
     }
   }
@@ -95,13 +95,16 @@ class CalibrationReader {
   void read_planes(const char* key, CalibratedRig::Planes& planes) const {
     const json& values = array(key, 3);
     for (std::size_t j = 0; j < 3; ++j) {
-      if (!values[j].is_array() || values[j].size() != 2) complain(key, "needs 3 pairs of rails");
+      if (!values[j].is_array() || values[j].size() != 2)
+        complain(key, "the list must contain 3 pairs of saturation limits");
       for (std::size_t i = 0; i < 2; ++i) {
         const json& rail = values[j][i];
         if (rail.is_null()) continue;
         const bool sound = rail.is_number() && (i == 0 ? rail.get<double>() < 0.0 : rail.get<double>() > 0.0);
         if (!sound || std::abs(rail.get<double>()) > kMost) {
-          complain(key, "a pair must be null, or a negative and a positive rail of magnitude at most 1e6");
+          complain(key,
+                   "a pair must contain a negative and a positive saturation limit of magnitude at most 1e6, or null "
+                   "for an unknown limit");
         }
         planes[j][i] = rail.get<double>();
       }
@@ -154,7 +157,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||
       Eigen::LLT<SensorErrors::Matrix>(scaled).info() != Eigen::Success) {
-    reader.complain(kErrorsCovarianceKey, "not symmetric and positive definite");
+    reader.complain(kErrorsCovarianceKey, "the matrix is not symmetric and positive definite");
   }
   rig.device_errors = known;
 }
@@ -164,7 +167,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
 CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   std::ifstream file = open_regular_file(path);
   const json object = json::parse(file, nullptr, false);
-  if (!object.is_object()) throw BadInput(path.string() + ": not a JSON object");
+  if (!object.is_object()) throw BadInput(path.string() + ": the file is not a JSON object");
   const CalibrationReader reader(path, object);
   for (const char* key : kKeys) {
     if (!object.contains(key)) reader.complain(key, "missing");
@@ -194,7 +197,7 @@ CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   const double asymmetry = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
   if (asymmetry > 1e-9 * covariance.cwiseAbs().maxCoeff() ||
       Eigen::LLT<RigConstants::Matrix>(covariance).info() != Eigen::Success) {
-    reader.complain("covariance", "not symmetric and positive definite");
+    reader.complain("covariance", "the matrix is not symmetric and positive definite");
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);

@@ -52,8 +52,7 @@ void SettingsTable::add(const std::string& field_name, double value, const Field
   sim::Parameter row{texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.meaning};
   const bool stated = matches_any(field_name, options_.stated);
   if (stated) {
-    row.doc =
-        texts_.emplace_back(std::string(field.meaning) + "; default: the value that the recording states, if any");
+    row.doc = texts_.emplace_back(std::string(field.meaning) + "; default: the value in the recording, if any");
     stated_.insert(row.name);
   }
   if (whole) whole_.insert(row.name);

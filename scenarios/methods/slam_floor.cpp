@@ -79,8 +79,8 @@ Estimate run_slam_floor(const sim::Sensors& sensors, const sim::Values& paramete
 
 Method slam_floor() {
   return rig_slam({.name = "floor",
-                   .doc = "Shows the bound: registration receives the true motion within each sweep and the true "
-                          "mounting. The remaining error is that of registration and map.",
+                   .doc = "Gives an upper bound of the accuracy: registration receives the true motion within each "
+                          "sweep and the true mounting. Errors of registration and map remain.",
                    .ours = true,
                    .settings = {&rigid_settings()},
                    .needs_truth = true},

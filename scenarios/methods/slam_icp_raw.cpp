@@ -20,7 +20,7 @@ Estimate run_slam_icp_raw(const sim::Sensors& sensors, const sim::Values& parame
 
 Method slam_icp_raw() {
   return rig_slam({.name = "icp_raw",
-                   .doc = "Runs the chain of slam/icp with the unchanged readings of the clipped gyro.",
+                   .doc = "Runs slam/icp with the unchanged readings of the clipped gyro.",
                    .source = "baseline of Deschenes et al., ICRA 2024",
                    .settings = {&published_settings()},
                    .baseline = true},

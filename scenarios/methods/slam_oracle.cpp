@@ -26,13 +26,13 @@ Estimate run_slam_oracle(const sim::Sensors& sensors, const sim::Values& paramet
 }  // namespace
 
 Method slam_oracle() {
-  return rig_slam(
-      {.name = "oracle",
-       .doc = "Shows the bound: runs slam/tumble with a gyro without saturation; the accelerometer is unchanged.",
-       .ours = true,
-       .settings = {&slam_oracle_settings()},
-       .needs_truth = true},
-      at_sample_times<run_slam_oracle>);
+  return rig_slam({.name = "oracle",
+                   .doc = "Gives an upper bound of the accuracy: runs slam/tumble with a gyro without saturation. The "
+                          "accelerometer is unchanged.",
+                   .ours = true,
+                   .settings = {&slam_oracle_settings()},
+                   .needs_truth = true},
+                  at_sample_times<run_slam_oracle>);
 }
 
 }  // namespace tumble::scenarios

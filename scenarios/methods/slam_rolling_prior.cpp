@@ -47,19 +47,19 @@ struct AlongParams {
          "minimum standard deviation of the velocity in motion during a slip event, or while the radius is uncertain"});
     visit(p.rotation_sigma_rad, {"along_rotation_sigma_rad", "rad", 1e-9, 1.0,
                                  "standard deviation of the rotation between the ends of two sweeps, per axis"});
-    visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "the sphere counts as moving from this speed on"});
+    visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "minimum speed at which the sphere counts as moving"});
     visit(p.correction_m,
           {"along_correction_m", "m", 1e-6, 100.0,
            "maximum accepted position correction by registration; the rolling error per sweep is below 1 mm"});
     visit(p.correction_rad,
           {"along_correction_rad", "rad", 1e-6, 3.0, "maximum accepted rotation correction by registration"});
     visit(p.loose_correction_m, {"along_loose_correction_m", "m", 0.0, 100.0,
-                                 "additional accepted position correction while the radius is uncertain"});
+                                 "additional position correction that is accepted while the radius is uncertain"});
     visit(p.segment_m, {"along_segment_m", "m", 0.01, 100.0,
                         "length of the rolled path over which the lidar measures the radius of the sphere"});
-    visit(p.segment_sigma_m,
-          {"along_segment_sigma_m", "m", 1e-6, 10.0,
-           "minimum standard deviation of this length, caused by the errors of the centre and of the registration"});
+    visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
+                              "minimum standard deviation of the length of the rolled path, from the errors of the "
+                              "centre and of the registration"});
     visit(p.corrected_sigmas, {"along_corrected_sigmas", "1", 0.0, 1e3,
                                "the radius measured by the lidar is used if it differs from the stated radius by more "
                                "than this many standard deviations"});
@@ -262,7 +262,8 @@ Method slam_rolling_prior() {
   info.name = "rolling_prior";
   info.kind = Kind::slam;
   info.doc =
-      "Registers sweeps as on the rig, with the poses of position/tumble (our method) as the prior between two sweeps.";
+      "Registers the sweeps of a sphere like the sweeps of the rig, with the poses of position/tumble (our method) as "
+      "the prior motion between two sweeps.";
   info.ours = true;
   info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
   info.robots = {"sphere"};

@@ -261,20 +261,20 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
 
 Method slam_tumble() {
   return rig_slam({.name = "tumble",
-                   .doc = "TumblingOdometry, the public API of the library, with the whole recording: rates of "
-                          "rate/tumble and passes of the mapper until the calibration has converged.",
+                   .doc = "Runs TumblingOdometry (public API) on the whole recording: uses the rates of rate/tumble, "
+                          "and repeats the mapping until the calibration has converged.",
                    .ours = true,
                    .settings = {&whole_settings()}},
                   run_whole);
 }
 
 Method slam_tumble_lag() {
-  return rig_slam({.name = "tumble_lag",
-                   .doc = "TumblingOdometry, the public API of the library: one causal pass; the final pose of a sweep "
-                          "follows 0.3 s later.",
-                   .ours = true,
-                   .settings = {&lag_settings()}},
-                  run_lag);
+  return rig_slam(
+      {.name = "tumble_lag",
+       .doc = "Runs TumblingOdometry (public API) in one causal pass; the final pose of a sweep follows 0.3 s later.",
+       .ours = true,
+       .settings = {&lag_settings()}},
+      run_lag);
 }
 
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map) {
@@ -298,7 +298,7 @@ std::optional<Method> localised_in(const Method& method, std::shared_ptr<const P
 
 Method slam_tumble_live() {
   return rig_slam({.name = "tumble_live",
-                   .doc = "The same pass, live: the pose at each IMU sample uses past data only.",
+                   .doc = "Runs TumblingOdometry (public API) live: the pose at each IMU sample uses past data only.",
                    .ours = true,
                    .settings = {&lag_settings()}},
                   run_live);

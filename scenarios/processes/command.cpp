@@ -106,8 +106,8 @@ CommandEnd run_command(const Command& command) {
     end.reason = "cannot be started: " + problem;
   } else if (!ended) {
     end.how = CommandEnd::How::timed_out;
-    end.reason =
-        "did not end within its time limit of " + std::to_string(static_cast<long long>(command.time_limit_s)) + " s";
+    end.reason = "the command did not end within its time limit of " +
+                 std::to_string(static_cast<long long>(command.time_limit_s)) + " s";
   } else if (!last.normal) {
     end.how = CommandEnd::How::failed;
     end.reason = last.describe();

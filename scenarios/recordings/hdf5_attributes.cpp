@@ -151,7 +151,7 @@ std::vector<std::string> Group::read_texts(const std::string& name) const {
   H5Sget_simple_extent_dims(space.get(), &count, nullptr);
   std::vector<std::string> texts;
   if (H5Tis_variable_str(type.get()) > 0) {
-    if (count > kLongestText / sizeof(char*)) fail(name, "has more rows than can be read");
+    if (count > kLongestText / sizeof(char*)) fail(name, "the attribute has more rows than can be read");
     std::vector<char*> rows(count, nullptr);
     if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
       fail(name, "cannot be read" + last_error());
@@ -161,7 +161,7 @@ std::vector<std::string> Group::read_texts(const std::string& name) const {
     return texts;
   }
   const std::size_t length = H5Tget_size(type.get());
-  if (length == 0 || count > kLongestText / length) fail(name, "is longer than 16 MiB, which is the maximum");
+  if (length == 0 || count > kLongestText / length) fail(name, "the text is longer than 16 MiB, which is the maximum");
   std::vector<char> block(length * count);
   if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
     fail(name, "cannot be read" + last_error());

@@ -41,7 +41,7 @@ void require_survivable(const std::filesystem::path& path) {
   Process child([&](int) { survey(path); }, false);
   const Process::End end = child.wait();
   if (!end.normal) {
-    throw BadInput(path.string() + ": damaged: the HDF5 library fails on this file (" + end.describe() + ")");
+    throw BadInput(path.string() + ": the file is damaged: the HDF5 library cannot read it (" + end.describe() + ")");
   }
 }
 

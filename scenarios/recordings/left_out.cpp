@@ -83,8 +83,8 @@ void LeftOut::add_unlimited(const std::string& cause, const std::string& error) 
 void LeftOut::require_few(std::size_t kept) const {
   const std::size_t all = kept + count();
   if (faulty_ == 0 || may_leave_out(faulty_, all)) return;
-  throw BadInput(fmt::format("{} ({} of {} {} have errors; at most {:g} % may be left out)", first_error_, faulty_, all,
-                             items_, 100.0 * kLeftOutShareMax));
+  throw BadInput(fmt::format("{} ({} of {} {} are faulty; the import leaves out at most {:g} %)", first_error_, faulty_,
+                             all, items_, 100.0 * kLeftOutShareMax));
 }
 
 std::string LeftOut::note(std::size_t kept) const {

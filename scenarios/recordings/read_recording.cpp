@@ -27,14 +27,14 @@ class RecordingReader {
     std::vector<Eigen::Vector4d> rows;
     group_.read(name, rows);
     if (rows.size() != 4 || rows[3] != Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)) {
-      group_.fail(name, "must be a 4 x 4 matrix with the last row 0 0 0 1");
+      group_.fail(name, "the dataset must be a 4 x 4 matrix with the last row 0 0 0 1");
     }
     for (int i = 0; i < 3; ++i) pose.matrix().row(i) = rows[static_cast<std::size_t>(i)].transpose();
   }
   void point(const char* name, Eigen::Vector3d& point, const char*) {
     std::vector<Eigen::Vector3d> rows;
     group_.read(name, rows);
-    if (rows.size() != 1) group_.fail(name, "must have exactly one row");
+    if (rows.size() != 1) group_.fail(name, "the dataset must have exactly one row");
     point = rows[0];
   }
   template <class Row>
@@ -62,7 +62,7 @@ class RecordingReader {
     const std::string word = group_.text_attribute(name);
     const auto* found = std::find(kPointTimes.begin(), kPointTimes.end(), word);
     if (found == kPointTimes.end())
-      group_.fail(name, fmt::format("is '{}'; it must be measured, not_skewed or unknown", word));
+      group_.fail(name, fmt::format("the attribute is '{}'; it must be measured, not_skewed or unknown", word));
     given = static_cast<sim::PointTimes>(found - kPointTimes.begin());
   }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
@@ -99,7 +99,7 @@ void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
                                   columns.normal_force_n.size(), columns.surface_id.size()}) {
     if (other != columns.time_ns.size())
-      throw BadInput(file + ": truth/contacts: the datasets differ in length; they must have the same length");
+      throw BadInput(file + ": truth/contacts: the datasets must have the same length");
   }
 }
 
@@ -116,12 +116,13 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
-    root.fail("format", std::string("is not a recording: the attribute must be '") + kRecordingFormat +
-                            "'; 'tumble import' converts HDF5 files of BROAD");
+    root.fail("format", std::string("the file is not a recording of this program: the attribute must be '") +
+                            kRecordingFormat + "'; 'tumble import' converts HDF5 files of BROAD");
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {
-    root.fail("format_version", fmt::format("is {}; this build reads version {}", version, kRecordingVersion));
+    root.fail("format_version",
+              fmt::format("the version is {}; this build reads version {}", version, kRecordingVersion));
   }
 }
 

@@ -30,7 +30,7 @@ std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
     if (length == first) continue;
-    return fmt::format("{} has {} rows, but {} has {}", name, length, first_name, first);
+    return fmt::format("{} has {} rows, but {} has {}; the numbers must be equal", name, length, first_name, first);
   }
   return "";
 }
@@ -40,7 +40,7 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
-    return std::string(name) + " is not a rigid transform (rotation and translation)";
+    return std::string(name) + " must be a rigid transform (rotation and translation)";
   return "";
 }
 
@@ -271,7 +271,7 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {
-    if (time_ns < before_) return "time_ns: decreases or is negative";
+    if (time_ns < before_) return "time_ns must not decrease and must not be negative";
     before_ = time_ns;
     return "";
   }
@@ -303,12 +303,12 @@ std::string contacts_problem(const StoredContacts& contacts, std::size_t surface
 std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
   const bool unknown = q_WB.coeffs().array().isNaN().all();  // a reference without a measurement
   if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
-  return "q_WB is not of unit length";
+  return "the quaternion q_WB must have norm 1";
 }
 
 std::string label_problem(sim::ContactLabel label, std::size_t) {
   if (label <= sim::ContactLabel::slide) return "";
-  return fmt::format("label {} is unknown; the largest is 3", static_cast<int>(label));
+  return fmt::format("label {} is unknown; labels are 0 to 3", static_cast<int>(label));
 }
 
 template <class Truth>

@@ -77,7 +77,7 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 50>});
   all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s,
-                  "99th percentile of the rate error (norm) over the same clipped samples", Sense::lower},
+                  "99th percentile of the rate error (norm) over clipped samples", Sense::lower},
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 99>});
 }
@@ -103,7 +103,7 @@ std::vector<MetricInfo> binned_rate_quantities() {
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<BinAxis::depth>("clip_depth_rad_s", "with a largest saturation deficit in this bin", all,
+  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this bin", all,
                            std::make_index_sequence<kDepthEdges.size() - 1>());
   add_bins<BinAxis::length>("clip_length_s", "in segments of this length", all,
                             std::make_index_sequence<kLengthEdges.size() - 1>());

@@ -147,8 +147,8 @@ std::vector<Metric> map_metrics() {
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 if more than 15 % of the map points are off the true surface, if the map covers less than half of the "
-        "visible surface, or if there were sweeps but no map; otherwise 0",
+        "1 if more than 15 % of the map points are farther than 0.25 m from the true surface, if the map covers less "
+        "than half of the visible surface, or if there were sweeps but no map; otherwise 0",
         Sense::lower, Place::held},
        Kind::slam,
        failed},

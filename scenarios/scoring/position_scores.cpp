@@ -116,8 +116,8 @@ std::vector<Metric> position_metrics() {
        Kind::position,
        position_coverage_3sigma},
       {{"position_nees_median", Unit::number,
-        "consistency of the position: median of squared error over reported variance, divided by its value for a "
-        "normal distribution; 1 is correct",
+        "consistency of the position covariance: median of the squared error divided by the reported variance, "
+        "relative to a normal distribution; the ideal is 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::position,
        nees_median},

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {
   return {
-      {"estimate_cpu_s", Unit::s, "CPU time of the estimation, without reading and scoring"},
+      {"estimate_cpu_s", Unit::s, "CPU time of the estimation, without the time for reading and scoring"},
       {"simulate_cpu_s", Unit::s, "CPU time of the simulation"},
       {"estimate_peak_mib", Unit::mib, "peak memory of the estimation, in addition to the memory of the recording"},
   };

@@ -159,33 +159,37 @@ std::vector<Metric> rate_metrics() {
        Kind::rate,
        clipped_max},
       {{"rate_error_segment_max_rad_s", Unit::rad_s,
-        "maximum over all segments of consecutive clipped samples: norm of the mean rate error; this error displaces "
-        "the map",
+        "norm of the mean rate error over consecutive clipped samples, maximum over all such segments; this error "
+        "displaces the map",
         Sense::lower},
        Kind::rate,
        segment_max},
-      {{"rate_coverage_3sigma_flight", Unit::share, "like rate_coverage_3sigma, only for samples without contact",
+      {{"rate_coverage_3sigma_flight", Unit::share,
+        "share of clipped axes whose rate error is within three reported standard deviations, in samples without "
+        "contact",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_flight},
-      {{"rate_coverage_3sigma_impact", Unit::share, "like rate_coverage_3sigma, only for samples with contact",
+      {{"rate_coverage_3sigma_impact", Unit::share,
+        "share of clipped axes whose rate error is within three reported standard deviations, in samples with contact",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_impact},
       {{"rate_coverage_3sigma_cross_axis", Unit::share,
-        "like rate_coverage_3sigma, only for unclipped axes with a cross-axis error of a clipped axis",
+        "share of rate errors within three reported standard deviations, for unclipped axes on which a clipped axis "
+        "causes a cross-axis error",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_cross_axis},
       {{"rate_nees_flight", Unit::number,
-        "mean of squared rate error over reported variance, for clipped axes without contact; 1 if the covariance is "
-        "correct",
+        "mean of the squared rate error divided by the reported variance, for clipped axes without contact; the ideal "
+        "is 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::rate,
        nees_flight},
       {{"rate_nees_impact", Unit::number,
-        "mean of squared rate error over reported variance, for clipped axes with contact; 1 if the covariance is "
-        "correct",
+        "mean of the squared rate error divided by the reported variance, for clipped axes with contact; the ideal is "
+        "1",
         Sense::two_sided, Place::held, 1.0},
        Kind::rate,
        nees_impact},

@@ -161,9 +161,12 @@ std::vector<Metric> reference_rate_metrics() {
        clipped_error<error_norm, 90, 7u>});
   add_pair<error_speed, 7u>("speed_error",
                             "error of the rate's magnitude over clipped samples, compared with a reference", all);
-  add_pair<error_axis<0>, 1u>("error_x", "error of axis x while clipped, compared with a reference", all);
-  add_pair<error_axis<1>, 2u>("error_y", "error of axis y while clipped, compared with a reference", all);
-  add_pair<error_axis<2>, 4u>("error_z", "error of axis z while clipped, compared with a reference", all);
+  add_pair<error_axis<0>, 1u>("error_x", "rate error of axis x while axis x is clipped, compared with a reference",
+                              all);
+  add_pair<error_axis<1>, 2u>("error_y", "rate error of axis y while axis y is clipped, compared with a reference",
+                              all);
+  add_pair<error_axis<2>, 4u>("error_z", "rate error of axis z while axis z is clipped, compared with a reference",
+                              all);
   add_reference<error_norm>(
       "reference_error", "norm of the difference between the rates of reference and gyro, in motion without clipping",
       all);

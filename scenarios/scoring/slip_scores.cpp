@@ -237,17 +237,19 @@ std::vector<Metric> slip_metrics() {
        Kind::position,
        recall},
       {{"slip_delay_s", Unit::s,
-        "median delay from the true start of a detected event to its report; earlier reports count as 0", Sense::lower},
+        "median delay from the true start of a detected slip event to its report; earlier reports count as 0",
+        Sense::lower},
        Kind::position,
        delay},
       {{"slip_flag_recall", Unit::share,
-        "share of the true events with a position error above 0.1 m during which the reported standard deviation grows "
-        "by at least 0.03 m",
+        "share of the true slip and slide events with a position error above 0.1 m during which the reported standard "
+        "deviation grows by at least 0.03 m",
         Sense::higher, Place::detail, kNoTarget, Compared::by_difference},
        Kind::position,
        flag_recall},
       {{"slip_flagged_share", Unit::share,
-        "share of the true events during which the reported standard deviation grows by at least 0.03 m", Sense::none},
+        "share of the true slip and slide events during which the reported standard deviation grows by at least 0.03 m",
+        Sense::none},
        Kind::position,
        flagged_share},
   };

@@ -87,16 +87,17 @@ Metric offset_metric(const char* name, const char* doc, Kind kind, bool (*comput
 
 std::vector<Metric> time_offset_metrics() {
   constexpr const char* kPoses =
-      "delay of the poses' attitudes (negative: too early), by least squares of the attitude errors over the true rate";
+      "time delay of the attitudes of the poses (negative: too early), from a least-squares fit of the attitude errors "
+      "to the true rate";
   return {
       offset_metric("rate_time_offset_s",
-                    "delay of the rates (negative: too early), by least squares of the errors of unclipped axes over "
-                    "the true angular acceleration",
+                    "time delay of the rates (negative: too early), from a least-squares fit of the errors of "
+                    "unclipped axes to the true angular acceleration",
                     Kind::rate, rate_offset),
-      offset_metric(
-          "attitude_time_offset_s",
-          "delay of the attitudes (negative: too early), by least squares of the attitude errors over the true rate",
-          Kind::attitude, attitude_offset),
+      offset_metric("attitude_time_offset_s",
+                    "time delay of the attitudes (negative: too early), from a least-squares fit of the attitude "
+                    "errors to the true rate",
+                    Kind::attitude, attitude_offset),
       offset_metric("pose_time_offset_s", kPoses, Kind::position, pose_offset),
       offset_metric("pose_time_offset_s", kPoses, Kind::slam, pose_offset),
   };

@@ -103,7 +103,7 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = fmt::format("the worst draw has {} at seed {}, but the worst draw of the accepted run has {}",
+  result.fault = fmt::format("the worst value is {} (seed {}), but the worst value of the accepted run is {}",
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
@@ -142,7 +142,8 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   hold_middle(found.pairs, info, policy, tests, result);
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
-    result.fault = "has no value, in contrast to the accepted run, at seed " + std::to_string(found.lost.front());
+    result.fault =
+        "the metric has no value, in contrast to the accepted run, at seed " + std::to_string(found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -169,7 +170,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
     const bool was_good = before.status[k] == OutcomeStatus::ok && condemned(before).empty();
     std::string fault;
     if (!now.status[k])
-      fault = "no outcome";
+      fault = "no result";
     else if (*now.status[k] != OutcomeStatus::ok)
       fault = to_string(*now.status[k]);
     else
@@ -274,15 +275,15 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
 }
 
 void require_acceptable(const GateRun& run) {
-  if (run.methods.empty()) throw BadInput("cannot accept this run, because it has no outcomes");
+  if (run.methods.empty()) throw BadInput("this run cannot be accepted, because it has no results");
   for (const MethodRun& method : run.methods) {
     const std::string what =
         "cannot accept this run: " + method.scenario + ", " + to_string(method.kind) + "/" + method.method;
     for (std::size_t k = 0; k < run.seeds.size(); ++k) {
-      if (!method.status[k]) throw BadInput(what + " has no outcome at seed " + std::to_string(run.seeds[k]));
+      if (!method.status[k]) throw BadInput(what + " has no result at seed " + std::to_string(run.seeds[k]));
     }
     if (std::find(method.status.begin(), method.status.end(), OutcomeStatus::ok) == method.status.end()) {
-      throw BadInput(what + " has no outcome with status ok");
+      throw BadInput(what + " has no result with status ok");
     }
   }
 }

@@ -99,7 +99,7 @@ void read_values(const GateLine& line, MethodRun& run) {
   const std::vector<std::string> known = held_metrics(run.kind);
   const std::string& metric = line.cells[3];
   if (std::find(known.begin(), known.end(), metric) == known.end()) {
-    line.fail("'" + metric + "' is not a metric of the gate for methods of kind " + to_string(run.kind) +
+    line.fail("'" + metric + "' is not a metric that the gate checks for methods of kind " + to_string(run.kind) +
               suggestion(metric, known));
   }
   const auto [place, is_new] = run.values.try_emplace(metric);
@@ -137,8 +137,8 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(
-        fmt::format("is {}; it must be within [{}, {}]", number_text(value), number_text(low), number_text(high)));
+    node.fail(fmt::format("the value is {}; it must be within [{}, {}]", number_text(value), number_text(low),
+                          number_text(high)));
   }
   return value;
 }
@@ -178,7 +178,7 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   Gate gate;
   gate.suite = fields.at("suite").text();
   if (!is_file && gate.suite != name)
-    fields.at("suite").fail(fmt::format("is '{}'; it must be '{}'", gate.suite, name));
+    fields.at("suite").fail(fmt::format("the value is '{}'; it must be '{}'", gate.suite, name));
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);

@@ -76,7 +76,7 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
     }
     suite.curves.push_back(std::move(curve));
   }
-  if (suite.curves.empty()) node.fail("needs at least one curve");
+  if (suite.curves.empty()) node.fail("the suite needs at least one curve");
 }
 
 void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
@@ -93,7 +93,7 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
     }
     suite.scenarios.push_back(name);
   }
-  if (suite.scenarios.empty()) node.fail("needs at least one scenario");
+  if (suite.scenarios.empty()) node.fail("the suite needs at least one scenario");
 }
 
 /// Reads `draws: {mild: {hill: [3, 8]}}`: classes of scenarios with their seeds.
@@ -112,10 +112,10 @@ void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
       if (std::find(suite.scenarios.begin(), suite.scenarios.end(), scenario) == suite.scenarios.end())
         suite.scenarios.push_back(scenario);
     }
-    if (each.draws.empty()) scenarios.fail("needs at least one draw");
+    if (each.draws.empty()) scenarios.fail("each class needs at least one draw");
     suite.classes.push_back(std::move(each));
   }
-  if (seen.empty()) node.fail("needs at least one draw");
+  if (seen.empty()) node.fail("the suite needs at least one draw");
   const auto by_seed = [](const auto& a, const auto& b) { return a.second < b.second; };
   suite.first_seed = std::min_element(seen.begin(), seen.end(), by_seed)->second;
   suite.last_seed = std::max_element(seen.begin(), seen.end(), by_seed)->second;
@@ -137,7 +137,7 @@ void read_recordings(const YamlNode& node, Suite& suite) {
     if (item.text().empty()) item.fail("must name a file");
     suite.recordings.push_back(item.text());
   }
-  if (suite.recordings.empty()) node.fail("needs at least one recording");
+  if (suite.recordings.empty()) node.fail("the suite needs at least one recording");
 }
 
 /// Reads the content of the suite: recordings, named runs, or scenarios with seeds.
@@ -145,7 +145,7 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
                 Suite& suite) {
   if (fields.contains("recordings")) {
     for (const char* key : {"scenarios", "seeds", "draws", "vary"}) {
-      if (fields.contains(key)) fields.at(key).fail("is not allowed in a suite of recordings; remove this key");
+      if (fields.contains(key)) fields.at(key).fail("this key is not allowed in a suite of recordings; remove the key");
     }
     read_recordings(fields.at("recordings"), suite);
     return;
@@ -153,7 +153,7 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   if (fields.contains("draws")) {
     for (const char* key : {"scenarios", "seeds"}) {
       if (fields.contains(key))
-        fields.at(key).fail("is not allowed in a suite that lists its draws (key 'draws'); remove this key");
+        fields.at(key).fail("this key is not allowed in a suite that lists its draws (key 'draws'); remove the key");
     }
     read_classes(data, fields.at("draws"), suite);
     return;
@@ -203,14 +203,14 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
         item.fail(error.what());
       }
     }
-    if (suite.methods.empty()) fields.at("methods").fail("needs at least one method");
+    if (suite.methods.empty()) fields.at("methods").fail("the suite needs at least one method");
   } else {
     suite.methods = every_method();
   }
   if (fields.contains("timeout_s")) {
     suite.timeout_s = fields.at("timeout_s").number();
     if (!(suite.timeout_s > 0.0 && suite.timeout_s <= kTimeoutMaxS)) {
-      fields.at("timeout_s").fail("must be within (0, 1e6] s");
+      fields.at("timeout_s").fail("the time limit must be within (0, 1e6] s");
     }
   }
   if (fields.contains("vary")) read_curves(data, fields.at("vary"), suite);

@@ -50,8 +50,8 @@ constexpr std::string_view kUpdateDoc =
     "sample and hold: the device takes this many readings per second, and each output repeats the last reading; 0: one "
     "reading per output; otherwise at least 0.1";
 constexpr std::string_view kHandoverDoc =
-    "above this value, an axis switches from its precise sensor to its coarse sensor, and back below 0.9 of it; 0: "
-    "always coarse";
+    "value above which an axis switches from its precise sensor to its coarse sensor; the axis switches back below 0.9 "
+    "of this value; 0: always coarse";
 constexpr std::string_view kPreciseNoiseDoc = "density of the white noise of the precise sensor";
 constexpr std::string_view kStartDelayDoc =
     "time from the start of the recording to the first reading of the device; 0: the device starts with the recording";

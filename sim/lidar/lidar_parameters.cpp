@@ -132,7 +132,7 @@ constexpr std::array kColumn = {
     Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
     Parameter{"detection_range_m", 90.0, 0.0, 10000.0, "m",
               "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
-              "such loss"},
+              "loss by range"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,

@@ -22,7 +22,9 @@ constexpr std::array kStrollParameters = {
     Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "half width b of the figure eight"},
     Parameter{"loops", 1.0, 0.1, 100.0, "1", "number of rounds of the figure eight"},
     Parameter{"speed_m_s", 1.2, 0.05, 3.0, "m/s", "speed at the crossing, which is the maximum speed"},
-    Parameter{"ease_s", 1.5, 0.2, 10.0, "s", "time in which the walker reaches that speed, and stops at the end"},
+    Parameter{
+        "ease_s", 1.5, 0.2, 10.0, "s",
+        "time in which the walker reaches the speed at the crossing, and time in which the walker stops at the end"},
     Parameter{"step_hz", 1.8, 0.2, 4.0, "Hz", "steps per second of the walker; assumed"},
     Parameter{"step_m", 0.015, 0.0, 0.1, "m", "amplitude with which the steps lift the robot; assumed"},
     Parameter{"sway_rad", 0.08, 0.0, 0.5, "rad",

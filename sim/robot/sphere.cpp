@@ -14,7 +14,7 @@ constexpr std::array kSphereParameters = {
     Parameter{"shell_mass_kg", 1.6, 0.05, 50.0, "kg", "mass of the thin shell; source: slip study"},
     Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg",
               "mass of instruments and battery, modelled as a homogeneous ball; source: slip study"},
-    Parameter{"inner_radius_m", 0.08, 0.01, 0.9, "m", "radius of this inner ball; assumed"},
+    Parameter{"inner_radius_m", 0.08, 0.01, 0.9, "m", "radius of the inner ball; assumed"},
     Parameter{
         "inner_x_m", 0.0, -0.03, 0.03, "m",
         "centre of the inner ball relative to the geometric centre, body axes; up to 12 mm per axis in the slip study"},

@@ -58,7 +58,7 @@ TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
   EXPECT_EQ(said["has_reference"], true);
   EXPECT_THAT(said["notes"].dump(), HasSubstr("the reference poses come from truth.csv in the imported folder"));
   EXPECT_THAT(said["notes"].dump(), HasSubstr("'imu' is the primary IMU"));
-  EXPECT_THAT(said["notes"].dump(), HasSubstr("notes.csv:1: contains no known column name"));
+  EXPECT_THAT(said["notes"].dump(), HasSubstr("notes.csv:1: the header contains no known column name"));
   const Ended scored = run_program({"score", tum, back, "--frame", "body", "--json"});
   ASSERT_EQ(scored.status, 0) << scored.err;
   EXPECT_LT(ate_m(scored), 1e-6);

@@ -75,7 +75,7 @@ const Fault kFaults[] = {
      [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.accel_m_s2, 1.0 / 9.80665); }},
     {"gyro in deg/s", "the rates may be in deg/s", "--gyro-unit deg/s",
      [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.gyro_rad_s, 57.29577951308232); }},
-    {"inverted pose of the lidar", "the stated pose may be that of the body in the lidar", "--T-body-lidar",
+    {"inverted pose of the lidar", "the stated pose may be the pose of the body in the lidar frame", "--T-body-lidar",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) { lidar.T_BL = lidar.T_BL.inverse(); }},
     {"lidar turned by 90 deg", "Check the signs and order of the axes, and the mounting", "--T-body-lidar",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) {

@@ -46,7 +46,7 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
     throw std::invalid_argument("a WebP picture has " + std::to_string(width) + " by " + std::to_string(height) +
                                 " pixels; width and height must be from 1 to " + std::to_string(WEBP_MAX_DIMENSION));
   if (!(quality >= 0.0f && quality <= 100.0f))
-    throw std::invalid_argument("quality is " + std::to_string(quality) + ", must be within [0, 100]");
+    throw std::invalid_argument("quality is " + std::to_string(quality) + "; it must be within [0, 100]");
   impl_->width = width;
   impl_->height = height;
   WebPAnimEncoderOptions options;

@@ -16,7 +16,7 @@ class Table:
 
     def add(self, *cells: str) -> None:
         if len(cells) != len(self.columns):
-            raise ValueError(f"row '{cells[0]}' has {len(cells)} cells, must have {len(self.columns)}")
+            raise ValueError(f"row '{cells[0]}' has {len(cells)} cells; it must have {len(self.columns)}")
         self.rows.append(list(cells))
 
     def text(self) -> str:

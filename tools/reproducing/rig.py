@@ -293,35 +293,35 @@ SCALE_PX = 26
 PAGE = """# The tumbling rig: the paper next to our simulation
 
 The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a
-hill until its gyro saturates. The published method recovers the saturated axis from the accelerometer.
-`tools/reproduce papers --only rig` writes this page from {draws} runs of the simulated scenario `hill` (seeds {first}
-to {last}). `tools/reproduce` prints each command that it runs.
+hill until its gyro saturates. The published method recovers the rate about the saturated axis from the
+accelerometer. `tools/reproduce papers --only rig` writes this page from {draws} simulated runs of the scenario
+`hill` (seeds {first} to {last}).
 
 {headline}
-- *Raw gyro* is the published mapping chain with unchanged gyro readings (`rate/raw`, `slam/icp_raw`).
-- *Published* is the published method with the constants of the authors' launch files (`rate/saave`,
+- *Raw gyro* means the published mapping method with unchanged gyro readings (`rate/raw`, `slam/icp_raw`).
+- *Published* means the published method with the constants of the authors' launch files (`rate/saave`,
   `slam/published`).
-- *Published, threshold 10.0 rad/s* is the published method with `{threshold}`. The authors' threshold of 10.45 rad/s
-  fits one gyro that saturates at 10.5 rad/s. Our simulated gyros have different saturation limits: on {unseen} of the
-  clipped samples, no axis exceeds 10.45 rad/s.
-- *Ours* is `rate/tumble` and `slam/tumble` on the whole recording, or `rate/tumble_lag` and `slam/tumble_lag` with a
-  fixed lag.
-- The gyro clips in {clipping} simulated runs, on {clipped} samples. The median over the runs of the highest value is
-  {speed} rad/s for the angular speed and {force} m/s² for the acceleration.
-- The end error is the error from the sixth registered sweep to the last sweep, as in the paper.
-- The map overlap is the share of map points within 0.25 m of the reference. A map fails if its overlap is below 85 %,
-  as in the paper.
-- A failed run counts with the largest error, an overlap of 0 and a failed map. The paper reports rotation errors
-  above 90° as 90°; our errors reach up to 180°.
+- *Threshold 10.0 rad/s* means the published method with `{threshold}`. The authors' threshold of
+  10.45 rad/s fits their gyro, which saturates at 10.5 rad/s. Each of our simulated gyros has a different
+  saturation limit: on {unseen} of the clipped samples, no axis exceeds 10.45 rad/s.
+- *Ours* means the methods `rate/tumble` and `slam/tumble` (whole recording), and `rate/tumble_lag` and
+  `slam/tumble_lag` (fixed lag).
+- The gyro clips in {clipping} simulated runs, on {clipped} samples. The median peak of a run is {speed} rad/s and
+  {force} m/s².
+- The end error is the error of the motion from the sixth registered sweep to the last sweep, as in the paper.
+- The map overlap is the share of map points within 0.25 m of the reference. A map fails below 85 % overlap, as in
+  the paper.
+- A failed run counts as the largest error, an overlap of 0 and a failed map. The paper reports rotation errors above
+  90° as 90°; our rotation errors reach 180°.
 
 ## What is reproduced
 
-- The published rate method reduces the rate error nearly as much as in the paper, if one sensing element is clipped,
-  the centre of mass is exact and the threshold is 10.0 rad/s.
-- The published mapping chain reduces the median localisation errors at least as much as in the paper. On the runs
-  that are most similar to the paper, the chain also raises the map overlap as in the paper.
-- The published recovery does not remove all mapping failures in our simulation. Some simulated motions are faster
-  than the motions of the paper, and our maps are not registered to the reference.
+- The published rate method reduces the rate error nearly as much as in the paper under three conditions: one sensing
+  element is clipped, the centre of mass is exact, and the threshold is 10.0 rad/s.
+- The published mapping method reduces the median localisation errors at least as much as in the paper. On the
+  simulated runs most similar to the paper, the published method also raises the map overlap as in the paper.
+- With the published recovery, some mapping failures remain in our simulation. Some simulated motions are faster than
+  the motions of the paper. Our maps are not registered to a reference map.
 
 ## What differs from the paper
 
@@ -343,13 +343,14 @@ to {last}). `tools/reproduce` prints each command that it runs.
 
 ![rate through a tumble](rig_rate.png)
 
-The figure shows the simulated run with the most collisions during clipping. Grey areas mark contact with the ground.
+This figure shows the simulated run with the most collisions while the gyro clips. Grey areas mark contact with the
+ground.
 
 ## Rate error with and without recovery
 
 {rates}
 One of the gyro's three sensing elements is clipped in {one} of the clipped samples, and two or three elements in
-{more}. The published method corrects only one axis. The inexact centre of mass has an error of up to 20 mm.
+{more}. The published method corrects only one axis. An inexact centre of mass has an error of up to 20 mm.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -357,25 +358,24 @@ One of the gyro's three sensing elements is clipped in {one} of the clipped samp
 
 ![percentiles of the localisation error](rig_localisation.png)
 
-The figure shows a failed run as an error of 10 m and 180°.
+The figure of localisation errors shows a failed run as an error of 10 m and 180°.
 
-{alike_draws} of the {draws} simulated runs are most similar to the paper: at most 2 % of their clipped samples have
-two or three clipped sensing elements. The following table shows only the runs that are most similar to the paper.
+The following table shows only the {alike_draws} of {draws} simulated runs that are most similar to the paper. In a
+run of this table, at most 2 % of the clipped samples have two or three clipped sensing elements.
 
 {alike}
 ## Map outliers
 
 ![maps coloured by error](rig_maps.png)
 
-The three maps of seed {worst} come from the raw gyro, the published method and ours (whole recording). The colour of
-a map point is its distance to the true surface.
+The figure shows three maps of seed {worst}: from the raw gyro, the published method and our method (whole
+recording). The colour of a map point shows its distance to the true surface.
 
 ## Angular speed against acceleration
 
 ![density of angular speed against acceleration](rig_density.png)
 
-The rectangle in the figure shows the highest values of other data sets in the paper: 4.7 rad/s and 30.7 m/s². The
-paper states that its rig exceeds the other data sets by 13.9 rad/s and 127.1 m/s². The outlines in the figure show
-the highest angular speed of two public data sets in steps of 5 m/s²: BROAD (Laidig et al., Data 2021, CC BY 4.0) and
-AirbrakesV2 (MIT).
+The rectangle in the figure marks the highest values of other data sets according to the paper: 4.7 rad/s and 30.7
+m/s². The outlines in the figure show the highest angular speed of two public data sets in steps of 5 m/s²: BROAD
+(Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

@@ -309,22 +309,20 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 PAGE = """# The rolling sphere: the paper next to our simulation
 
 The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI
-2021) roll a sphere of 29 cm by hand. The published attitude filter Autogain switches between Madgwick's filter and a
-complementary filter. The published position estimate is a fusion of the rolling velocity with the integrated
-acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each scenario
-(seeds {first} to {last}). `tools/reproduce` prints each command that it runs. The printed numbers of the paper's
-figures come from the data files that the authors published.
+2021) roll a sphere with a diameter of 29 cm by hand. The published attitude filter Autogain switches between
+Madgwick's filter and a complementary filter. The published position filter fuses the rolling velocity with the
+integrated acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each
+scenario (seeds {first} to {last}). The numbers for the paper's figures come from data files that the authors
+published.
 
 ## What is reproduced
 
-- Madgwick's filter jumps at standstill in the paper and in our simulation. The attitude steps of the complementary
-  filter are more than ten times smaller than the steps of Madgwick's filter.
-- At the pace of the paper (`slow_roll`), the errors of Autogain and of Madgwick's filter are similar, and the error
-  of Autogain changes more slowly.
-- At the higher rate of the scenario `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight
-  of Madgwick's step is 1 above 2.1 rad/s.
-- The fused lengths of the legs are near the printed lengths only if the fusion uses the diameter of the sphere in
-  place of the radius.
+- The attitude from Madgwick's filter jumps at standstill, in the paper and in our simulation. The attitude steps of
+  the complementary filter are more than ten times smaller.
+- At the pace of the paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar errors. The error of
+  Autogain changes more slowly.
+- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter: above 2.1 rad/s, Autogain uses
+  Madgwick's step with weight 1.
 
 ## What differs from the paper
 
@@ -337,43 +335,44 @@ figures come from the data files that the authors published.
 | roll correction | never made in the code | made, as printed |
 | attitude reference | optical tracker, fitted to Autogain | exact, aligned in yaw |
 | position reference | tape measure at way points | exact |
-| pace | rolling 1 m takes 5 to 9 s | rolling 1 m takes 5 to 9 s |
+
 | slip and slide | provoked by hand | slippery patches |
 
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at most
-twice the gain times the sample time: 0.092° at 4 ms, as in our simulation, and 0.229° at 10 ms. Successive steps of
-Madgwick's filter have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. A correlation near −1
-means that Madgwick's filter alternates between two values.
+The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at
+most twice the gain times the sample time: 0.092° at our 4 ms, and 0.229° at 10 ms. Successive steps of Madgwick's
+filter have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. At a correlation near −1, the
+filter alternates between two attitudes.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). Each cell is a median
-over the simulated runs. The mean rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log
-of the paper's authors. The paper's data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s,
-including noise of the optical tracker. A step is the change of the distance between samples at 120 Hz, and the second
-difference is the change of the step.
+The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). A step is the change of
+the distance between samples at 120 Hz. The second difference is the change of the step. Each cell is a median over
+the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a
+log of the paper's authors. The total variation of the paper's data covers 20.2 s and includes noise of the optical
+tracker.
 
 {distance}
 ![distance to the truth and its derivative](sphere_distance.png)
 
-The figure shows the first simulated run of `slow_roll`.
+The figure of distances shows the first simulated run of `slow_roll`.
 
 ## The L of 1 m × 1 m with slip and with slide
 
 {ways}
-- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The paper shows one
-  L-shaped path per figure.
-- The true legs (medians) are {true_legs}.
-- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery
-  patches of the scenario `slide_l`, a hand brakes the rotation to at most 0.7 of rolling.
-- *Published fusion* uses the radius of the sphere, 0.145 m. *Published fusion, radius 0.29 m* uses the diameter in
-  place of the radius, as the authors' code does. The fusion halves the rolling velocity while the velocity from the
-  accelerometer is near zero; the doubled radius partly cancels the halving.
+- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The true lengths of
+  the legs (medians) are {true_legs}.
+- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than in rolling without
+  slip. On slippery patches of the scenario `slide_l`, a hand slows the rotation to at most 0.7 times the rate of
+  rolling without slip.
+- The column *published fusion* uses the radius of the sphere, 0.145 m. The column *published fusion, radius 0.29 m*
+  uses the diameter in place of the radius, as the authors' code does. While the velocity from the accelerometer is
+  near zero, the published fusion halves the rolling velocity. The doubled radius partly cancels this factor, and
+  gives nearly the leg lengths of the paper.
 
 ![paths with slip](sphere_slip.png)
 
@@ -381,15 +380,14 @@ The figure shows the first simulated run of `slow_roll`.
 
 ![errors of the legs](sphere_legs.png)
 
-The first two figures of this section show three simulated runs of `slip_l` and of `slide_l`, seen from above. In the
-scenario `slip` of the third figure, the sphere rolls 1 m in 2 to 5 s, faster than in the paper.
+The figures of paths show three simulated runs of `slip_l` and of `slide_l` from above. In the scenario `slip` of the
+figure of leg errors, the sphere rolls 1 m in 2 to 5 s, faster than in the paper (5 to 9 s).
 
 ## The map of a room
 
 {rooms}
-The table counts map points more than 0.1 m below the floor in {rooms_draws} runs of `roll` in a furnished room. The
-sphere of the paper rolls 4 m in 5 s in one room. The figure shows the map of the run with seed {map_seed}, seen from
-the side.
+The table counts map points more than 0.1 m below the floor, in {rooms_draws} simulated runs of `roll` in a furnished
+room. The sphere of the paper rolls 4 m in 5 s. The figure shows the map of seed {map_seed} from the side.
 
 ![the map from the side](sphere_map.png)
 """

@@ -92,7 +92,7 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
   const std::vector<scenarios::MethodPointer> found =
       scenarios::find_methods_within(std::vector<std::string>{name}, time_limit_s);
   if (found.size() == 1) return found.front();
-  std::string line = "--method " + name + " names several methods; choose one of:";
+  std::string line = "--method " + name + " is the name of several methods; choose one of:";
   for (const scenarios::MethodPointer& method : found)
     line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
   throw BadInput(line);

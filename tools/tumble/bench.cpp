@@ -207,7 +207,7 @@ int bench(const Session& session, const BenchOptions& options) {
 Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<BenchOptions>();
   verb.add("METHOD", options->methods,
-           "tests this method: NAME.yaml or NAME.py of an external method, or the name of a method; several methods "
+           "runs this method: NAME.yaml or NAME.py of an external method, or the name of a method; several methods "
            "must have the same kind")
       .required();
   verb.add("--suite", options->suite,

@@ -35,7 +35,7 @@ scenarios::MethodPointer chosen_method(const std::string& name, const scenarios:
   }
   if (fitting.empty()) throw BadInput(refused);
   if (fitting.size() > 1) {
-    std::string line = "--method " + name + " names several methods; choose one of:";
+    std::string line = "--method " + name + " is the name of several methods; choose one of:";
     for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(method->info);
     throw BadInput(line);
   }

@@ -227,13 +227,14 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
            "compares this method; repeat the option to compare each method with the last one named [default: compares "
            "all methods that need no truth with the baseline]")
       .one_at_a_time();
-  verb.add("--against", options->against, "compares with this method [default: the last --method, or the baseline]");
+  verb.add("--against", options->against,
+           "sets the method with which the other methods are compared [default: the last --method, or the baseline]");
   verb.add("--metric", options->metrics,
            "compares this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
       .one_at_a_time();
   verb.add("--margin", options->margin,
-           "sets the largest loss that still counts as 'not worse': a number in the metric's unit, or a percentage of "
-           "the other method's value, for example 10%");
+           "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "
+           "percentage of the other method's value, for example 10%");
   verb.add("--risk", options->risk, "sets the accepted probability of any false finding in a table")
       .within(1e-6, 0.5)
       .shows_default();

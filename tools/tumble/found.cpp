@@ -92,7 +92,8 @@ class Found {
     const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
     add("lever arm of the IMU",
         arm_stated ? vector_text(arm_m) + " m from the centre of mass"
-                   : "0: IMU at the centre of mass. Harmless unless the gyro clips; then tracking may fail",
+                   : "0: the IMU is assumed at the centre of mass. The error is harmless unless the gyro clips; then "
+                     "tracking may fail",
         arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
     sim::LidarRecord& lidar = lidars().front();
     const bool pose_stated =
@@ -104,13 +105,15 @@ class Found {
                  pose_text(lidar.T_BL) + ": attitude from the rotations of lidar and gyro; position 0", kMeasured,
                  kPoseOption);
     }
-    add("pose of the lidar", "equal to the body: an error beyond 1 deg or 5 cm may fail; calibrated during the run",
+    add("pose of the lidar",
+        "equal to the pose of the body: tracking may fail if the error exceeds 1 deg or 5 cm; calibrated during the "
+        "run",
         kAssumed, kPoseOption);
   }
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
-        fmt::format("inside {} to {} m around the lidar; these returns are dropped", vector_text(box.min()),
+        fmt::format("inside a box from {} to {} m around the lidar; these returns are dropped", vector_text(box.min()),
                     vector_text(box.max())),
         stated ? kStated : kAssumed, "--own-body X Y Z X Y Z");
   }
@@ -136,8 +139,9 @@ class Found {
     if (!imu.device.empty()) return add("data sheet of the IMU", imu.device, kStated, option);
     const auto device = scenarios::probable_imu(imu, sheets_);
     if (!device)
-      return add("data sheet of the IMU", "none: typical noise; the saturation limits are detected from the readings",
-                 kAssumed, option);
+      return add("data sheet of the IMU",
+                 "none: the noise is assumed typical; the saturation limits are detected from the readings", kAssumed,
+                 option);
     scenarios::apply_sheet(*std::ranges::find(sheets_, device->device, &scenarios::DataSheet::device), imu);
     add("data sheet of the IMU", device->device + ": " + device->evidence, kByName, option);
   }
@@ -179,7 +183,7 @@ class Found {
         fmt::format("{} m/s^2; the first reading measures {} m/s^2 along {}",
                     rounded(recording_.content.sensors.gravity_m_s2), rounded(force.norm()),
                     vector_text(force.normalized())),
-        kMeasured, "none: any mounting of the IMU");
+        kMeasured, "none: the IMU may have any mounting");
   }
 
   static std::string point_times(const sim::LidarRecord& lidar) {
@@ -193,11 +197,13 @@ class Found {
   void add_clocks() {
     const auto& agreement = recording_.rotation.primary;
     if (!agreement)
-      return add("clock of the lidar", "as stated by its stamps; calibrated during the run", kAssumed, "--stamps");
+      return add("clock of the lidar", "equal to the stated time stamps; calibrated during the run", kAssumed,
+                 "--stamps");
     add("clock of the lidar",
-        agreement->delay_s == 0.0 ? std::string("equal to the IMU's within some 10 ms; calibrated during the run")
-                                  : fmt::format("{} s {} the IMU's", rounded(std::abs(agreement->delay_s)),
-                                                agreement->delay_s > 0.0 ? "after" : "before"),
+        agreement->delay_s == 0.0
+            ? std::string("equal to the clock of the IMU within some 10 ms; calibrated during the run")
+            : fmt::format("{} s {} the clock of the IMU", rounded(std::abs(agreement->delay_s)),
+                          agreement->delay_s > 0.0 ? "after" : "before"),
         kMeasured, "--stamps");
   }
 

@@ -99,7 +99,7 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
            "identity]")
       .words(7);
   verb.add("--stem", options.stem,
-           "selects one of several series of sweeps in the folder: the part of the file names before the number");
+           "selects the sweeps of one lidar in the folder by the part of their file names before the number");
   verb.add(
       "--times", options.times,
       "reads the time stamps of the sweeps or poses from this file, one per line, in s or as a date in UTC [default: "

@@ -163,7 +163,7 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
 
 void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
   for (const Repair& repair : recording.repairs)
-    session.note(fmt::format("{} {} was set: {}", repair.option.name, repair.option.value, repair.cause));
+    session.note(fmt::format("the option {} {} was set: {}", repair.option.name, repair.option.value, repair.cause));
   for (const scenarios::RecordingFinding& each : scenarios::findings_in_notes(recording.content.notes))
     session.note(each.where + ": " + each.evidence);
   for (const std::string& line : verdict_lines(estimate)) session.note(line);

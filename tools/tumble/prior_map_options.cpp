@@ -48,7 +48,7 @@ void declare_prior_map(VerbOptions& verb, PriorMapOptions& options) {
       "--map-pose", options.pose,
       "states the IMU's pose in the map at the start: X Y Z HEADING [m, rad], then the standard deviations SIGMA_M "
       "SIGMA_RAD [default: 0 0; without --map-pose, the program searches the whole map]");
-  verb.add_flag("--map-frozen", options.frozen, "keeps the map unchanged; by default, sweeps extend the map");
+  verb.add_flag("--map-frozen", options.frozen, "keeps the prior map unchanged; by default, sweeps extend the map");
 }
 
 scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options) {

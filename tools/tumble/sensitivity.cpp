@@ -91,7 +91,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
 
 /// Returns one row per class of the number, for each influence that is shown.
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
-  Table table("partial dependence: median, or share of failures, by class of the number",
+  Table table("partial dependence: median score, or share of failures, for each class of values of a number",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});
   table.align_right_from(4);
   for (const Sensitivity& row : rows) {

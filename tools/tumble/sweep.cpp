@@ -101,7 +101,7 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   const scenarios::Certificate certificate = scenarios::certify_results(
       results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
   if (!stop.load() && !certificate.passes()) {
-    session.note("some rows of this build's certificate fail; 'tumble certify' shows the rows");
+    session.note("some rows of the certificate of this build fail; 'tumble certify' shows these rows");
   }
 }
 
@@ -326,16 +326,17 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
-           "runs this number of typical draws again at the end, and writes their pictures, plots and replays to "
-           "FILE.db.files for 'tumble report'; does not apply to shards [default: one per 8 draws, at most 3]")
+           "sets the number of typical draws that the sweep runs again at the end. For these draws, the sweep writes "
+           "pictures, plots and replays to FILE.db.files for 'tumble report'; does not apply to shards [default: one "
+           "per 8 draws, at most 3]")
       .whole(0, 64);
   verb.add("--failures", options->failures,
-           "runs this number of draws with the most failed methods again, and writes a picture and a replay of each "
-           "[default: one per 4 draws, at most 8; none with --examples 0]")
+           "sets the number of draws with the most failed methods that the sweep runs again. For each of these draws, "
+           "the sweep writes a picture and a replay [default: one per 4 draws, at most 8; none with --examples 0]")
       .whole(0, 64);
   verb.add("--memory", options->memory_mib,
-           "limits the memory for the data of a worker and of each method that the worker runs, MiB; a run beyond the "
-           "limit has status 'killed'")
+           "limits the memory of each worker process and of each method, MiB; a run beyond the limit has status "
+           "'killed'")
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--keep", options->keep,

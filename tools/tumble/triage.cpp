@@ -166,7 +166,7 @@ Action declare_triage(VerbOptions& verb, const Session& session) {
       .whole(1, 1024)
       .shows_default();
   verb.add("--memory", options->memory_mib,
-           "limits the memory for the data of each process of a suite, MiB; a draw beyond the limit has no result")
+           "limits the memory of each process, MiB; a draw beyond the limit has no result")
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--method", options->method, "names the method that fails").required();

@@ -154,7 +154,7 @@ RailPlanes CalibratedRig::planes(Triad triad) const {
 }
 
 void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& params) {
-  if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", must be at least 1");
+  if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + "; it must be at least 1");
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
   params.expert.planes.known = rig.planes();

@@ -34,7 +34,7 @@ class WnojSmoother {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.jerk_psd_rad2_s5,
-            {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12, "; larger follows the readings more closely"});
+            {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12, "; a larger value follows the readings more closely"});
     }
   };
   struct Measurement {

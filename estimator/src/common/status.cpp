@@ -44,7 +44,7 @@ const char* to_string(ErrorCode error_code) {
 
 std::string Status::message() const {
   if (ok()) return "ok";
-  return std::string(to_string(error_code)) + ": " + field + " is " + number(value) + ", bound " + number(bound);
+  return std::string(to_string(error_code)) + ": " + field + " is " + number(value) + "; the bound is " + number(bound);
 }
 
 InvalidParams::InvalidParams(const std::string& field, double value, const std::string& bound)

@@ -19,9 +19,9 @@ RIGID = 1e-6  # tolerance of a rotation, the same as in the program's readers
 
 
 def refusal(trouble: str, field: str, value: Any, bound: Any, index: int | None = None) -> TumbleError:
-    """Returns the error "FIELD is VALUE, must be BOUND"."""
+    """Returns the error "FIELD is VALUE; it must be BOUND"."""
     where = "" if index is None else f" (row {index})"
-    return TumbleError(f"{field} is {value}, must be {bound}{where}", trouble, field, value, bound, index)
+    return TumbleError(f"{field} is {value}; it must be {bound}{where}", trouble, field, value, bound, index)
 
 
 def wrong_type(field: str, given: Any, bound: str) -> TumbleError:

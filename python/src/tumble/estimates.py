@@ -46,7 +46,7 @@ def write_tum(path: str | os.PathLike[str], poses: Any) -> None:
     positions = unmasked("position", getattr(poses, "position", np.zeros((len(times), 3))))
     for name, rows, columns in (("position", positions, 3), ("quaternion", quaternions, 4)):
         if rows.shape != (len(times), columns):
-            raise TumbleError(f"{name} is {rows.shape}, must be {(len(times), columns)}", "shape", name, rows.shape,
+            raise TumbleError(f"{name} is {rows.shape}; it must be {(len(times), columns)}", "shape", name, rows.shape,
                               (len(times), columns))
         if not np.isfinite(rows).all():
             raise TumbleError(f"{name} contains a number that is not finite", "non_finite", name, float("nan"), "finite")
@@ -81,7 +81,7 @@ def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Traj
                     continue
                 try:
                     if len(words) != 8:
-                        raise ValueError(f"the line has {len(words)} numbers, must have 8")
+                        raise ValueError(f"the line has {len(words)} numbers; it must have 8")
                     times.append(_nanoseconds(words[0]))
                     rows.append([float(word) for word in words[1:]])
                     if not np.isfinite(rows[-1]).all():
@@ -130,7 +130,7 @@ def _columns(path: pathlib.Path) -> dict[str, Array]:
         names = file.readline().strip().split(",")
         rows = [line.strip().split(",") for line in file]
     if any(len(row) != len(names) for row in rows):
-        raise TumbleError(f"{path}: a row and the header differ in their number of columns", "file", str(path), None, len(names))
+        raise TumbleError(f"{path}: a row and the header have different numbers of columns", "file", str(path), None, len(names))
     whole = [name.endswith("_ns") for name in names]
     return {name: np.array([row[k] for row in rows], dtype=np.int64 if whole[k] else float) for k, name in enumerate(names)}
 

@@ -43,10 +43,10 @@ class Group:
         shape = getattr(data, "shape", None)
         if shape is None or getattr(data, "dtype", None) != np.dtype(dtype):
             found = getattr(data, "dtype", "a group")
-            raise TumbleError(f"{self.place}/{name} is {found}, must be {dtype}", "file", f"{self.place}/{name}", str(found), dtype)
+            raise TumbleError(f"{self.place}/{name} is {found}; it must be {dtype}", "file", f"{self.place}/{name}", str(found), dtype)
         if shape[1:] != columns:
             bound = "x".join(["N", *map(str, columns)])
-            raise TumbleError(f"{self.place}/{name} is {shape}, must be {bound}", "file", f"{self.place}/{name}", shape, bound)
+            raise TumbleError(f"{self.place}/{name} is {shape}; it must be {bound}", "file", f"{self.place}/{name}", shape, bound)
         return data[()]
 
     def texts(self, name: str) -> list[str]:
@@ -86,7 +86,7 @@ def same_length(place: str, first: Array, **others: Array | None) -> None:
     """Raises TumbleError `file` if one of `others` has a different number of rows than `first`; None is skipped."""
     for name, rows in others.items():
         if rows is not None and len(rows) != len(first):
-            raise TumbleError(f"{place}/{name} has {len(rows)} rows, must have {len(first)}", "file", f"{place}/{name}",
+            raise TumbleError(f"{place}/{name} has {len(rows)} rows; it must have {len(first)}", "file", f"{place}/{name}",
                               len(rows), len(first))
 
 
@@ -106,16 +106,16 @@ def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[in
     """
     given = unmasked(f"{group.name}/{name}", rows)
     if np.dtype(dtype).kind in "iu" and given.dtype.kind not in "iu":
-        raise TumbleError(f"{group.name}/{name} is {given.dtype}, must be {np.dtype(dtype)}", "type", f"{group.name}/{name}",
+        raise TumbleError(f"{group.name}/{name} is {given.dtype}; it must be {np.dtype(dtype)}", "type", f"{group.name}/{name}",
                           given.dtype, np.dtype(dtype))
     if given.shape != shape:
-        raise TumbleError(f"{group.name}/{name} is {given.shape}, must be {shape}", "shape", f"{group.name}/{name}", given.shape,
+        raise TumbleError(f"{group.name}/{name} is {given.shape}; it must be {shape}", "shape", f"{group.name}/{name}", given.shape,
                           shape)
     if np.dtype(dtype).kind in "iu" and given.size > 0:
         held = np.iinfo(dtype)
         for number in (int(given.min()), int(given.max())):
             if not held.min <= number <= held.max:
-                raise TumbleError(f"{group.name}/{name} is {number}, must be within [{held.min}, {held.max}]", "out_of_range",
+                raise TumbleError(f"{group.name}/{name} is {number}; it must be within [{held.min}, {held.max}]", "out_of_range",
                                   f"{group.name}/{name}", number, (held.min, held.max))
     stored = given.astype(dtype)
     data = group.create_dataset(name, data=stored, **_storage(name, stored) if many else {})

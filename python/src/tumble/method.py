@@ -44,7 +44,7 @@ def serve(kind: str, function: Callable[[Recording], Any], arguments: Sequence[s
     position, slam       an object with time_ns, position and quaternion (Poses, Trajectory)
     """
     if kind not in KINDS:
-        raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
+        raise TumbleError(f"kind is '{kind}'; it must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
     words = sys.argv[1:] if arguments is None else list(arguments)
     if len(words) != 2:
         raise SystemExit(f"usage: {sys.argv[0]} RECORDING.h5 OUTPUT; tumble.describe_method explains how the program calls this script")
@@ -68,12 +68,12 @@ def _write_rates(path: str, recording: Recording, result: Any) -> None:
     times = recording.first_imu.time_ns
     rows = [unmasked("rate", rate).astype(float)]
     if rows[0].shape != (len(times), 3):
-        raise TumbleError(f"rate is {rows[0].shape}, must be {(len(times), 3)}", "shape", "rate", rows[0].shape, (len(times), 3))
+        raise TumbleError(f"rate is {rows[0].shape}; it must be {(len(times), 3)}", "shape", "rate", rows[0].shape, (len(times), 3))
     header = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s"
     if covariance is not None:
         matrices = unmasked("covariance", covariance).astype(float)
         if matrices.shape != (len(times), 3, 3):
-            raise TumbleError(f"covariance is {matrices.shape}, must be {(len(times), 3, 3)}", "shape", "covariance", matrices.shape,
+            raise TumbleError(f"covariance is {matrices.shape}; it must be {(len(times), 3, 3)}", "shape", "covariance", matrices.shape,
                               (len(times), 3, 3))
         symmetric("covariance", matrices)
         rows.append(matrices[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]])
@@ -91,7 +91,7 @@ def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: 
     scenarios/methods/EXTERNAL.md lists all keys of such files.
     """
     if kind not in KINDS:
-        raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
+        raise TumbleError(f"kind is '{kind}'; it must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
     _require_description(name, script, robots, time_limit_s)
     if isinstance(robots, str):
         robots = (robots,)

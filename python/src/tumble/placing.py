@@ -30,7 +30,7 @@ def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
     """
     known = np.asarray(poses.time_ns)
     if len(known) < 2:
-        raise TumbleError(f"poses has {len(known)} poses, must have at least 2", "too_few", "poses", len(known), 2)
+        raise TumbleError(f"the argument poses has {len(known)} poses; it must have at least 2", "too_few", "poses", len(known), 2)
     k = np.clip(np.searchsorted(known, time_ns, side="right") - 1, 0, len(known) - 2)
     share = ((time_ns - known[k]) / (known[k + 1] - known[k]))[:, None]
     share[(time_ns < known[0]) | (time_ns > known[-1])] = np.nan
@@ -72,12 +72,12 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     true = position + np.einsum("nij,nj->ni", R_WB, returns_B)
     inside = np.isfinite(estimated).all(axis=1) & np.isfinite(true).all(axis=1)
     if not inside.any():
-        raise TumbleError("no lidar return is within the times of the poses, must be at least one", "empty", "poses", 0, 1)
+        raise TumbleError("no lidar return is within the times of the poses; at least one return must be", "empty", "poses", 0, 1)
     estimated, true = estimated[inside], true[inside]
     known = np.asarray(poses.time_ns)
     begin = known[(known >= truth.time_ns[0]) & (known <= truth.time_ns[-1])][:1]
     if len(begin) == 0:
-        raise TumbleError("no pose is within the times of the truth, must be at least one", "empty", "poses", 0, 1)
+        raise TumbleError("no pose is within the times of the truth; at least one pose must be", "empty", "poses", 0, 1)
     p_e, R_e = poses_at(begin, poses)
     p_t, R_t = poses_at(begin, truth)
     T_BI = truth.imu_T_BI[0]

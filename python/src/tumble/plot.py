@@ -32,7 +32,7 @@ def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") ->
     which the gyro clips on an axis are shaded.
     """
     if not axes or set(axes) - set("xyz"):
-        raise TumbleError(f"axes is '{axes}', must contain only x, y and z", "unknown", "axes", axes, "xyz")
+        raise TumbleError(f"axes is '{axes}'; it must contain only x, y and z", "unknown", "axes", axes, "xyz")
     having("imu", imu, "an Imu such as recording.imus[0]", "time_ns", "gyro")
     having("rates", rates, "an object with rate, covariance and clipped_axes, such as the result of tumble.rate", "rate", "covariance", "clipped_axes")
     for name, rows in (("rates", rates.rate), ("truth", truth)):
@@ -110,12 +110,12 @@ def scores(frame: Any, metric: str, unit: str = "") -> Any:
     rows = frame[frame.metric == metric]
     if len(rows) == 0:
         known = sorted(set(frame.metric.dropna()))
-        raise TumbleError(f"metric is '{metric}', must be one of {', '.join(known)}", "unknown", "metric", metric, known)
+        raise TumbleError(f"metric is '{metric}'; it must be one of {', '.join(known)}", "unknown", "metric", metric, known)
     ended = frame[frame.kind.isin(set(rows.kind))].drop_duplicates(["scenario", "seed", "kind", "method"])
     values = {method: _values(ended[ended.method == method], rows[rows.method == method]) for method in sorted(set(ended.method))}
     finite = np.concatenate([each[np.isfinite(each)] for each in values.values()])
     if len(finite) == 0 or finite.max() <= 0.0:
-        raise TumbleError(f"{metric} has no value above 0, must have at least one for a logarithmic scale", "empty", metric, None, 0.0)
+        raise TumbleError(f"{metric} has no value above 0; a logarithmic scale needs at least one", "empty", metric, None, 0.0)
     least, most = max(finite[finite > 0].min(), 1e-12), finite.max()
     figure = _figure(figsize=(1.5 + 1.2 * len(values), 4.0))
     panel = figure.subplots()

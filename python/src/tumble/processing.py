@@ -157,7 +157,7 @@ def rolling(recording: Recording, **options: Any) -> _tumble.RollingPoses:
     imus = [recording.first_imu, *(imu for imu in recording.imus[1:] if imu.name != "imu_reference")][:4]
     for imu in imus[1:]:
         if not np.array_equal(imu.time_ns, imus[0].time_ns):
-            raise TumbleError(f"{imu.name}.time_ns differs from {imus[0].name}.time_ns, must be equal", "time_order", f"{imu.name}.time_ns")
+            raise TumbleError(f"{imu.name}.time_ns differs from {imus[0].name}.time_ns; both must be equal", "time_order", f"{imu.name}.time_ns")
     stated: dict[str, Any] = {"units": [(sheet_of(imu), imu.T_BI) for imu in imus], "radius_m": recording.sphere_radius_m,
                               "gravity_m_s2": recording.gravity_m_s2}
     odometry = _tumble.RollingOdometry(**(stated | options))

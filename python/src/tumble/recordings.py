@@ -167,14 +167,14 @@ class Recording(Shown):
     def sweeps(self) -> Lidar:
         """The first lidar. Raises TumbleError `empty` if the recording has no lidar."""
         if not self.lidars:
-            raise TumbleError("lidars is empty, must contain at least one lidar", "empty", "lidars", 0, 1)
+            raise TumbleError("lidars is empty; it must contain at least one lidar", "empty", "lidars", 0, 1)
         return self.lidars[0]
 
     @property
     def first_imu(self) -> Imu:
         """The primary IMU. Raises TumbleError `empty` if the recording has no IMU."""
         if not self.imus:
-            raise TumbleError("imus is empty, must contain at least one IMU", "empty", "imus", 0, 1)
+            raise TumbleError("imus is empty; it must contain at least one IMU", "empty", "imus", 0, 1)
         return self.imus[0]
 
     @property
@@ -252,7 +252,7 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
         try:
             top = Group(file, name)
             if top.attribute("format", str) != "tumble recording":
-                raise TumbleError(f"{name} has the format '{top.attribute('format', str)}', must be 'tumble recording'", "file", name)
+                raise TumbleError(f"{name} has the format '{top.attribute('format', str)}'; it must be 'tumble recording'", "file", name)
             sensors = Group(file["sensors"], name) if "sensors" in file else None
             if sensors is None:
                 raise missing(f"{name}: /sensors")

@@ -72,7 +72,7 @@ class OdometryNode(Node):
             described = ParameterDescriptor(description=meaning, read_only=True, dynamic_typing=count > 0)
             self.text[key] = self.declare_parameter(key, [] if count > 0 else default, described).value
         if self.text["tf"] not in ("imu", "sweep", "none"):
-            raise ValueError(f"parameter tf is '{self.text['tf']}', must be imu, sweep or none")
+            raise ValueError(f"parameter tf is '{self.text['tf']}'; it must be imu, sweep or none")
         self.frames = {"imu": self.text["imu_frame"], "lidar": self.text["lidar_frame"]}
         self.buffer = tf2_ros.Buffer() if tf2_ros else None
         self.listener = tf2_ros.TransformListener(self.buffer, self) if tf2_ros else None
@@ -278,7 +278,7 @@ class RollingNode(OdometryNode):
         poses = list(self.text["T_base_imu"])
         count = len(poses) // 7
         if count < 1 or len(poses) % 7 > 0:
-            raise ValueError(f"parameter T_base_imu has {len(poses)} numbers, must have 7 for each IMU: x y z qx qy qz qw")
+            raise ValueError(f"parameter T_base_imu has {len(poses)} numbers; it must have 7 for each IMU: x y z qx qy qz qw")
         self.adapter = _tumble.RollingAdapter(self, given, self.text["imu_sheet"], [poses[7 * k:7 * k + 7] for k in range(count)])
         self.inputs = [(Imu, "imu" if count == 1 else f"imu_{unit + 1}", functools.partial(self.on_imu, unit), IMU_DEPTH) for unit in range(count)]
 

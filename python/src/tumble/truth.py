@@ -178,7 +178,7 @@ def _read_rows(group: Group, listed: Sequence[_Rows], kind: type, **members: Any
         found = None if rows is None else 1 if each.like == "one" and rows.ndim == 1 else len(rows)
         if None not in (found, count) and found != count:
             place = f"{group.place}/{each.name}"
-            raise TumbleError(f"{place} has {found} rows, must have {count}", "file", place, found, count)
+            raise TumbleError(f"{place} has {found} rows; it must have {count}", "file", place, found, count)
     return record
 
 
@@ -196,7 +196,7 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
 def require_quantity(place: str, name: str) -> None:
     """Raises TumbleError `out_of_range` unless `name` has only letters, digits and _, at least one."""
     if not (isinstance(name, str) and name.isascii() and name.replace("_", "a").isalnum()):
-        raise TumbleError(f"{place} has a quantity {name!r}, its name must contain only letters, digits and _", "out_of_range", place, name, "a-z A-Z 0-9 _")
+        raise TumbleError(f"{place} has a quantity {name!r}; its name must contain only letters, digits and _", "out_of_range", place, name, "a-z A-Z 0-9 _")
 
 
 def _read_series(group: Group) -> SeriesTruth:
@@ -237,7 +237,7 @@ def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequen
     """
     for name, records, counts in (("imus", truth.imus, samples), ("lidars", truth.lidars, points), ("series", truth.series, readings)):
         if len(records) != len(counts):
-            raise TumbleError(f"truth.{name} has {len(records)} entries, must have {len(counts)}, one for each sensor of the recording", "shape",
+            raise TumbleError(f"truth.{name} has {len(records)} entries; it must have {len(counts)}, one for each sensor of the recording", "shape",
                               f"truth.{name}", len(records), len(counts))
     group.attrs["period_ns"] = np.int64(truth.period_ns)
     _write_rows(group, _BODY, truth)

@@ -57,16 +57,16 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   Cloud out;
   if (message.width == 0 || message.height == 0) return out;
   if (message.point_step == 0 || row_bytes > message.data.size() / message.height) {
-    throw BadInput(fmt::format("{}: {} x {} points of {} bytes do not fit its data of {} bytes", where, message.height,
-                               message.width, message.point_step, message.data.size()));
+    throw BadInput(fmt::format("{}: the cloud states {} x {} points of {} bytes, which do not fit its data of {} bytes",
+                               where, message.height, message.width, message.point_step, message.data.size()));
   }
   out.points = std::size_t{message.width} * message.height;
   for (const ros::PointField& field : message.fields) {
     const ReadType* type = type_of(field.datatype);
     if (type == nullptr || field.count > 1) continue;  // count 0: some drivers mean one
     if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
-      throw BadInput(fmt::format("{}: field '{}' at byte {} lies outside its point of {} bytes", where, field.name,
-                                 field.offset, message.point_step));
+      throw BadInput(fmt::format("{}: field '{}' starts at byte {} and ends outside of a point, which has {} bytes",
+                                 where, field.name, field.offset, message.point_step));
     }
     out.names.push_back(field.name);
     type->take(message, row_bytes, field.offset, out.columns.emplace_back(out.points));
@@ -76,7 +76,8 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
 
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where) {
   if (message.point_num != message.points.size()) {
-    throw BadInput(fmt::format("{}: states {} points but holds {}", where, message.point_num, message.points.size()));
+    throw BadInput(
+        fmt::format("{}: the cloud states {} points but contains {}", where, message.point_num, message.points.size()));
   }
   Cloud out;
   out.points = message.points.size();

@@ -42,7 +42,7 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));
-  return now_ns == 0 ? "is 0, like the previous time stamp" : "does not change";
+  return now_ns == 0 ? "is 0 in this message and in the previous message" : "does not change";
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ class Export {
  private:
   std::int64_t stamp_of(std::int64_t time_ns) const {
     if (origin_ns_ + time_ns < 0)
-      throw BadInput("the time stamp of a reading is before 1970; bags cannot store such time stamps");
+      throw BadInput("the time stamp of a reading is before 1970; a bag can only store later time stamps");
     return origin_ns_ + time_ns;
   }
 

@@ -80,8 +80,8 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
       const std::string text = fmt::format(
-          "{}: the time ranges of '{}' and '{}' do not overlap: one range ends {} s before the other "
-          "begins; check that both use the same clock{}",
+          "{}: the time ranges of '{}' and '{}' do not overlap: the first range ends {} s before the second begins; "
+          "check that both sensors use the same clock{}",
           path.string(), early.name, late.name,
           std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
           by_headers ? "; set '--stamps record' to use the record stamps" : "");
@@ -162,8 +162,8 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
     out.notes.push_back(
         fmt::format("{}: mapping uses the lidar of this topic, because {} (set --lidar-topic to choose another topic)",
                     lidars.front().first,
-                    is_timed(lidars.front()) && !is_timed(lidars.back()) ? "its points have time stamps"
-                                                                         : "it is the first topic with point clouds"));
+                    is_timed(lidars.front()) && !is_timed(lidars.back()) ? "the points of the topic have time stamps"
+                                                                         : "the topic is the first with point clouds"));
   }
   for (auto& [topic, built] : lidars) add_lidar(out, std::move(built));
 }
@@ -179,8 +179,9 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   add_lidars(bag, places, reading, out);
   note_unread_clouds(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(fmt::format("{}: there is no topic of type {}, {} or CustomMsg with messages (existing topics:{})",
-                               path.string(), kImu, kCloud, bag.topic_list()));
+    throw BadInput(
+        fmt::format("{}: the bag has no topic of type {}, {} or CustomMsg with messages (existing topics:{})",
+                    path.string(), kImu, kCloud, bag.topic_list()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);

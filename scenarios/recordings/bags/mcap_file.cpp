@@ -69,7 +69,7 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   Record out;
   out.at = place;
   if (take.left.size() < kHeadBytes)
-    fail(at + place, "ends within the head of a record: the file is damaged or truncated");
+    fail(at + place, "the file ends within the head of a record: it is damaged or truncated");
   std::uint64_t size = 0;
   take(out.op), take(size);
   if (size > take.left.size()) {
@@ -84,17 +84,17 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
 /// Reads magic, header, footer and the end of the data.
 void File::open_ends() {
   if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
-    fail(0, "does not begin with the magic bytes of MCAP 0: not an MCAP file");
+    fail(0, "the file does not begin with the magic bytes of MCAP 0, so it is not an MCAP file");
   if (bytes_ < 2 * kMagic.size() + kFooterBytes + kDataEndBytes ||
       text(bytes_ - kMagic.size(), kMagic.size()) != kMagic)
     fail(bytes_,
-         "does not end with the magic bytes of MCAP: the file is truncated or was not closed (repair the file with "
+         "the file does not end with the magic bytes of MCAP: it is truncated or was not closed (repair the file with "
          "'mcap recover')");
   footer_at_ = bytes_ - kMagic.size() - kFooterBytes;
   const std::string footer = text(footer_at_, kFooterBytes);
   const Record record = record_in(footer, 0, footer_at_);
   if (record.op != kFooter || record.content.size() != kFooterBytes - kHeadBytes)
-    fail(footer_at_, "has no footer: the file is damaged");
+    fail(footer_at_, "the file has no footer: it is damaged");
   footer_ = as<Footer>(record, footer_at_);
   const std::uint64_t data_end = footer_.summary_start == 0 ? footer_at_ : footer_.summary_start;
   if (data_end > footer_at_ || data_end < kMagic.size() + kDataEndBytes)
@@ -166,12 +166,14 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
     const std::uint64_t start = group.group_start - footer_.summary_start;
     if (group.group_start < footer_.summary_start || start > summary.size() ||
         group.group_length > summary.size() - start)
-      fail(at, fmt::format("names a group at byte {}, which is outside the summary: the file is damaged",
+      fail(at, fmt::format("the summary names a group at byte {}, which is outside the summary: the file is damaged",
                            group.group_start));
     walk(summary.substr(start, group.group_length), group.group_start, [&](const Record& each) {
       if (each.op != group.group_opcode)
-        fail(at, fmt::format("names a group of kind {}, but the group contains records of kind {}: the file is damaged",
-                             group.group_opcode, each.op));
+        fail(at,
+             fmt::format(
+                 "the summary names a group of kind {}, but the group contains records of kind {}: the file is damaged",
+                 group.group_opcode, each.op));
     });
   });
 }
@@ -183,7 +185,8 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
             [](const ChunkIndex& a, const ChunkIndex& b) { return a.chunk_start_offset < b.chunk_start_offset; });
   if (statistics_ && statistics_->chunk_count != chunks.size()) {
     fail(footer_.summary_start,
-         fmt::format("states {} chunks but indexes {}: the file is damaged", statistics_->chunk_count, chunks.size()));
+         fmt::format("the summary states {} chunks but contains {} chunk indexes: the file is damaged",
+                     statistics_->chunk_count, chunks.size()));
   }
   std::uint64_t free = kMagic.size();
   for (const ChunkIndex& each : chunks) {
@@ -191,14 +194,15 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     if (at < free || at > data_end_ || each.chunk_length > data_end_ - at ||
         each.message_index_length > data_end_ - at - each.chunk_length) {
       fail(footer_.summary_start,
-           fmt::format("indexes a chunk of {} at byte {}; the chunk must be between bytes {} and {}",
+           fmt::format("the index names a chunk of {} at byte {}; the chunk must be between bytes {} and {}",
                        in_bytes(each.chunk_length), at, free, data_end_));
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
       if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat the channels: scan
       if (place < at + each.chunk_length || place >= free)
-        fail(place, fmt::format("must follow its chunk at byte {}, but does not: the file is damaged", at));
+        fail(place,
+             fmt::format("a message index must follow its chunk at byte {}, but does not: the file is damaged", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
@@ -240,13 +244,13 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   if (!segment.chunk || !segment.chunk->message_index_offsets.contains(channel)) return std::nullopt;
   const std::uint64_t at = segment.chunk->message_index_offsets.at(channel);
   const std::uint64_t end = segment.at + segment.bytes + segment.chunk->message_index_length;
-  if (end - at < kHeadBytes) fail(at, "ends within the head of an index: the file is damaged");
+  if (end - at < kHeadBytes) fail(at, "the message index ends within its head: the file is damaged");
   const std::string bytes = text(at, std::min(end - at, kBytesMax));
   const Record record = record_in(bytes, 0, at);
-  if (record.op != kMessageIndex) fail(at, "is not a message index: the file is damaged");
+  if (record.op != kMessageIndex) fail(at, "this record must be a message index: the file is damaged");
   auto index = as<MessageIndex>(record, at);
   if (index.channel_id != channel) {
-    fail(at, fmt::format("is the index of channel {}, but must be the index of channel {}: the file is damaged",
+    fail(at, fmt::format("this message index belongs to channel {}, but must belong to channel {}: the file is damaged",
                          index.channel_id, channel));
   }
   return index;
@@ -257,7 +261,7 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
   constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // including the name of the compression
   std::string head = text(at, std::min(bytes, kMost));
   if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk)
-    fail(at, "is not a chunk: the file is damaged");
+    fail(at, "this record must be a chunk: the file is damaged");
   std::uint64_t content = 0;
   std::memcpy(&content, head.data() + 1, sizeof(content));
   if (content != bytes - kHeadBytes)

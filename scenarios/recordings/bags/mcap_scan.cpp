@@ -36,7 +36,7 @@ void File::scan() {
     const std::string head = text(at, std::min(kHeadBytes, data_end_ - at));
     std::uint8_t op = 0;
     std::uint64_t size = 0;
-    if (head.size() < kHeadBytes) fail(at, "ends within the head of a record: the file is damaged or truncated");
+    if (head.size() < kHeadBytes) fail(at, "the file ends within the head of a record: it is damaged or truncated");
     Take take(head);
     take(op), take(size);
     const std::uint64_t left = data_end_ - at - kHeadBytes;

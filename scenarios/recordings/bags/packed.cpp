@@ -33,12 +33,13 @@ class Room {
   void take(std::size_t bytes) { given_ += bytes; }
   std::string whole(const char* what) {
     if (given_ != promised_) {
-      throw BadInput(fmt::format("its {} frame contains {} bytes, but the chunk states {}", what, given_, promised_));
+      throw BadInput(
+          fmt::format("the {} frame contains {} bytes, but its stated size is {} bytes", what, given_, promised_));
     }
     return std::move(out_);
   }
   [[noreturn]] void stuck(const char* what, bool no_more_input) const {
-    throw BadInput(fmt::format("its {} frame {} the {} bytes that the chunk states", what,
+    throw BadInput(fmt::format("the {} frame {} the stated size of {} bytes", what,
                                no_more_input ? "ends before" : "is longer than", promised_));
   }
 
@@ -64,7 +65,7 @@ std::string packed_lz4(std::string_view plain) {
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes) {
   if (bytes / kRatioMax > packed.size()) {
     throw BadInput(
-        fmt::format("its LZ4 frame of {} bytes cannot hold the {} bytes that the chunk states", packed.size(), bytes));
+        fmt::format("the LZ4 frame of {} bytes cannot hold the {} bytes that the chunk states", packed.size(), bytes));
   }
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw std::bad_alloc();
@@ -73,7 +74,7 @@ std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes) {
   for (std::size_t left = 1; left != 0;) {
     std::size_t given = room.left(), taken = packed.size();
     left = LZ4F_decompress(context, room.at(), &given, packed.data(), &taken, nullptr);
-    if (LZ4F_isError(left) != 0) throw BadInput(std::string("its LZ4 frame is damaged: ") + LZ4F_getErrorName(left));
+    if (LZ4F_isError(left) != 0) throw BadInput(std::string("the LZ4 frame is damaged: ") + LZ4F_getErrorName(left));
     room.take(given);
     packed.remove_prefix(taken);
     if (left != 0 && given == 0 && taken == 0) room.stuck("LZ4", packed.empty());
@@ -92,7 +93,7 @@ std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes) {
     ZSTD_outBuffer out{room.at(), size, 0};
     left = ZSTD_decompressStream(context.get(), &out, &in);
     if (ZSTD_isError(left) != 0)
-      throw BadInput(std::string("its Zstandard frame is damaged: ") + ZSTD_getErrorName(left));
+      throw BadInput(std::string("the Zstandard frame is damaged: ") + ZSTD_getErrorName(left));
     room.take(out.pos);
     if (out.pos == 0 && in.pos == before) room.stuck("Zstandard", in.pos == in.size);
   }

@@ -216,7 +216,7 @@ class Ros1BagReader : public BagReader {
     for (const auto& entry : std::filesystem::directory_iterator(path)) {
       if (lower_extension(entry.path()) == ".bag") files.insert(entry.path());
     }
-    if (files.empty()) throw BadInput(path.string() + ": contains no file that ends in .bag");
+    if (files.empty()) throw BadInput(path.string() + ": the folder contains no file that ends in .bag");
     std::string names;
     for (const std::filesystem::path& file : files) {
       add(file);
@@ -310,7 +310,7 @@ class Ros1BagReader : public BagReader {
     const std::uint64_t needed = bytes_unpacked(file), free = std::filesystem::space(folder).available;
     if (needed <= free) return;
     throw BadInput(fmt::format(
-        "{}: its unpacked LZ4 chunks need {} bytes, but {} has only {} bytes free; set TMPDIR to another folder",
+        "{}: the unpacked LZ4 chunks need {} bytes, but {} has only {} bytes free; set TMPDIR to another folder",
         file.string(), needed, folder.string(), free));
   }
 
@@ -321,7 +321,7 @@ class Ros1BagReader : public BagReader {
     });
   }
 
-  static constexpr const char* kUnreadable = "cannot be read as a ROS 1 bag";
+  static constexpr const char* kUnreadable = "the file cannot be read as a ROS 1 bag";
   std::filesystem::path path_;
   std::vector<std::unique_ptr<rosbag::Bag>> bags_;
 };

@@ -38,7 +38,7 @@ class Walk {
 
   void all() {
     if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
-      fail(0, "does not begin with '#ROSBAG V2.0': not a ROS 1 bag of version 2.0");
+      fail(0, "the file does not begin with '#ROSBAG V2.0', so it is not a ROS 1 bag of version 2.0");
     std::uint64_t at = kMagic.size();
     const CheckedRecord file = record(at, bytes_);
     if (op(file) != ros1::kFile) fail(at, "the first record is not a bag header");
@@ -56,7 +56,8 @@ class Walk {
     if (!indexed) fail(index_at, "there is no record at the stated start of the index");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
-        fail(info_at, fmt::format("refers to a chunk at byte {}, which does not exist: the file is damaged", chunk_at));
+        fail(info_at, fmt::format("the index refers to a chunk at byte {}, which does not exist: the file is damaged",
+                                  chunk_at));
     }
   }
 
@@ -196,8 +197,8 @@ class Walk {
   std::uint32_t entries(const CheckedRecord& record, std::uint32_t each) const {
     const std::uint32_t count = number<std::uint32_t>(record, "count");
     if (std::uint64_t{count} * each != record.data_bytes) {
-      fail(record.at,
-           fmt::format("states {} entries of {} bytes, but its size in bytes is {}", count, each, record.data_bytes));
+      fail(record.at, fmt::format("the index states {} entries of {} bytes, but its size in bytes is {}", count, each,
+                                  record.data_bytes));
     }
     return count;
   }

@@ -134,7 +134,8 @@ class Copy {
   }
   void finish() {
     if (!stream_.flush())
-      throw BadInput(path_.string() + ": cannot be written; the disk may have too little space for the unpacked bag");
+      throw BadInput(path_.string() +
+                     ": the file cannot be written; the disk may have too little space for the unpacked bag");
   }
 
  private:
@@ -195,7 +196,7 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
     if (record.op() == ros1::kChunkInfo) {
       const auto chunk = places.find(record.number<std::uint64_t>("chunk_pos"));
       if (chunk == places.end())
-        records.fail(before, "refers to a chunk that does not precede the index: the file is damaged");
+        records.fail(before, "the index refers to a chunk that does not precede the index: the file is damaged");
       record.set("chunk_pos", chunk->second);
     }
     places[before] = copy.write(record, data);

@@ -197,7 +197,8 @@ StoredBag storage_of(const path& bag) {
         .kind = lower_extension(name) == ".mcap" ? "mcap" : "sqlite3", .files = {bag}, .packed = packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "has no metadata.yaml: not a ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata))
+    fail_at(bag, "the folder has no metadata.yaml, so it is not a ROS 2 bag");
   StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
@@ -282,7 +283,7 @@ class Ros2BagReader : public BagReader {
         SQLite::Database database(file.string(), SQLite::OPEN_READONLY);
         call(file, database);
       } catch (const SQLite::Exception& error) {
-        fail_at(file, std::string("cannot be read as a ROS 2 bag: ") + error.what());
+        fail_at(file, std::string("the file cannot be read as a ROS 2 bag: ") + error.what());
       }
     }
   }

@@ -40,13 +40,13 @@ void SensorMountings::place(const std::string& topic, const std::string& frame, 
     if (const Placed* beside = neighbour(frame); beside != nullptr) {
       T_BA = beside->T_BA * *frames_.pose(beside->frame, frame, where_);
       notes.push_back(
-          fmt::format("{}: /tf_static gives its pose relative to {}, but has no frame 'body' or 'base_link'; the pose "
-                      "on the body is therefore {}",
+          fmt::format("{}: /tf_static contains the sensor's pose relative to {}, but no frame 'body' or 'base_link'; "
+                      "the pose on the body is therefore {}",
                       topic, beside->topic, pose_text(T_BA)));
     } else {
       notes.push_back(
-          fmt::format("{}: neither /tf_static nor {} gives its pose on the body; the sensor is assumed at the centre "
-                      "of mass, along the body's axes",
+          fmt::format("{}: neither /tf_static nor {} states the sensor's pose on the body; the import assumes that the "
+                      "sensor is at the centre of mass, along the body's axes",
                       topic, option));
     }
   }
@@ -59,11 +59,12 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
   const std::string body = frames_.body();
   if (!given) {
     T_BA = stated;
-    notes.push_back(fmt::format("{}: /tf_static gives its pose in '{}': {}", topic, body, pose_text(stated)));
+    notes.push_back(
+        fmt::format("{}: /tf_static contains the sensor's pose in '{}': {}", topic, body, pose_text(stated)));
   } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {
     notes.push_back(
-        fmt::format("{}: caution: /tf_static gives its pose in '{}' as {}, but your option gives the pose {}; the "
-                    "import uses your option",
+        fmt::format("{}: caution: /tf_static contains the sensor's pose in '{}' as {}, but your option states the pose "
+                    "{}; the import uses your option",
                     topic, body, pose_text(stated), pose_text(T_BA)));
   }
 }

@@ -30,7 +30,7 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
     hung.problem = what + ": the translation must be finite and at most 1 km";
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
-    hung.problem = fmt::format("{}: its quaternion has norm {}; the norm must be 1", what, std::to_string(q.norm()));
+    hung.problem = fmt::format("{}: the quaternion has norm {}; the norm must be 1", what, std::to_string(q.norm()));
   } else if (parent == child) {
     hung.problem = what + ": the frame is its own parent";
   } else {

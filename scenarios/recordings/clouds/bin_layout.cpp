@@ -123,15 +123,15 @@ ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
 
 std::string contradiction_of_size(std::span<const char> bytes, const ColumnFit& floats) {
   const std::string size =
-      fmt::format("has {} bytes; the number must be a multiple of 16 (float32 x y z intensity)", bytes.size());
+      fmt::format("the file has {} bytes; the size must be a multiple of 16 (float32 x y z intensity)", bytes.size());
   if (floats.columns == 0) return size + "; the file may be truncated";
-  return size + fmt::format("; its numbers match {} columns of float32", floats.columns);
+  return size + fmt::format("; the numbers match {} columns of float32", floats.columns);
 }
 
 std::string contradiction_of_numbers(std::span<const char> bytes, double odd) {
   std::string text = fmt::format(
-      "{:.0f} % of its numbers, read as float32, have a magnitude above {:.0g} or below {:.0g}; at most {:.0f} % may "
-      "have this",
+      "{:.0f} % of the numbers, read as float32, have a magnitude above {:.0g} or below {:.0g}; at most {:.0f} % may "
+      "have such a magnitude",
       100.0 * odd, kLargest, kSmallest, 100.0 * kOddShareMax);
   if (bytes.size() % sizeof(double) != 0) return text;
   const NumberSample doubles = sample_of<double>(bytes);
@@ -153,7 +153,7 @@ std::string contradiction_to_kitti(std::span<const char> bytes) {
   const double as_kitti = columns_differ(floats, bins_of(floats), kKitti);
   if (!(other.differ > kClearlyMore * as_kitti + kClearlyMoreBy)) return "";
   return fmt::format(
-      "its numbers match {} columns of float32 better than the expected 4 (x y z intensity): the difference between "
+      "the numbers match {} columns of float32 better than the expected 4 (x y z intensity): the difference between "
       "the columns is {:.2f}, but {:.2f} with 4 columns",
       other.columns, other.differ, as_kitti);
 }

@@ -63,15 +63,16 @@ class HeaderLines {
   /// `made_of_a_byte` bytes of points.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
-      fail(fmt::format("states {} points; at most {} can be read from a file", header.points, kCloudPointsMax));
+      fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
     }
     // a number in text needs at least a digit and a separator; the last number may lack the separator
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
     if (header.points * point_bytes > rest * made_of_a_byte) {
-      fail(fmt::format("states {} points of at least {} bytes, but only {} bytes follow; the file may be truncated",
-                       header.points, point_bytes, rest));
+      fail(fmt::format(
+          "the header states {} points of at least {} bytes, but only {} bytes follow; the file may be truncated",
+          header.points, point_bytes, rest));
     }
   }
 
@@ -82,10 +83,10 @@ class HeaderLines {
       fail("there are no compressed points; the file may be truncated");
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_ + sizeof(sizes), bytes_in_file_);
     if (sizes[0] == 0 || sizes[0] > rest) {
-      fail(fmt::format("states {} bytes of compressed points, but {} follow", sizes[0], rest));
+      fail(fmt::format("the file states {} bytes of compressed points, but {} follow", sizes[0], rest));
     }
     if (sizes[1] != header.points * header.point_bytes) {
-      fail(fmt::format("states {} bytes of uncompressed points; this must be {}", sizes[1],
+      fail(fmt::format("the file states {} bytes of uncompressed points; this number must be {}", sizes[1],
                        header.points * header.point_bytes));
     }
   }
@@ -152,7 +153,7 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
       lines.fail("the line contains only blanks; it must be empty or contain a word");
     if (words.empty() || words.front().starts_with("#")) continue;
     const auto at = std::find(order.begin(), order.end(), words.front());
-    if (at == order.end()) lines.fail("does not begin with a keyword of a PCD header");
+    if (at == order.end()) lines.fail("the line does not begin with a keyword of a PCD header");
     const auto place = static_cast<std::size_t>(at - order.begin());
     if (place < next) lines.fail(words.front() + " occurs twice or in the wrong order");
     next = place + 1;
@@ -195,7 +196,7 @@ std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
 CloudHeader read_ply_header(const std::filesystem::path& path) {
   HeaderLines lines(path);
   CloudHeader header;
-  if (lines.next() != Words{"ply"}) lines.fail("does not begin with 'ply'; the file may not be a PLY file");
+  if (lines.next() != Words{"ply"}) lines.fail("the file does not begin with 'ply', so it is not a PLY file");
   bool text = false, in_points = false, before_points = true;
   for (Words words = lines.next(); words != Words{"end_header"}; words = lines.next()) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
@@ -232,7 +233,8 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   if (!found.contains("COUNT")) found["COUNT"] = Words(header.fields, "1");
   for (const char* name : {"SIZE", "TYPE", "COUNT"}) {
     if (found[name].size() != header.fields) {
-      lines.fail(fmt::format("{} has {} words, but FIELDS has {}", name, found[name].size(), header.fields));
+      lines.fail(fmt::format("{} has {} words, but FIELDS has {}; the numbers must be equal", name, found[name].size(),
+                             header.fields));
     }
   }
   for (std::size_t i = 0; i < header.fields; ++i) {

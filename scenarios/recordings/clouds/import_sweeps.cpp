@@ -36,8 +36,9 @@ std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector
   if (file.empty()) return stamps_in_names(files);
   std::vector<std::int64_t> stamps = read_stamps(file, &disorder);
   if (stamps.size() != files.size()) {
-    throw BadInput(fmt::format("{}: contains {} time stamps, but there are {} sweeps in {}; the numbers must be equal",
-                               file.string(), stamps.size(), files.size(), source.folder.string()));
+    throw BadInput(
+        fmt::format("{}: the file contains {} time stamps, but there are {} sweeps in {}; the numbers must be equal",
+                    file.string(), stamps.size(), files.size(), source.folder.string()));
   }
   return stamps;
 }

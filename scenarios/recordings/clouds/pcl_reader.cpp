@@ -30,7 +30,7 @@ PclRead* load() {
   void* read = module != nullptr ? dlsym(module, kPclRead) : nullptr;
   if (read == nullptr) {
     const char* reason = dlerror();
-    throw BadInput("clouds: the PCL library cannot be loaded: " +
+    throw BadInput("the PCL library, which reads point clouds, cannot be loaded: " +
                    (reason != nullptr ? std::string(reason) : file.string()));
   }
   return reinterpret_cast<PclRead*>(read);

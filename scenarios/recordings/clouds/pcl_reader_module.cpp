@@ -20,4 +20,4 @@ extern "C" bool tumble_pcl_read(const char* path, tumble::scenarios::PclFormat f
 }
 
 static_assert(std::is_same_v<decltype(tumble_pcl_read), tumble::scenarios::PclRead>,
-              "this must be the signature that the program calls");
+              "the signature of the function must be the signature that the program calls");

@@ -139,13 +139,15 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
   line += " in a sweep";
   if (!(period_ns > 0.0)) {
     throw BadInput(
-        fmt::format("{}, but these are not time stamps since 1970; give the times of the sweeps (--times), or the "
+        fmt::format("{}, but these are not time stamps since 1970; state the times of the sweeps (--times), or the "
                     "duration of one sweep (--sweep-period)",
                     line));
   }
-  line += ": in none of s, ms, us and ns is this 0.15 to 150 % of the sweep period of ";
+  line +=
+      ". This range must be 0.15 to 150 % of the sweep period, but is not in any of the units s, ms, us and ns; the "
+      "sweep period is ";
   append_number(line, period_ns * 1e-6);
-  throw BadInput(line + " ms; give the unit (--time-unit)");
+  throw BadInput(line + " ms. State the unit (--time-unit)");
 }
 
 }  // namespace

@@ -189,7 +189,8 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
     throw BadInput(
         fmt::format("{}: there is no field '{}', but other sweeps have this field", sweep.where, rule_->field));
   if (!rule_->absolute && !sweep.stamp_ns)
-    throw BadInput(sweep.where + ": its point times are relative, but the sweep has no time stamp");
+    throw BadInput(sweep.where +
+                   ": the point times are relative to the start of the sweep, but the sweep has no time stamp");
   constexpr double kBound = 4.6e18;  // differences fit in int64
   const std::int64_t origin_ns = rule_->absolute ? 0 : *sweep.stamp_ns;
   std::vector<std::optional<std::int64_t>> times_ns;
@@ -238,15 +239,15 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   } else {
     if (start - first > bound || first - start > bound) {
       throw BadInput(
-          fmt::format("{}: its first point is at {}, but its time stamp is {}; the difference must be at most {}. "
-                      "Check the clock and the unit",
+          fmt::format("{}: the first point of the sweep is at {}, but the time stamp of the sweep is {}; the "
+                      "difference must be at most {}. Check the clock and the unit",
                       sweep.where, in_ns(first), in_ns(start), in_ns(bound)));
     }
     if (start > first || first - start >= bound / 2) start = first;
   }
   const std::int64_t last = *std::max_element(times_ns.begin(), times_ns.end());
   if (last - start > bound || last - start > std::numeric_limits<std::uint32_t>::max()) {
-    throw BadInput(fmt::format("{}: its last point is {} after the start of the sweep; this time must be at most {}",
+    throw BadInput(fmt::format("{}: the last point is {} after the start of the sweep; this time must be at most {}",
                                sweep.where, in_ns(last - start), in_ns(bound)));
   }
   return start;
@@ -341,7 +342,8 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   if (misses_ > 0)
     notes.push_back(std::to_string(misses_) +
                     " points are treated as missing returns (not finite, farther than 1000 km, or at the origin)");
-  if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without points and time stamp are left out");
+  if (skipped_ > 0)
+    notes.push_back(std::to_string(skipped_) + " sweeps have neither points nor a time stamp and are left out");
   if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity; the import stores 0");
   if (viewpoints_ > 0)
     notes.push_back(
@@ -370,14 +372,16 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
   const bool overlaps = step_ns > 0 && static_cast<double>(stated_ns) > kOverlapMost * static_cast<double>(step_ns);
   if (stated_ns > 0 && (overlaps || stated_ns < longest_ns_)) {
-    notes.push_back(fmt::format(
-        "the import uses the stated sweep period of {}, but the sweeps are {} apart and their points span up to {}",
-        in_ns(stated_ns), in_ns(step_ns), in_ns(longest_ns_)));
+    notes.push_back(
+        fmt::format("the import uses the stated sweep period of {}, but the sweeps start {} apart, and the points of a "
+                    "sweep span up to {}",
+                    in_ns(stated_ns), in_ns(step_ns), in_ns(longest_ns_)));
   }
   if (stated_ns <= 0 && longest_ns_ > record_.sweep_period_ns) {
-    notes.push_back(fmt::format(
-        "the sweeps are {} apart, but their points span up to {}; the import uses the span as the sweep period",
-        in_ns(record_.sweep_period_ns), in_ns(longest_ns_)));
+    notes.push_back(
+        fmt::format("the sweeps start {} apart, but the points of a sweep span up to {}; the import uses this span as "
+                    "the sweep period",
+                    in_ns(record_.sweep_period_ns), in_ns(longest_ns_)));
     record_.sweep_period_ns = longest_ns_;
   }
   note_dropped_points(notes);

@@ -86,7 +86,7 @@ std::string stem_of(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem) {
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": is not a folder");
+  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": this path is not a folder");
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& path = entry.path();
@@ -94,14 +94,14 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
-    throw BadInput(folder.string() + ": contains no file that ends in " + ending +
+    throw BadInput(folder.string() + ": the folder contains no file that ends in " + ending +
                    (stem.empty() ? "" : " and begins with '" + stem + "'"));
   }
   std::sort(files.begin(), files.end(), natural_less);
   if (stem_of(files.front()) != stem_of(files.back())) {
-    throw BadInput(
-        fmt::format("{}: contains files of several lidars, '{}' and '{}'; select one lidar by its file name prefix",
-                    folder.string(), stem_of(files.front()), stem_of(files.back())));
+    throw BadInput(fmt::format(
+        "{}: the folder contains files of several lidars, '{}' and '{}'; select one lidar by its file name prefix",
+        folder.string(), stem_of(files.front()), stem_of(files.back())));
   }
   return files;
 }
@@ -117,7 +117,7 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
       without = &file;
   }
   if (stamps.empty() || without == nullptr) return stamps;
-  throw BadInput(fmt::format("{}: its file name has no time stamp, but those of {} other files have one",
+  throw BadInput(fmt::format("{}: the file name contains no time stamp, but the names of {} other files contain one",
                              without->string(), stamps.size()));
 }
 
@@ -132,8 +132,8 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::ve
     const std::int64_t stamp = *found;
     std::string wrong;
     if (!stamps.empty() && stamp <= stamps.back()) {
-      wrong = fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns", file.string(),
-                          row.line, stamp, stamps.back());
+      wrong = fmt::format("{}:{}: the time stamp {} ns must be larger than the previous time stamp, {} ns",
+                          file.string(), row.line, stamp, stamps.back());
     }
     if (disorder == nullptr && !wrong.empty()) throw BadInput(wrong);
     if (disorder != nullptr) disorder->push_back(std::move(wrong));

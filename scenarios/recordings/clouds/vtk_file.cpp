@@ -84,11 +84,11 @@ class VtkWords {
 /// Checks a stated number of values against the remaining file before any allocation.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
-    words.fail(fmt::format("states {} points; at most {} can be read from a file", count, kCloudPointsMax));
+    words.fail(fmt::format("the file states {} points; at most {} can be read", count, kCloudPointsMax));
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail(fmt::format("states {} times {} numbers, but only {} bytes follow; the file may be truncated", count,
-                           each, words.left()));
+    words.fail(fmt::format("the file states {} times {} numbers, but only {} bytes follow; the file may be truncated",
+                           count, each, words.left()));
   }
 }
 
@@ -153,13 +153,13 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
 
 void read_header(VtkWords& words) {
   if (!words.line().starts_with("# vtk DataFile Version"))
-    words.fail("does not begin with '# vtk DataFile Version', so the file is not a VTK file");
+    words.fail("the file does not begin with '# vtk DataFile Version', so it is not a VTK file");
   words.line();  // title
   const std::string_view encoding = words.need("ASCII");
-  if (encoding == "BINARY") words.fail("is a binary file; only text (ASCII) VTK files are supported");
+  if (encoding == "BINARY") words.fail("the file is a binary VTK file; only text (ASCII) VTK files are supported");
   if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' instead of ASCII");
   if (words.need("DATASET") != "DATASET" || words.need("POLYDATA") != "POLYDATA")
-    words.fail("has no POLYDATA dataset; point clouds need one");
+    words.fail("the file has no POLYDATA dataset, which a point cloud needs");
 }
 
 }  // namespace

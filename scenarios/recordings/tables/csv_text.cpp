@@ -49,7 +49,7 @@ void require_lines(const std::string& name, std::string_view text) {
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
     throw BadInput(name + ":" + std::to_string(line) +
-                   ": contains a zero byte; the file is damaged or is not a text file");
+                   ": the file contains a zero byte: it is damaged or is not a text file");
   }
   if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
     throw BadInput(name + ": the lines end in a carriage return; they must end in a line feed");
@@ -108,7 +108,7 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
   const std::string place = line.where + ": column " + column + " ";
   if (!parse_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
-    throw BadInput(place + "must be a number; it is '" + std::string(text) + "'" +
+    throw BadInput(place + "the value must be a number; it is '" + std::string(text) + "'" +
                    (comma ? "; use a decimal point" : ""));
   }
   if (!std::isfinite(value)) throw BadInput(place + "is not finite");

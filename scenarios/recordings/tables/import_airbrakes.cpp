@@ -45,8 +45,8 @@ Eigen::Vector3d vector(const CsvLine& line, const Columns3& columns, const char*
 
 std::int64_t stamp_ns(const CsvLine& line, std::size_t column, std::size_t columns) {
   if (line.fields.size() != columns) {
-    throw BadInput(fmt::format("{}: has {} columns, but the header has {}; the numbers must be equal", line.where,
-                               line.fields.size(), columns));
+    throw BadInput(fmt::format("{}: this line has {} columns, but the header has {}; the numbers must be equal",
+                               line.where, line.fields.size(), columns));
   }
   const double time_s = csv_number(line, column, "timestamp_seconds");
   if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
@@ -134,7 +134,8 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   finish_readings(path.string(), AccelUnit::g, imu);
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
-  if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a time stamp and are left out", doubled));
+  if (doubled > 0)
+    out.notes.push_back(fmt::format("{} rows have the time stamp of an earlier row and are left out", doubled));
   for (const std::string& note :
        {require_plausible_rates(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);

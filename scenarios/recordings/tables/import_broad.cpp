@@ -53,7 +53,7 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
     Eigen::Quaterniond q(row[0], row[1], row[2], row[3]);
     if (row.allFinite()) {
       if (std::abs(q.norm() - 1.0) > 1e-2)
-        root.fail("opt_quat", fmt::format("row {} is not of unit length", q_WB.size()));
+        root.fail("opt_quat", fmt::format("the quaternion in row {} must have norm 1", q_WB.size()));
       q.normalize();
     } else {
       q.coeffs().setConstant(kNaN);
@@ -82,8 +82,8 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
   for (const auto& [name, rows] :
        {std::pair{"opt_quat", truth.q_WB.size()}, std::pair{"opt_pos", truth.p_WB_m.size()}}) {
     if (rows != imu.time_ns.size()) {
-      root.fail(name,
-                fmt::format("has {} rows, but imu_gyr has {}; the numbers must be equal", rows, imu.time_ns.size()));
+      root.fail(name, fmt::format("the dataset has {} rows, but imu_gyr has {}; the numbers must be equal", rows,
+                                  imu.time_ns.size()));
     }
   }
   differentiate(truth, kSlopeReach);
@@ -102,7 +102,8 @@ Imported import_broad(const std::filesystem::path& path) {
   if (root.has_attribute("format") && root.text_attribute("format") == kRecordingFormat)
     throw BadInput(path.string() + ": this file is already a recording; use the file directly, without import");
   const double rate_hz = root.double_attribute("sampling_rate");
-  if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
+  if (!(rate_hz >= 1.0 && rate_hz <= 1e5))
+    root.fail("sampling_rate", "the sampling rate must be within 1 and 100000 Hz");
   Imported out;
   out.info.attribution = kBroadAttribution + path.stem().string();
   out.sensors.imus.push_back(read_imu(root, rate_hz));

@@ -43,7 +43,7 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
   for (const std::filesystem::path& file : tables_in(folder)) {
     if (is_pose_table(file)) continue;  // a reference
     if (const std::string problem = imu_problem(file); !problem.empty()) {
-      left_out.push_back("left out, because the file is not a table of IMU readings: " + problem);
+      left_out.push_back("this file is left out, because it is not a table of IMU readings: " + problem);
       continue;
     }
     Imported imu = import_imu_csv(file, device, unit, gyro_unit);
@@ -54,7 +54,7 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
       attach_imus(out, std::move(imu));
   }
   if (out.sensors.imus.empty())
-    throw BadInput(folder.string() + ": contains no table of IMU readings" +
+    throw BadInput(folder.string() + ": the folder contains no table of IMU readings" +
                    (left_out.empty() ? "" : "; " + left_out.front()));
   if (out.sensors.imus.size() > 1)
     out.notes.push_back(fmt::format(

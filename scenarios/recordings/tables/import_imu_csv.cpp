@@ -41,9 +41,11 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)
     notes.push_back(
-        fmt::format("times are read in {}, which follows from the time step", unit_of_stamps(*columns.stamp_decimals)));
-  if (columns.gyro_unit == GyroUnit::deg_s) notes.push_back("rates are read in deg/s, as the column names state");
-  if (columns.accel_unit == AccelUnit::g) notes.push_back("specific force is read in g, as the column names state");
+        fmt::format("the import reads times in {}, because of the time step", unit_of_stamps(*columns.stamp_decimals)));
+  if (columns.gyro_unit == GyroUnit::deg_s)
+    notes.push_back("the import reads rates in deg/s, because of the column names");
+  if (columns.accel_unit == AccelUnit::g)
+    notes.push_back("the import reads the specific force in g, because of the column names");
   std::string others;
   for (const std::string& name : columns.left_out) others += (others.empty() ? "" : ", ") + name;
   if (!others.empty()) notes.push_back("ignored columns: " + others);

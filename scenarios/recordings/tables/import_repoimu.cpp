@@ -57,8 +57,8 @@ struct Log {
 /// Returns names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
-    fail(names, fmt::format("has {} columns, but the line above has {}; the numbers must be equal", names.fields.size(),
-                            groups.fields.size()));
+    fail(names, fmt::format("this line has {} columns, but the line above has {}; the numbers must be equal",
+                            names.fields.size(), groups.fields.size()));
   }
   std::vector<std::string> full;
   std::string group;
@@ -150,7 +150,8 @@ void add_row(const CsvLine& line, const RepoimuColumns& columns, Log& log, std::
   const std::size_t found = line.fields.size();
   const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
   if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
-    fail(line, fmt::format("has {} columns; it must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
+    fail(line,
+         fmt::format("this line has {} columns; it must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
   }
   DecimalNumbers numbers(line, log.decimal_commas);
   const double time_s = numbers.at(columns.time, "Time");
@@ -297,7 +298,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   sim::ImuRecord imu;
   imu.name = "imu";
   if (log.where.size() < 2)
-    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", path.string(), log.where.size()));
+    throw BadInput(fmt::format("{}: the file has {} samples; it needs at least 2", path.string(), log.where.size()));
   require_attitudes(path, log);
   if (log.left_out.count() > 0) out.notes.push_back(log.left_out.note(log.where.size()));
   out.info.origin_ns = log.readings.time_ns.front();
@@ -316,9 +317,9 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
     if (!note.empty()) out.notes.push_back(note);
   }
   if (log.decimal_commas > 0)
-    out.notes.push_back(
-        fmt::format("{} numbers have a decimal comma, which is read as a decimal point", log.decimal_commas));
-  out.notes.push_back("the columns of the magnetometer have no unit and are left out");
+    out.notes.push_back(fmt::format("{} numbers have a decimal comma; the import reads the comma as a decimal point",
+                                    log.decimal_commas));
+  out.notes.push_back("the import leaves out the columns of the magnetometer, because they have no unit");
   out.info.attribution = kRepoimuAttribution + path.filename().string();
   out.sensors.imus.push_back(std::move(imu));
   add_reference(path, log, align, out);

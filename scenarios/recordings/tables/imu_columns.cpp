@@ -181,8 +181,8 @@ ImuColumns imu_columns(const LoggedTable& table) {
   const CsvLine& first = table.header();
   if (!table.has_header()) {
     if (first.fields.size() < kColumnsByPlace) {
-      fail(first, fmt::format("has {} columns and no header; a file without header must have {}. Name the columns by "
-                              "their positions, counted from 0: --columns time=0,gyro=1,2,3,accel=4,5,6",
+      fail(first, fmt::format("the file has {} columns and no header; a file without header must have {}. Name the "
+                              "columns by their positions, counted from 0: --columns time=0,gyro=1,2,3,accel=4,5,6",
                               first.fields.size(), kColumnsByPlace));
     }
     return {};
@@ -195,9 +195,9 @@ ImuColumns imu_columns(const LoggedTable& table) {
     return *columns;
   }
   fail(first,
-       "contains no known column name: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as written by 'export'), "
-       ".../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). Name the "
-       "columns: --columns time=NAME,gyro=X,Y,Z,accel=X,Y,Z");
+       "the header contains no known column name: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as written by "
+       "'export'), .../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). "
+       "Name the columns: --columns time=NAME,gyro=X,Y,Z,accel=X,Y,Z");
 }
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {

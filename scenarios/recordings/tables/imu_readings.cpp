@@ -284,7 +284,7 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   const std::string warning = require_plausible_rates(where, imu, unit);
   if (!warning.empty()) return warning;
-  return fmt::format("rates are read in {}, with unchanged signs and axes: {}",
+  return fmt::format("the import reads rates in {}, with unchanged signs and axes: {}",
                      unit == GyroUnit::deg_s ? "deg/s" : "rad/s", undetermined_text(sufficient_rotation(imu)));
 }
 
@@ -340,7 +340,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
 
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu) {
   if (imu.time_ns.size() < 2)
-    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", where, imu.time_ns.size()));
+    throw BadInput(fmt::format("{}: the file has {} samples; it needs at least 2", where, imu.time_ns.size()));
   require_plausible_force(where, imu, unit);
   if (imu.period_ns <= 0) imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);

@@ -89,8 +89,8 @@ bool LoggedTable::next(CsvLine& line) {
     if (is_comment(line.fields.front())) continue;
     if (line.fields.size() == columns + 1 && line.fields.back().empty()) line.fields.pop_back();
     if (line.fields.size() != columns)
-      fail(line, fmt::format("has {} columns, but the first line has {}; the numbers must be equal", line.fields.size(),
-                             columns));
+      fail(line, fmt::format("this line has {} columns, but the first line has {}; the numbers must be equal",
+                             line.fields.size(), columns));
     if (!kept_ || line.fields[kept_->column] == kept_->value) return true;
   }
   return false;

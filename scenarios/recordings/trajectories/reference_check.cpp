@@ -87,7 +87,8 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
       fmt::format("the reference agrees with the gyro of '{}': rotations differ by {} (median of {} pairs of poses)",
                   imu, share_text(fit.difference), check.pairs);
   if (std::abs(fit.delay_s) >= kDelayNoted_s)
-    return "caution: " + text + " after correction of its stamps, which are " + delay_text(fit.delay_s);
+    return "caution: " + text + " after a correction of the time stamps of the reference, which are " +
+           delay_text(fit.delay_s);
   return text +
          (check.clock_known
               ? ""
@@ -139,8 +140,9 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   const std::vector<CandidateFrame> frames = candidate_frames(T_BA, sensors);
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
-    return unchecked + "too few pairs of its poses (0.05 to 1 s apart) rotate by at least 0.02 rad while '" + imu.name +
-           "' has readings below its range";
+    return unchecked +
+           "too few pairs of poses of the reference (0.05 to 1 s apart) rotate by at least 0.02 rad while '" +
+           imu.name + "' has readings below its range";
   if (check.upright) {
     throw BadInput(where + ": the force that '" + imu.name +
                    "' measures should point up on average, but differs from the vertical of the reference by more than "

@@ -81,7 +81,7 @@ void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<Re
     poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
   }
   if (poses.size() < 2)
-    throw BadInput(fmt::format("{}: has {} poses; it needs at least 2", file.string(), poses.size()));
+    throw BadInput(fmt::format("{}: the file has {} poses; it needs at least 2", file.string(), poses.size()));
 }
 
 std::string pose_format(const std::filesystem::path& file) {
@@ -128,8 +128,8 @@ std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns) {
   const Table table = Table::read(file, ' ', "", 12);
   if (table.rows.size() != times_ns.size()) {
-    throw BadInput(fmt::format("{}: has {} poses, but there are {} times; both numbers must be equal", file.string(),
-                               table.rows.size(), times_ns.size()));
+    throw BadInput(fmt::format("{}: the file has {} poses, but there are {} times; both numbers must be equal",
+                               file.string(), table.rows.size(), times_ns.size()));
   }
   std::vector<ReferencePose> poses;
   for (std::size_t k = 0; k < times_ns.size(); ++k) {

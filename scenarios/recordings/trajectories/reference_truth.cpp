@@ -96,7 +96,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   }
   const auto known = [](const Eigen::Quaterniond& q) { return q.coeffs().allFinite(); };
   if (std::none_of(truth.q_WB.begin(), truth.q_WB.end(), known)) {
-    throw BadInput("the poses of the reference are too far apart in time for any comparison");
+    throw BadInput("the poses of the reference are too far apart in time for a comparison with the gyro");
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));
   return truth;

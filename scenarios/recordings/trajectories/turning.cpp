@@ -317,8 +317,9 @@ std::string delay_text(double delay_s) {
 
 std::string delay_remedy(double delay_s) {
   const bool late = delay_s > 0.0;
-  return fmt::format("stamps are {}, but at most {:.2f} s is accepted; {} {:.3f} s {} the stamps", delay_text(delay_s),
-                     kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s), late ? "from" : "to");
+  return fmt::format(
+      "the time stamps of the poses are {}, but at most {:.2f} s is accepted; {} {:.3f} s {} the time stamps",
+      delay_text(delay_s), kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s), late ? "from" : "to");
 }
 
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,

@@ -106,11 +106,11 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
   EXPECT_EQ(status.error_code, ErrorCode::non_finite);
   EXPECT_STREQ(status.field, "value");
   status = status_with(8, {11});
-  EXPECT_EQ(status.message(), "out_of_range: count is 11, bound 10");
+  EXPECT_EQ(status.message(), "out_of_range: count is 11; the bound is 10");
   status = status_with(12, {2});
-  EXPECT_EQ(status.message(), "out_of_range: on is 2, bound 1");
+  EXPECT_EQ(status.message(), "out_of_range: on is 2; the bound is 1");
   status = status_with(13, {2});
-  EXPECT_EQ(status.message(), "out_of_range: colour is 2, bound 1");
+  EXPECT_EQ(status.message(), "out_of_range: colour is 2; the bound is 1");
   // a length that no bytes stand for asks for no memory
   status = status_with(14 + 24 + 32, {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f});
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
@@ -130,7 +130,7 @@ TEST(StateBytes, AreMatchedNumberByNumber) {
   };
   EXPECT_TRUE(differs_in([](Held&) {}).ok());
   const Status status = differs_in([](Held& h) { h.vector.y() = 4.0; });
-  EXPECT_EQ(status.message(), "out_of_range: vector is 2, bound 4");
+  EXPECT_EQ(status.message(), "out_of_range: vector is 2; the bound is 4");
   EXPECT_STREQ(differs_in([](Held& h) { h.on = false; }).field, "on");
   EXPECT_STREQ(differs_in([](Held& h) { h.samples.pop_back(); }).field, "samples");
   EXPECT_STREQ(differs_in([](Held& h) { h.time_ns.reset(); }).field, "time_ns");

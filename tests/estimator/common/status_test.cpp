@@ -23,14 +23,14 @@ TEST(Status, DefaultIsSuccess) {
 TEST(Status, MessageNamesFieldValueAndBound) {
   const Status status{ErrorCode::time_order, "time_ns", 5.0, 7.0};
   EXPECT_FALSE(status.ok());
-  EXPECT_EQ(status.message(), "time_order: time_ns is 5, bound 7");
+  EXPECT_EQ(status.message(), "time_order: time_ns is 5; the bound is 7");
 }
 
 TEST(Status, MessageKeepsEveryDigitAndPrintsNaN) {
-  EXPECT_EQ((Status{ErrorCode::gap, "dt_s", 0.1, 1e-7}).message(), "gap: dt_s is 0.1, bound 1e-07");
+  EXPECT_EQ((Status{ErrorCode::gap, "dt_s", 0.1, 1e-7}).message(), "gap: dt_s is 0.1; the bound is 1e-07");
   EXPECT_EQ((Status{ErrorCode::time_order, "time_ns", 1753351234567890.0, 0.0}).message(),
-            "time_order: time_ns is 1753351234567890, bound 0");
-  EXPECT_EQ((Status{ErrorCode::non_finite, "x", std::nan(""), 0.0}).message(), "non_finite: x is nan, bound 0");
+            "time_order: time_ns is 1753351234567890; the bound is 0");
+  EXPECT_EQ((Status{ErrorCode::non_finite, "x", std::nan(""), 0.0}).message(), "non_finite: x is nan; the bound is 0");
 }
 
 TEST(Status, EveryTroubleHasItsOwnName) {

@@ -51,9 +51,10 @@ TEST(Complications, TheErrorsOfTheRigsSensorsAreThere) {
   for (const Complication& each : complications(fixed("hill"))) names.insert(each.name);
   for (const char* name :
        {"world: rocks", "world: trunks", "world: relief", "robot: offset of the centre of mass", "motion: forward spin",
-        "sensors.imu: rail of the gyro", "sensors.imu: tilt, scale and offset of the rails", "sensors.imu: white noise",
-        "sensors.imu: bias", "sensors.imu: delay and clock error", "sensors.imu_reference: all errors of this sensor",
-        "sensors.lidar: range noise", "sensors.lidar: mounting errors"})
+        "sensors.imu: rail of the gyro", "sensors.imu: tilt, scale and offset of the saturation limits",
+        "sensors.imu: white noise", "sensors.imu: bias", "sensors.imu: delay and clock error",
+        "sensors.imu_reference: all errors of this sensor", "sensors.lidar: range noise",
+        "sensors.lidar: mounting errors"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

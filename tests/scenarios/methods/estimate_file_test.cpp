@@ -185,7 +185,7 @@ TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
   EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).contacts, estimate.contacts);
 
   write("contacts.csv", "time_ns,label\n0,1\n5000000,3\n");
-  EXPECT_NE(complaint(folder_).find("contacts.csv: has 2 rows; it must have 3"), std::string::npos);
+  EXPECT_NE(complaint(folder_).find("contacts.csv: the file has 2 rows; it must have 3"), std::string::npos);
   write("contacts.csv", "time_ns,label\n0,1\n5000000,3\n11000000,0\n");
   EXPECT_NE(complaint(folder_).find("contacts.csv:4: the time is"), std::string::npos);
   write("contacts.csv", "time_ns,label\n0,1\n5000000,4\n10000000,0\n");

@@ -152,7 +152,7 @@ TEST_F(PythonMethod, ACrashAHangAndALackOfMemoryAreNoAnswer) {
 
 TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(wrong("rate", "None"), HasSubstr("nothing was returned"));
-  EXPECT_THAT(wrong("rate", "'fast'"), HasSubstr("no array of numbers but str"));
+  EXPECT_THAT(wrong("rate", "'fast'"), HasSubstr("must be an array of numbers; it is a str"));
   EXPECT_THAT(wrong("rate", "imu.gyro[1:]"),
               HasSubstr("must be (" + std::to_string(recording().sensors.imus[0].time_ns.size())));
   EXPECT_THAT(wrong("rate", "imu.gyro[:, :2]"), HasSubstr("has the shape"));
@@ -182,12 +182,13 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
 // each was once taken for the numbers that a conversion makes of it
 TEST_F(PythonMethod, WhatWouldLoseAPartOfItselfIsRefused) {
   const std::string q = "np.tile([0, 0, 0, 1], (n, 1))";
-  EXPECT_THAT(wrong("rate", "imu.gyro * 1j"), HasSubstr("rate is no array of numbers but of complex128"));
-  EXPECT_THAT(wrong("rate", "(imu.gyro * 1j).tolist()"), HasSubstr("no array of numbers but list"));
-  EXPECT_THAT(wrong("position", "t, np.zeros((n, 3)) + 1j, " + q), HasSubstr("position is no array of numbers"));
-  EXPECT_THAT(wrong("rate", "imu.gyro.astype(str)"), HasSubstr("no array of numbers but of <U"));
-  EXPECT_THAT(wrong("rate", "imu.gyro.astype(str).astype(object)"), HasSubstr("but of object"));
-  EXPECT_THAT(wrong("rate", "imu.gyro > 0"), HasSubstr("no array of numbers but of bool"));
+  EXPECT_THAT(wrong("rate", "imu.gyro * 1j"),
+              HasSubstr("rate must be an array of numbers; it is an array of complex128"));
+  EXPECT_THAT(wrong("rate", "(imu.gyro * 1j).tolist()"), HasSubstr("it is a list"));
+  EXPECT_THAT(wrong("position", "t, np.zeros((n, 3)) + 1j, " + q), HasSubstr("position must be an array of numbers"));
+  EXPECT_THAT(wrong("rate", "imu.gyro.astype(str)"), HasSubstr("it is an array of <U"));
+  EXPECT_THAT(wrong("rate", "imu.gyro.astype(str).astype(object)"), HasSubstr("it is an array of object"));
+  EXPECT_THAT(wrong("rate", "imu.gyro > 0"), HasSubstr("it is an array of bool"));
   EXPECT_THAT(wrong("rate", "np.ma.masked_greater(imu.gyro, 0)"), HasSubstr("rate is masked in places"));
   EXPECT_THAT(wrong("attitude", "np.ma.masked_less(t, t[9]), " + q), HasSubstr("time_ns is masked"));
   EXPECT_THAT(

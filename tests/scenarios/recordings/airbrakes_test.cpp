@@ -46,7 +46,7 @@ TEST_F(Airbrakes, ReadsDegreesAndG) {
       imported.notes,
       ElementsAre(
           "the recording has 1 gaps of more than 1 s; the import keeps the longest segment: samples 1 to 3 of 4",
-          "1 rows repeat a time stamp and are left out"));
+          "1 rows have the time stamp of an earlier row and are left out"));
   EXPECT_THAT(imported.info.attribution, HasSubstr("MIT"));
   EXPECT_TRUE(is_airbrakes(folder_ / "flight.csv"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
@@ -60,7 +60,7 @@ TEST_F(Airbrakes, BadInputHasFileLineValueAndBound) {
   EXPECT_THAT(complaint_of(good + row("3", "nan")), HasSubstr("csv:4: column raw_angular_rate is not finite"));
   EXPECT_THAT(complaint_of(good + row("3", "x")), HasSubstr("csv:4: column raw_angular_rate must be a number"));
   EXPECT_THAT(complaint_of(good + row("-3")), HasSubstr("csv:4: timestamp_seconds is -3; it must be within 0"));
-  EXPECT_THAT(complaint_of(good + "S,3\n"), HasSubstr("csv:4: has 2 columns, but the header has 11"));
+  EXPECT_THAT(complaint_of(good + "S,3\n"), HasSubstr("csv:4: this line has 2 columns, but the header has 11"));
   std::string missing = good;
   missing.replace(missing.find("raw_angular_rate_y"), 18, "raw_angular_rate_q");
   EXPECT_THAT(complaint_of(missing), HasSubstr("column is missing: raw_angular_rate_y_deg_per_s"));
@@ -84,7 +84,7 @@ TEST_F(Airbrakes, ReadsTheStandIn) {
       flight.notes,
       ElementsAre(
           "the recording has 1 gaps of more than 1 s; the import keeps the longest segment: samples 7 to 2006 of 2007",
-          "10 rows repeat a time stamp and are left out"));
+          "10 rows have the time stamp of an earlier row and are left out"));
 }
 
 /// The published flights, where they are at hand; the suite is there with them alone.

@@ -106,16 +106,18 @@ TEST_P(Stamps, ClocksThatDoNotMeetAreRefusedWithTheWayOut) {
 
 TEST_P(Stamps, APlaceThatNobodyStatesIsSaid) {
   const std::vector<std::string> notes = written(same, sweep_before).notes;
-  EXPECT_THAT(notes, Contains(HasSubstr("/imu: neither /tf_static nor --lever-arm gives its pose on the body")));
-  EXPECT_THAT(notes, Contains(HasSubstr("/points: neither /tf_static nor --T-body-lidar gives its pose on the body")));
+  EXPECT_THAT(notes,
+              Contains(HasSubstr("/imu: neither /tf_static nor --lever-arm states the sensor's pose on the body")));
+  EXPECT_THAT(
+      notes,
+      Contains(HasSubstr("/points: neither /tf_static nor --T-body-lidar states the sensor's pose on the body")));
 }
 
 TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {
-  EXPECT_THAT(
-      complaint_of(zero, sweep_before),
-      AllOf(HasSubstr(
-                "message 1 of /imu: the time stamp does not increase: the header's is 0, like the previous time stamp"),
-            HasSubstr("the record's increases by 0.005 s; set '--stamps record' to use the record stamps")));
+  EXPECT_THAT(complaint_of(zero, sweep_before),
+              AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header's is 0 in this message "
+                              "and in the previous message"),
+                    HasSubstr("the record's increases by 0.005 s; set '--stamps record' to use the record stamps")));
   EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's does not change"));
   EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's decreases by 0.005 s"));
   EXPECT_THAT(complaint_of(same, constant), HasSubstr("message 1 of /points: the time stamp does not increase"));

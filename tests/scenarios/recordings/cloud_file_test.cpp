@@ -91,7 +91,7 @@ TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
     return complaint_of("a.pcd",
                         kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
   };
-  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of uncompressed points; this must be 24"));
+  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of uncompressed points; this number must be 24"));
   EXPECT_THAT(with(20, 4000000000u), HasSubstr("must be 24"));
   EXPECT_THAT(with(0, 24), HasSubstr("states 0 bytes of compressed points"));
   EXPECT_THAT(with(21, 24), HasSubstr("but 20 follow"));
@@ -123,9 +123,10 @@ TEST_F(CloudFile, KittiBin) {
   const Cloud cloud = read("a.bin", bytes(1.0f) + bytes(2.0f) + bytes(3.0f) + bytes(0.5f));
   ASSERT_EQ(cloud.points, 1u);
   EXPECT_EQ((*cloud.find("intensity"))[0], 0.5);
-  EXPECT_THAT(complaint_of("a.bin", "123456789012345"),
-              HasSubstr("a.bin: has 15 bytes; the number must be a multiple of 16 (float32 x y z intensity); the file "
-                        "may be truncated"));
+  EXPECT_THAT(
+      complaint_of("a.bin", "123456789012345"),
+      HasSubstr("a.bin: the file has 15 bytes; the size must be a multiple of 16 (float32 x y z intensity); the file "
+                "may be truncated"));
 }
 
 /// A sweep of 16 rings, ring by ring, as the columns x y z intensity ring time 0: the first `columns` of them.
@@ -152,14 +153,14 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
   EXPECT_EQ(read("a.bin", sweep_of<float>(4)).points, 640u);
   for (const std::size_t columns : {3u, 5u, 6u, 7u}) {
     EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(columns)),
-                AllOf(HasSubstr("a.bin: its numbers match " + std::to_string(columns) +
+                AllOf(HasSubstr("a.bin: the numbers match " + std::to_string(columns) +
                                 " columns of float32 better than the expected 4 (x y z intensity)"),
                       HasSubstr("--bin-columns to the columns in order")));
   }
   for (const std::size_t columns : {4u, 5u, 6u}) {
     EXPECT_THAT(complaint_of("a.bin", sweep_of<double>(columns)),
-                AllOf(HasSubstr("% of its numbers, read as float32, have a magnitude above 1e+07 or below 1e-20; at "
-                                "most 1 % may have this"),
+                AllOf(HasSubstr("% of the numbers, read as float32, have a magnitude above 1e+07 or below 1e-20; at "
+                                "most 1 % may have such a magnitude"),
                       HasSubstr("the numbers match " + std::to_string(columns) + " columns of float64")));
   }
   // a point more, and the size is no multiple of 16 either
@@ -210,12 +211,12 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   const auto ply = [&](const std::string& count) {
     return "ply\nformat binary_little_endian 1.0\nelement vertex " + count + tail;
   };
-  EXPECT_THAT(
-      complaint_of("a.ply", ply("2") + std::string(23, 'x')),
-      HasSubstr("a.ply:7: states 2 points of at least 12 bytes, but only 23 bytes follow; the file may be truncated"));
+  EXPECT_THAT(complaint_of("a.ply", ply("2") + std::string(23, 'x')),
+              HasSubstr("a.ply:7: the header states 2 points of at least 12 bytes, but only 23 bytes follow; the file "
+                        "may be truncated"));
   EXPECT_EQ(complaint_of("a.ply", ply("2") + std::string(24, 'x')), "");
   EXPECT_THAT(complaint_of("a.ply", ply("4000000000")),
-              HasSubstr("a.ply:7: states 4000000000 points; at most 67108864"));
+              HasSubstr("a.ply:7: the file states 4000000000 points; at most 67108864"));
   EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: count of vertex is"));
   EXPECT_THAT(complaint_of("a.ply", ply("-1")),
               HasSubstr("a.ply:3: count of vertex is '-1'; it must be a whole number"));
@@ -225,7 +226,7 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
            "\nDATA " + data + "\n";
   };
   EXPECT_THAT(complaint_of("a.pcd", pcd("3", "binary") + std::string(35, 'x')),
-              HasSubstr("a.pcd:8: states 3 points of at least 12 bytes, but only 35 bytes follow"));
+              HasSubstr("a.pcd:8: the header states 3 points of at least 12 bytes, but only 35 bytes follow"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("60000000", "binary_compressed") + std::string(100, 'x')),
               HasSubstr("a.pcd:8"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("5000000000", "binary")), HasSubstr("WIDTH is 5000000000; it must be at most"));
@@ -246,7 +247,7 @@ TEST_F(CloudFile, DamageIsOneClearLine) {
   EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "a.las"); }),
               HasSubstr("must end in .ply, .pcd, .vtk or .bin"));
   EXPECT_THAT(complaint_of("a.ply", ""), HasSubstr("a.ply:0: the header does not end"));
-  EXPECT_THAT(complaint_of("a.ply", "plyy\n"), HasSubstr("a.ply:1: does not begin with 'ply'"));
+  EXPECT_THAT(complaint_of("a.ply", "plyy\n"), HasSubstr("a.ply:1: the file does not begin with 'ply'"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\n"),
               HasSubstr("does not end; the file may be truncated"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nend_header\n"), HasSubstr("the file has no points"));

@@ -60,7 +60,7 @@ TEST(Diagnosis, ReadingsAtRestAreSound) {
 }
 
 TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
-  EXPECT_THAT(evidence_of(at_rest(0.6, 4.0)), ElementsAre("lidar: starts 0.6 s after 'imu' (limit 0.5 s)"));
+  EXPECT_THAT(evidence_of(at_rest(0.6, 4.0)), ElementsAre("lidar: the sensor starts 0.6 s after 'imu' (limit 0.5 s)"));
   sim::Sensors lossy = at_rest(0.0, 4.0);
   lossy.lidars[0].sweep_start_ns.erase(lossy.lidars[0].sweep_start_ns.begin() + 5);
   EXPECT_THAT(evidence_of(lossy), IsEmpty()) << "a single sweep";
@@ -69,7 +69,8 @@ TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
                                               "is 0.2 s"));
   sim::Sensors moving = at_rest(0.0, 4.0);
   for (std::size_t k = 0; k < 400; ++k) moving.imus[0].gyro_rad_s[k].z() = std::sin(0.1 * static_cast<double>(k));
-  EXPECT_THAT(evidence_of(moving), ElementsAre(testing::StartsWith("imu: moves during the first second: rates vary")));
+  EXPECT_THAT(evidence_of(moving),
+              ElementsAre(testing::StartsWith("imu: the robot moves during the first second: rates vary")));
   sim::Sensors untimed = at_rest(0.0, 4.0);
   untimed.lidars[0].point_times = sim::PointTimes::unknown;
   EXPECT_THAT(evidence_of(untimed), ElementsAre(testing::HasSubstr("the points have no times")));

@@ -117,15 +117,15 @@ TEST_P(Frames, TheClockTicks) {
 TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   GetParam().write(recording_.sensors, {}, path_);
   const Imported found = GetParam().read(path_, {});
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/lidar/points: /tf_static gives its pose in 'body'")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/lidar/points: /tf_static contains the sensor's pose in 'body'")));
   EXPECT_TRUE(found.sensors.lidars[0].T_BL.isApprox(recording_.sensors.lidars[0].T_BL, 1e-12));
   BagReading stated;
   stated.sweeps.device.T_BL.translation() = Eigen::Vector3d(0.5, 0.25, 0.125);
   const Imported held = GetParam().read(path_, stated);
   EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
-  EXPECT_THAT(held.notes,
-              Contains(testing::AllOf(HasSubstr("/lidar/points: caution: /tf_static gives its pose in 'body' as"),
-                                      HasSubstr("but your option gives the pose (0.5 "))));
+  EXPECT_THAT(held.notes, Contains(testing::AllOf(
+                              HasSubstr("/lidar/points: caution: /tf_static contains the sensor's pose in 'body' as"),
+                              HasSubstr("but your option states the pose (0.5 "))));
   // the same place said twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
   EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
@@ -184,7 +184,7 @@ TEST_P(Frames, AreFollowedThroughOthers) {
   const Eigen::Isometry3d T_BI = found.sensors.imus.at(0).T_BI;
   EXPECT_TRUE(T_BI.translation().isApprox(Eigen::Vector3d(0, 0.5, 1))) << T_BI.translation();
   EXPECT_TRUE(T_BI.linear().isApprox(turn.toRotationMatrix()));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/imu: /tf_static gives its pose in 'base_link'")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/imu: /tf_static contains the sensor's pose in 'base_link'")));
 }
 
 TEST_P(Frames, ThatNobodyTiesToTheBodyPlaceNothing) {
@@ -206,7 +206,7 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   EXPECT_TRUE(imus[0].T_BI.isApprox(Eigen::Isometry3d::Identity()));
   EXPECT_LT((imus[1].T_BI.translation() - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-12);
   EXPECT_TRUE(imus[1].T_BI.linear().isApprox(turn.toRotationMatrix().transpose(), 1e-12));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/right: /tf_static gives its pose relative to /left")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/right: /tf_static contains the sensor's pose relative to /left")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/elsewhere: neither /tf_static nor --lever-arm")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU, because its topic comes first")));
   // where the first is given, the second stands beside it
@@ -235,12 +235,13 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
     reading.reference_of = whose;
     const Imported found = GetParam().read(path_, reading);
     EXPECT_THAT(found.notes, said[0] == 0
-                                 ? testing::Not(Contains(HasSubstr("the messages state that the poses belong to")))
+                                 ? testing::Not(Contains(HasSubstr("according to the messages, the poses belong to")))
                                  : testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(said))));
     return found.reference->p_WB_m.at(0);
   };
   EXPECT_EQ(start("mast", ReferenceOf::named,
-                  "/of_mast: the messages state that the poses belong to the frame 'mast'; they are converted to poses "
+                  "/of_mast: according to the messages, the poses belong to the frame 'mast'; the import converts the "
+                  "poses to poses "
                   "of the body"),
             Eigen::Vector3d(7, 7.5, 7));
   EXPECT_EQ(start("mast", ReferenceOf::body, ""), Eigen::Vector3d(7, 8, 9));
@@ -264,10 +265,8 @@ TEST_P(Frames, ATransformIsAReference) {
   ASSERT_TRUE(found.reference.has_value());
   EXPECT_EQ(found.reference->p_WB_m.at(0), Eigen::Vector3d(7, 8, 9));
   EXPECT_TRUE(found.reference->q_WB.at(0).isApprox(Eigen::Quaterniond(0.6, 0.8, 0, 0), 1e-12));
-  EXPECT_THAT(
-      found.notes,
-      Contains(HasSubstr(
-          "/vicon: the messages state that the poses belong to the frame 'rig', whose pose on the body is unknown")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/vicon: according to the messages, the poses belong to the frame 'rig', "
+                                              "whose pose on the body is unknown")));
 }
 
 TEST_P(Frames, AStatedZeroIsAMounting) {
@@ -275,7 +274,7 @@ TEST_P(Frames, AStatedZeroIsAMounting) {
   write_imu(*bag, "/imu");
   bag->finish();
   BagReading reading;
-  const auto missing = Contains(HasSubstr("neither /tf_static nor --lever-arm gives its pose"));
+  const auto missing = Contains(HasSubstr("neither /tf_static nor --lever-arm states the sensor's pose"));
   EXPECT_THAT(GetParam().read(path_, reading).notes, missing);
   reading.imu_placed = true;
   EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
@@ -306,7 +305,7 @@ TEST_P(Frames, AMessageThatIsThereTwiceIsTakenOnce) {
   const Imported found = GetParam().read(path_, {});
   EXPECT_EQ(found.sensors.imus.at(0).time_ns.size(), 5u);
   EXPECT_THAT(found.notes,
-              Contains(HasSubstr("number of duplicate messages (same stamp and content) that were read once: 5")));
+              Contains(HasSubstr("number of duplicate messages (same stamp and content) that the import left out: 5")));
 }
 
 TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
@@ -318,7 +317,7 @@ TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
   for (const char* said :
        {"the transform of 'map' in 'utm': the translation must be finite and at most 1 km; this transform is ignored",
         "'camera': the frame is its own parent; this transform is ignored",
-        "'lamp' in 'body': its quaternion has norm"})
+        "'lamp' in 'body': the quaternion has norm"})
     EXPECT_THAT(found.notes, Contains(HasSubstr(said)));
 }
 
@@ -342,8 +341,8 @@ TEST_P(Frames, ThatMakeNoSenseAreRefused) {
        "the transform of 'imu' in 'body': the translation must be finite and at most 1 km"},
       {{hung("imu", "body", {0, 2000, 0})}, "the translation must be finite and at most 1 km"},
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))},
-       "its quaternion has norm 0.000000; the norm must be 1"},
-      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "its quaternion has norm nan"}};
+       "the quaternion has norm 0.000000; the norm must be 1"},
+      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "the quaternion has norm nan"}};
   for (const auto& [frames, complaint] : cases) {
     std::filesystem::remove_all(path_);
     write_frames(*GetParam().writer(path_), frames);

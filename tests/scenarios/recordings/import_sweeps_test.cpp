@@ -218,10 +218,10 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("2.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time stamp"));
   put("times.txt", "1.0\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: contains 1 time stamps, but there are 2 sweeps"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: the file contains 1 time stamps, but there are 2 sweeps"));
   put("times.txt", "# s\n1.1\n1.0\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase; the "
-                                        "previous one is 1100000000 ns"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns must be larger than the "
+                                        "previous time stamp, 1100000000 ns"));
   put("times.txt", "1.0\n1.1x\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a time"));
   put("times.txt", "1.0\n1.1\n");
@@ -250,7 +250,7 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0.00001", "0.00002", "0.00005"}));
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the point times in field 'time' have a range of"));
-  EXPECT_THAT(complaint_of(), HasSubstr("0.15 to 150 % of the sweep period of 100 ms; give the unit (--time-unit)"));
+  EXPECT_THAT(complaint_of(), HasSubstr("the sweep period is 100 ms. State the unit (--time-unit)"));
   source_.reading.time_unit = "s";
   EXPECT_EQ(complaint_of(), "");
   source_.reading.time_unit = "minutes";

@@ -245,7 +245,7 @@ TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
   fixture::put(folder_ / "sign.csv", turning(1.0, -1.0));
   EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity rotates -1 times"));
   EXPECT_THAT(import(kHeader + line("1,0") + line("1,10000000")).notes,
-              testing::Contains(HasSubstr("rates are read in rad/s, with unchanged signs and axes")));
+              testing::Contains(HasSubstr("the import reads rates in rad/s, with unchanged signs and axes")));
 }
 
 TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
@@ -285,10 +285,10 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
               HasSubstr("csv:4: a reading has the magnitude 1e+07 rad/s or m/s^2; it must be at most 1e+06"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
-  EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: has 1 columns"));
-  EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: has"));
-  EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: contains no known column name"));
-  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header; a file without header"));
+  EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: this line has 1 columns"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: this line has"));
+  EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: the header contains no known column name"));
+  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: the file has 2 columns and no header; a file without header"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"))
       << "a last number may be cut in its middle";
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
@@ -303,7 +303,7 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
   EXPECT_THAT(complaint_of(wide), HasSubstr("csv: the text is in UTF-16; it must be in UTF-8"));
   std::string spoiled = good;
   spoiled[good.size() - 40] = '\0';
-  EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: contains a zero byte"));
+  EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: the file contains a zero byte"));
   std::string returns = good;
   std::replace(returns.begin(), returns.end(), '\n', '\r');
   EXPECT_THAT(complaint_of(returns), HasSubstr("csv: the lines end in a carriage return; they must end in a"));

@@ -51,7 +51,7 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
             "with faulty data (first: a.csv:9: is not finite)");
   EXPECT_NO_THROW(left_out.require_few(38));
   EXPECT_EQ(fixture::complaint([&] { left_out.require_few(37); }),
-            "a.csv:3: does not increase (2 of 39 readings have errors; at most 5 % may be left out)");
+            "a.csv:3: does not increase (2 of 39 readings are faulty; the import leaves out at most 5 %)");
   LeftOut one("clouds");
   one.add("faulty data", "cut");
   EXPECT_NO_THROW(one.require_few(4));
@@ -163,8 +163,8 @@ TEST_P(OddBag, ManyFaultyReadingsAreRefused) {
     if (k % 10 == 5) imu.angular_velocity[1] = std::nan("");
   };
   EXPECT_THAT(complaint(),
-              HasSubstr("message 5 of /imu: a reading is not finite (15 of 150 readings have errors; at most "
-                        "5 % may be left out)"));
+              HasSubstr("message 5 of /imu: a reading is not finite (15 of 150 readings are faulty; the import "
+                        "leaves out at most 5 %)"));
 }
 
 TEST_P(OddBag, ReadingsOfExactlyZeroAreMissing) {
@@ -277,9 +277,10 @@ TEST_P(OddBag, CloudsWithPointTimesAreThePrimaryLidar) {
   ASSERT_EQ(imported.sensors.lidars.size(), 2u);
   EXPECT_EQ(imported.sensors.lidars[0].name, "points");
   EXPECT_EQ(imported.sensors.lidars[1].name, "camera");
-  EXPECT_THAT(imported.notes,
-              Contains("/points: mapping uses the lidar of this topic, because its points have time stamps "
-                       "(set --lidar-topic to choose another topic)"));
+  EXPECT_THAT(
+      imported.notes,
+      Contains("/points: mapping uses the lidar of this topic, because the points of the topic have time stamps "
+               "(set --lidar-topic to choose another topic)"));
   BagReading chosen;
   chosen.lidar_topics = {"/camera", "/points"};
   EXPECT_EQ(read(chosen).sensors.lidars.at(0).name, "camera");

@@ -103,7 +103,7 @@ TEST_P(Livox, ACountThatIsNoneIsRefused) {
   EXPECT_THAT(fixture::complaint([&] {
                 written({first, second});
               }),
-              HasSubstr("message 1 of /livox/lidar: states 4000000000 points but holds 10"));
+              HasSubstr("message 1 of /livox/lidar: the cloud states 4000000000 points but contains 10"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Livox, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),

@@ -87,7 +87,7 @@ TEST_F(LoggerTable, SemicolonsTabulatorsAndOtherColumnsAreRead) {
     const Imported imported = import(separated(by));
     expect_the_readings(imported);
     EXPECT_THAT(imported.notes, Contains("ignored columns: mag_x, temp"));
-    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("which follows from the time step"))));
+    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("because of the time step"))));
   }
 }
 
@@ -97,15 +97,15 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
     expect_the_readings(imported);
     return imported.notes;
   };
-  EXPECT_THAT(notes_of(kSeconds), Contains("times are read in s, which follows from the time step"));
+  EXPECT_THAT(notes_of(kSeconds), Contains("the import reads times in s, because of the time step"));
   EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}),
-              Contains(HasSubstr("times are read in ms,")));
-  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("times are read in us,")));
+              Contains(HasSubstr("the import reads times in ms,")));
+  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("the import reads times in us,")));
   EXPECT_THAT(notes_of({"1700000000000000000", "1700000000005000000", "1700000000010000000"}),
-              Contains(HasSubstr("times are read in ns,")));
+              Contains(HasSubstr("the import reads times in ns,")));
   // as Python prints sums of steps
   EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}),
-              Contains(HasSubstr("times are read in s,")));
+              Contains(HasSubstr("the import reads times in s,")));
   // half a second, or half a millisecond
   EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
               AllOf(HasSubstr("log.csv: the time step is 0.5"), HasSubstr("Add the unit to the column name")));
@@ -135,7 +135,7 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
 TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
   EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
                                  ",0,1,0,2,0,3,-0,5,0,0,9,8")),
-              HasSubstr("csv:2: has 14 columns, but the first line has 7; the numbers must be equal"));
+              HasSubstr("csv:2: this line has 14 columns, but the first line has 7; the numbers must be equal"));
 }
 
 TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {

@@ -86,7 +86,7 @@ TEST_F(Mcap, MessagesOfRos1AreReadToo) {
 
 TEST_F(Mcap, OtherEncodingsAreNamed) {
   shape_.channel.message_encoding = "json";
-  EXPECT_THAT(complaint_of(shape_), HasSubstr("there is no topic of type sensor_msgs/Imu"));
+  EXPECT_THAT(complaint_of(shape_), HasSubstr("the bag has no topic of type sensor_msgs/Imu"));
   fixture::put(file(), fixture::mcap_bytes(shape_));
   BagReading reading;
   reading.imu_topics = {"/imu"};
@@ -161,19 +161,19 @@ const Lie kLies[] = {
     {"MessageLeftOutOfTheIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries.pop_back(); }; },
      "the chunk index names 19 messages of channel 1, but the chunk has 20"},
     {"ChannelOfAnIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.channel_id = 9; }; },
-     "is the index of channel 9, but must be the index of channel 1"},
+     "this message index belongs to channel 9, but must belong to channel 1"},
     {"ChunkLeftOutOfTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all.pop_back(); }; },
-     "states 2 chunks but indexes 1"},
+     "states 2 chunks but contains 1 chunk indexes"},
     {"ChunkTwiceInTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[1] = all[0]; }; },
-     "indexes a chunk of "},
+     "the index names a chunk of "},
     {"ChunkBeyondTheEnd",
      [](McapShape& s) { s.chunk_index = [](auto& all) { all[1].chunk_start_offset = 1ull << 62; }; },
-     "indexes a chunk of "},
+     "the index names a chunk of "},
     {"LengthOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { all[1].chunk_length = ~0ull; }; },
-     "indexes a chunk of 18446744073709551615 bytes"},
+     "the index names a chunk of 18446744073709551615 bytes"},
     {"PlaceOfAChunk",
      [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].chunk_length, ++all[0].chunk_start_offset; }; },
-     "is not a chunk"},
+     "this record must be a chunk"},
     {"TimesOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].message_end_time; }; },
      "the chunk differs from its index"},
     {"PlaceOfAnIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] = 8; }; },
@@ -193,7 +193,7 @@ const Lie kLies[] = {
        s.compression = "lz4";
        s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; };
      },
-     "bytes, but the chunk states"},
+     "bytes, but its stated size is"},
     {"BombOfLz4",
      [](McapShape& s) {
        s.compression = "lz4";
@@ -206,7 +206,7 @@ const Lie kLies[] = {
        s.chunk_records = [](std::string& records) { records.append(50'000'000, '\0'); };
        s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1000; };
      },
-     "is longer than the 1000 bytes that the chunk states"},
+     "is longer than the stated size of 1000 bytes"},
     {"ChunkBeyondTheBound", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1ull << 40; }; },
      "a chunk has 1099511627776 bytes; at most 256 MiB can be read"},
     {"LengthOfTheRecords", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.records_size = ~0ull; }; },
@@ -278,7 +278,8 @@ TEST_F(Mcap, AnyCutOfOursIsRefused) {
   for (std::size_t size = 0; size < whole.size(); size += size < 100 || size + 100 > whole.size() ? 1 : 97)
     ASSERT_THAT(complaint_of(whole.substr(0, size)), HasSubstr("a.mcap: at byte ")) << size;
   EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("repair the file with 'mcap recover'"));
-  EXPECT_THAT(complaint_of("hello"), HasSubstr("does not begin with the magic bytes of MCAP 0: not an MCAP file"));
+  EXPECT_THAT(complaint_of("hello"),
+              HasSubstr("the file does not begin with the magic bytes of MCAP 0, so it is not an MCAP file"));
   EXPECT_THAT(fixture::complaint([&] { import_mcap(folder_ / "none.mcap", {}); }), HasSubstr("no such file"));
 }
 

@@ -160,12 +160,13 @@ TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
     const bool whole_without_scalars = size >= head_.size() + points_.size() - 1 && complaint.empty();
     EXPECT_TRUE(whole_without_scalars || complaint.find("a.vtk:") != std::string::npos) << size << complaint;
   }
-  EXPECT_THAT(complaint_of("ply\n"), HasSubstr("a.vtk:2: does not begin with '# vtk DataFile Version'"));
-  EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: is a binary file"));
+  EXPECT_THAT(complaint_of("ply\n"), HasSubstr("a.vtk:2: the file does not begin with '# vtk DataFile Version'"));
+  EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: the file is a binary"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"), HasSubstr("a.vtk:7: '5,5' is not a number"));
-  EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"), HasSubstr("a.vtk:5: states 4000000000 points"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"),
+              HasSubstr("a.vtk:5: the file states 4000000000 points"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"),
-              HasSubstr("a.vtk:5: states 9 times 3 numbers, but only 7 bytes"));
+              HasSubstr("a.vtk:5: the file states 9 times 3 numbers, but only 7 bytes"));
   EXPECT_THAT(complaint_of(head_ + points_ + points_), HasSubstr("a.vtk:8: POINTS occurs twice"));
   EXPECT_THAT(complaint_of(head_ + points_ + "POINT_DATA 3\n"), HasSubstr("POINT_DATA has 3 points, but POINTS has 2"));
   EXPECT_THAT(complaint_of(head_ + points_ + "POLYGONS 1 4\n"),
@@ -201,7 +202,7 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
               HasSubstr("a.csv:4: column 1 must be a whole number from 0 to 999999999; it is '1000000000'"));
   EXPECT_THAT(complaint_of(good + "11,0,1,2,3,0,0,0.6,0.9\n"), HasSubstr("a.csv:4: the quaternion's norm is"));
   EXPECT_THAT(complaint_of(good + "11,0,nan,2,3,0,0,0,1\n"), HasSubstr("a.csv:4: the pose is not finite"));
-  EXPECT_THAT(complaint_of(good + "11,0,1\n"), HasSubstr("a.csv:4: has 3 columns, but the first line has 9"));
+  EXPECT_THAT(complaint_of(good + "11,0,1\n"), HasSubstr("a.csv:4: this line has 3 columns, but the first line has 9"));
   std::string doubled = good;
   doubled.replace(doubled.find("position.y"), 10, "position.x");
   EXPECT_THAT(

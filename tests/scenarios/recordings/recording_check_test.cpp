@@ -40,7 +40,7 @@ TEST(RecordingCheck, NamesWhatContradicts) {
   const double nan = std::nan("");
   const std::vector<Case> cases = {
       {[](auto& s) { s.imus[1].gyro_rad_s.pop_back(); },
-       "sensors/imus/1: gyro_I_rad_s has 69 rows, but time_ns has 70"},
+       "sensors/imus/1: gyro_I_rad_s has 69 rows, but time_ns has 70; the numbers must be equal"},
       {[](auto& s) { s.imus[1].accel_m_s2.clear(); }, "accel_I_m_s2 has 0 rows"},
       {[](auto& s) { s.imus[1].clip_flags.push_back(0); }, "clip_flags has 71 rows"},
       {[](auto& s) { s.imus[1].magnetic_field_t.pop_back(); },
@@ -76,7 +76,7 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is not one of"},
       {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not increase"},
       {[](auto& s) { s.series[0].time_ns.pop_back(); },
-       "sensors/series/0: quantities/0: values has 5 rows, but time_ns has 4"},
+       "sensors/series/0: quantities/0: values has 5 rows, but time_ns has 4; the numbers must be equal"},
       {[](auto& s) { s.series[0].quantities[1].values.pop_back(); }, "quantities/1: values has 4 rows"},
       {[nan](auto& s) { s.series[0].quantities[1].noise = nan; }, "quantities/1: noise is nan"},
       {[](auto& s) { s.series[0].quantities[1].name = "a,b"; },
@@ -110,13 +110,14 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
     const char* problem;
   };
   const std::vector<Case> cases = {
-      {[](auto& t) { t.q_WB.pop_back(); }, "truth: q_WB has 39 rows, but p_WB_m has 40"},
+      {[](auto& t) { t.q_WB.pop_back(); }, "truth: q_WB has 39 rows, but p_WB_m has 40; the numbers must be equal"},
       {[](auto& t) { t.label.pop_back(); }, "label has 39 rows; it must have 40 or none"},
       {[](auto& t) { t.f_B_m_s2.pop_back(); }, "f_B_m_s2 has 39 rows; it must have 40 or none"},
-      {[](auto& t) { t.q_WB[3].w() = std::numeric_limits<double>::quiet_NaN(); }, "q_WB is not of unit length"},
+      {[](auto& t) { t.q_WB[3].w() = std::numeric_limits<double>::quiet_NaN(); },
+       "the quaternion q_WB must have norm 1"},
       {[](auto& t) { t.period_ns = 0; }, "truth: period_ns is 0"},
-      {[](auto& t) { t.q_WB[3].coeffs() *= 1.01; }, "q_WB is not of unit length"},
-      {[](auto& t) { t.q_WB[3].coeffs().setZero(); }, "q_WB is not of unit length"},
+      {[](auto& t) { t.q_WB[3].coeffs() *= 1.01; }, "the quaternion q_WB must have norm 1"},
+      {[](auto& t) { t.q_WB[3].coeffs().setZero(); }, "the quaternion q_WB must have norm 1"},
       {[](auto& t) { t.label[3] = static_cast<sim::ContactLabel>(4); }, "label 4 is unknown"},
       {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns: decreases"},
       {[](auto& t) { t.contacts[3].surface_id = 2; }, "surface_id 2 has no name"},

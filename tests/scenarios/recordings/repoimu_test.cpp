@@ -227,7 +227,7 @@ TEST_F(Repoimu, BadInputHasFileLineValueAndBound) {
   EXPECT_THAT(complaint_of(""), HasSubstr("is empty"));
   EXPECT_THAT(complaint_of(header), HasSubstr("has 0 samples"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:5: the last line has no line end"));
-  EXPECT_THAT(complaint_of(good + "0.04;1;0;0\n"), HasSubstr("csv:6: has 4 columns; it must have 14"));
+  EXPECT_THAT(complaint_of(good + "0.04;1;0;0\n"), HasSubstr("csv:6: this line has 4 columns; it must have 14"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "nan")), HasSubstr("csv:6: column IMU Gyroscope is not finite"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "")),
               HasSubstr("csv:6: column IMU Gyroscope must be a number; it is ''"));

@@ -80,10 +80,11 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
   EXPECT_THAT(complaint_of(folder_), HasSubstr(": is a folder; it must be a recording (FILE.h5); 'tumble import "));
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
-  EXPECT_THAT(complaint_of(folder_ / "text.h5"), HasSubstr("text.h5: truncated, damaged or not an HDF5 file"));
+  EXPECT_THAT(complaint_of(folder_ / "text.h5"),
+              HasSubstr("text.h5: the file is truncated, damaged or not an HDF5 file"));
   const hid_t foreign = H5Fcreate((folder_ / "foreign.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(foreign);
-  EXPECT_THAT(complaint_of(folder_ / "foreign.h5"), HasSubstr("foreign.h5: /format: is not a recording"));
+  EXPECT_THAT(complaint_of(folder_ / "foreign.h5"), HasSubstr("foreign.h5: /format: the file is not a recording"));
 }
 
 TEST_F(WrongFile, WhatImportConvertsIsNamed) {
@@ -101,7 +102,7 @@ TEST_F(WrongFile, WhatImportConvertsIsNamed) {
 
 TEST_F(WrongFile, AnotherVersion) {
   put_attribute("/", "format_version", H5T_NATIVE_INT64, std::int64_t{2});
-  EXPECT_EQ(info_complaint(), path_.string() + ": /format_version: is 2; this build reads version 1");
+  EXPECT_EQ(info_complaint(), path_.string() + ": /format_version: the version is 2; this build reads version 1");
   EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("this build reads version 1"));
   EXPECT_THAT(fixture::complaint([&] { read_truth(path_); }), HasSubstr("this build reads version 1"));
 }
@@ -130,12 +131,12 @@ TEST_F(WrongFile, AGapInTheNumbersOfSensors) {
 
 TEST_F(WrongFile, WrongShape) {
   replace("sensors/imus/0/gyro_I_rad_s", H5T_NATIVE_DOUBLE, {70, 4});
-  EXPECT_THAT(sensors_complaint(), HasSubstr("/sensors/imus/0/gyro_I_rad_s: must have the shape N x 3"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("/sensors/imus/0/gyro_I_rad_s: the dataset must have the shape N x 3"));
 }
 
 TEST_F(WrongFile, WrongNumberOfDimensions) {
   replace("sensors/imus/0/time_ns", H5T_NATIVE_INT64, {70, 1});
-  EXPECT_THAT(sensors_complaint(), HasSubstr("time_ns: must have the shape N"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("time_ns: the dataset must have the shape N"));
 }
 
 TEST_F(WrongFile, WrongTypeOfNumber) {
@@ -161,7 +162,8 @@ TEST_F(WrongFile, AHugeClaimAsksForNoMemory) {
 TEST_F(WrongFile, DifferingLengths) {
   const std::vector<std::uint8_t> flags(69, 0);
   replace("sensors/imus/0/clip_flags", H5T_NATIVE_UINT8, {69}, flags.data());
-  EXPECT_EQ(sensors_complaint(), path_.string() + ": sensors/imus/0: clip_flags has 69 rows, but time_ns has 70");
+  EXPECT_EQ(sensors_complaint(),
+            path_.string() + ": sensors/imus/0: clip_flags has 69 rows, but time_ns has 70; the numbers must be equal");
 }
 
 TEST_F(WrongFile, FallingSweepFirst) {
@@ -173,7 +175,7 @@ TEST_F(WrongFile, FallingSweepFirst) {
 TEST_F(WrongFile, ContactsOfDifferentLength) {
   const std::array<double, 2> force = {1.0, 2.0};
   replace("truth/contacts/normal_force_n", H5T_NATIVE_DOUBLE, {2}, force.data());
-  EXPECT_THAT(truth_complaint(), HasSubstr("truth/contacts: the datasets differ in length"));
+  EXPECT_THAT(truth_complaint(), HasSubstr("truth/contacts: the datasets must have the same length"));
 }
 
 TEST_F(WrongFile, ChangedReadingsDoNotFitTheDigest) {

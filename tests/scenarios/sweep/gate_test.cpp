@@ -164,16 +164,16 @@ TEST(Gate, NoFailureWhereNoneWas) {
   };
   EXPECT_EQ(fault_after("", one_of([](Outcome& o) { o.status = OutcomeStatus::timeout; })), "timeout at seed 9");
   EXPECT_EQ(fault_after("", one_of([](Outcome& o) { score_of(o, "map_failed") = 1.0; })), "map_failed at seed 9");
-  EXPECT_EQ(fault_after("", one_of([](Outcome& o) { o.seed = 99; })), "no outcome at seed 9");
+  EXPECT_EQ(fault_after("", one_of([](Outcome& o) { o.seed = 99; })), "no result at seed 9");
 }
 
 TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
   const Change drop = [](Outcome& outcome) {
     if (outcome.seed == 3) std::erase_if(outcome.scores, [](const Score& score) { return score.metric == kNees; });
   };
-  EXPECT_EQ(fault_after(kNees, drop), "has no value, in contrast to the accepted run, at seed 3");
+  EXPECT_EQ(fault_after(kNees, drop), "the metric has no value, in contrast to the accepted run, at seed 3");
   EXPECT_EQ(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }).substr(0, 54),
-            "has no value, in contrast to the accepted run, at seed");
+            "the metric has no value, in contrast to the accepted run, at seed");
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
@@ -190,7 +190,7 @@ TEST(Gate, AMethodOrARunThatIsMissingFails) {
   const Gate gate = gate_of(accepted_outcomes());
   for (const GateResult& result : hold_to_gate(gate_run(std::vector<Outcome>{}, 1, kDraws), gate)) {
     if (result.metric.empty()) {
-      EXPECT_EQ(result.fault, "no outcome at seed 1");
+      EXPECT_EQ(result.fault, "no result at seed 1");
     }
   }
   EXPECT_THROW(hold_to_gate(gate_run(accepted_outcomes(), 1, kDraws - 1), gate), BadInput) << "other seeds";

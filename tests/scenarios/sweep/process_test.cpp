@@ -200,7 +200,7 @@ TEST_F(RunIsolated, AStatusThatIsNotOkIsAFailure) {
     return estimate;
   });
   EXPECT_EQ(outcome.status, OutcomeStatus::failed);
-  EXPECT_EQ(outcome.message, "gap: imu.time_ns is 2, bound 1");
+  EXPECT_EQ(outcome.message, "gap: imu.time_ns is 2; the bound is 1");
 }
 
 TEST_F(RunIsolated, NoAnswerIsADivergence) {

@@ -126,7 +126,7 @@ TEST_F(RecordedSweep, SuitesOfRecordingsHaveNoScenarios) {
   };
   EXPECT_EQ(refusal("recordings: [a.h5]\n"), "");
   EXPECT_THAT(refusal("recordings: [a.h5]\nseeds: {first: 1, last: 2}\n"),
-              HasSubstr("is not allowed in a suite of recordings; remove this key"));
+              HasSubstr("this key is not allowed in a suite of recordings; remove the key"));
   EXPECT_THAT(refusal("recordings: []\n"), HasSubstr("needs at least one recording"));
   EXPECT_THAT(refusal("seeds: {first: 1, last: 2}\n"), HasSubstr("scenarios"));
 }

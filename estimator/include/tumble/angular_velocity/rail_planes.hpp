@@ -75,9 +75,9 @@ class RailPlaneFinder {
       visit(p.log_odds_before, {"log_odds_before", "1", -100.0, 100.0,
                                 "prior log odds of a tilted saturation limit, per element and sign"});
       visit(p.log_odds_min,
-            {"log_odds_min", "1", -100.0, 100.0, "a tilted saturation limit is accepted from these log odds on"});
+            {"log_odds_min", "1", -100.0, 100.0, "minimum log odds with which a tilted saturation limit is accepted"});
       visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0,
-                              "an accepted tilted saturation limit is kept while its log odds exceed this"});
+                              "minimum log odds with which an accepted tilted saturation limit is kept"});
     }
   };
 

@@ -43,10 +43,10 @@ struct RateSmootherParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
     visit.group("rails_", p.rails);
-    visit(p.recovered_sigma_rad_s,
-          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "a clipped axis with a smaller standard deviation is reported as recovered, otherwise as bounded",
-           FieldRank::basic});
+    visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+                                    "maximum standard deviation of a clipped axis that is reported as recovered; "
+                                    "otherwise the axis is reported as bounded",
+                                    FieldRank::basic});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance is reported as an error",

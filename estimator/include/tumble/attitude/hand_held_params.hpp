@@ -57,10 +57,10 @@ struct HandHeldReadingParams {
            "additional noise of the specific force, per m/s^2 of difference between the force and gravity"});
     visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
                                    "angle random walk per rad/s of rate, caused by scale errors", FieldRank::basic});
-    visit(p.recovered_sigma_rad_s,
-          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "a clipped rate with a smaller standard deviation is reported as recovered, otherwise as bounded",
-           FieldRank::basic});
+    visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+                                    "maximum standard deviation of a clipped rate that is reported as recovered; "
+                                    "otherwise the rate is reported as bounded",
+                                    FieldRank::basic});
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.recovered_scale_share,
           {"recovered_scale_share", "1", 0.0, 1.0,

@@ -41,7 +41,7 @@ struct ImuPlausibilityParams {
                          "rotations are compared only if force and gravity differ by less than this share of gravity"});
     visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-3, 1e6,
                                "windows are compared only if the rate of each axis is below this value"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "a longer gap between two samples ends the window"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "maximum time between two samples of one window"});
     visit.group("", p.expert);
   }
 };

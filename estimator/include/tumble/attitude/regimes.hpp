@@ -55,15 +55,15 @@ class RegimeEvidence {
           {"flight_m_s2", "m/s^2", 1e-3, 10.0,
            "standard deviation of the force in flight that the model does not explain, caused by drag and bandwidth"});
       visit(p.flight_share, {"flight_share", "1", 0.0, 1.0,
-                             "additional standard deviation of this force, as a share of the force that the rotation "
-                             "causes at the lever arm"});
+                             "additional standard deviation of the force in flight, as a share of the force that the "
+                             "rotation causes at the lever arm"});
       visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
       visit(p.grip_m, {"grip_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
       visit(p.contact_max_m_s2,
             {"contact_max_m_s2", "m/s^2", 10.0, 1e6,
              "maximum contact force; the model assumes contact forces between 1 m/s^2 and this value"});
       visit(p.memory_s,
-            {"memory_s", "s", 1e-3, 10.0, "readings within this time count as one independent observation"});
+            {"memory_s", "s", 1e-3, 10.0, "time within which readings count as one independent observation"});
       visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 100.0,
                                 "minimum rate for an estimate of the regime (flight, contact or hand-held)"});
       visit(p.contacts_hz,

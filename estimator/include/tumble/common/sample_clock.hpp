@@ -44,11 +44,10 @@ class SampleClock {
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s,
             {"memory_s", "s", 0.01, 1e3, "time over which the rate of the sensor's clock is assumed to be constant"});
-      visit(p.jitter_min, {"jitter_min", "1", 0.0, 1.0,
-                           "time stamps are corrected only if their jitter exceeds this, in sample periods"});
-      visit(p.jitter_max,
-            {"jitter_max", "1", 0.0, 0.2,
-             "time stamps are corrected only if their jitter is below this, in sample periods; 0: never correct"});
+      visit(p.jitter_min,
+            {"jitter_min", "1", 0.0, 1.0, "minimum jitter of time stamps that are corrected, in sample periods"});
+      visit(p.jitter_max, {"jitter_max", "1", 0.0, 0.2,
+                           "maximum jitter of time stamps that are corrected, in sample periods; 0: never correct"});
     }
   };
 

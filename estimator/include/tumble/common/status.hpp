@@ -35,7 +35,7 @@ struct Status {
   double bound = 0.0;      ///< violated limit, in the field's unit
 
   bool ok() const { return error_code == ErrorCode::none; }
-  /// Returns a message such as "time_order: time_ns is 5, bound 7". Returns "ok" on success.
+  /// Returns a message such as "time_order: time_ns is 5; the bound is 7". Returns "ok" on success.
   std::string message() const;
 };
 

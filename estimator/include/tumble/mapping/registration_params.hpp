@@ -33,8 +33,7 @@ struct RegistrationExpertParams {
     visit(p.step_m, {"step_m", "m", 1e-12, 1.0, "position step below which the registration has converged"});
     visit(p.step_rad, {"step_rad", "rad", 1e-12, 1.0, "rotation step below which the registration has converged"});
     visit(p.step_s, {"step_s", "s", 1e-12, 1.0, "time-offset step below which the registration has converged"});
-    visit(p.rematch_m,
-          {"rematch_m", "m", 0.0, 10.0, "the plane of a point is searched again after the point has moved this far"});
+    visit(p.rematch_m, {"rematch_m", "m", 0.0, 10.0, "distance that a point moves before its plane is searched again"});
     visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "minimum width of the robust kernel (Geman-McClure)"});
     visit(p.correlation_discount,
           {"correlation_discount", "1", 1e-6, 1.0,

@@ -45,7 +45,7 @@ class Grid:
         self.columns = max(1, columns if fixed else longest)
         for name, value, bound in (("rings", self.rows, 256), ("columns", self.columns, 65_536)):
             if value > bound:
-                raise TumbleError(f"{name} is {value}, must be at most {bound}, the limit of evalio's points", "out_of_range", name, value, bound)
+                raise TumbleError(f"{name} is {value}; it must be at most {bound}, the limit of evalio's points", "out_of_range", name, value, bound)
 
     def cells(self, ring: Array, offset_ns: Array) -> Array:
         """Returns an array (rows, columns) with the index of the return in each cell, or -1 for an empty cell."""

@@ -34,7 +34,7 @@ def seeds() -> range:
     text = os.environ.get("TUMBLE_EVALIO_SEEDS", "1..8")
     first, dots, last = text.partition("..")
     if not (dots and first.isdigit() and last.isdigit() and 0 <= int(last) - int(first) < 10_000):
-        raise TumbleError(f"TUMBLE_EVALIO_SEEDS is '{text}', must be FIRST..LAST with at most 10000 draws", "out_of_range",
+        raise TumbleError(f"TUMBLE_EVALIO_SEEDS is '{text}'; it must be FIRST..LAST with at most 10000 draws", "out_of_range",
                           "TUMBLE_EVALIO_SEEDS", text, "FIRST..LAST")
     return range(int(first), int(last) + 1)
 
@@ -45,7 +45,7 @@ def files() -> dict[str, pathlib.Path]:
     out = {path.stem: path for path in named}
     for path in named:
         if out[path.stem] != path:
-            raise TumbleError(f"TUMBLE_EVALIO_FILES has two files named {path.stem}, names must differ", "file", "TUMBLE_EVALIO_FILES", path.stem, 1)
+            raise TumbleError(f"TUMBLE_EVALIO_FILES has two files named {path.stem}; the names must differ", "file", "TUMBLE_EVALIO_FILES", path.stem, 1)
     return out
 
 
@@ -102,7 +102,7 @@ class _Sequences(Dataset):
         out = read(self.path)
         for name in ("imus", "lidars"):
             if not getattr(out, name):
-                raise TumbleError(f"{self.path} has no {name}, must have at least one", "empty", name, 0, 1)
+                raise TumbleError(f"{self.path} has no {name}; it must have at least one", "empty", name, 0, 1)
         return out
 
     def quick_len(self) -> int | None:
@@ -172,7 +172,7 @@ def _fit(named: dict[str, pathlib.Path]) -> dict[str, pathlib.Path]:
 def _sequences() -> dict[str, str]:
     draws, named = _draws(), files()
     if both := sorted(draws.keys() & named.keys()):
-        raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}, must differ from the names of draws", "file",
+        raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}; the name must differ from the names of draws", "file",
                           "TUMBLE_EVALIO_FILES", both[0], "another name")
     return {name: name for name in [*draws, *_fit(named)]}
 

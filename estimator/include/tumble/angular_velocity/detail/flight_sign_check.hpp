@@ -71,16 +71,17 @@ class FlightSignCheck {
       visit(p.run_s, {"run_s", "s", 0.0, 10.0, "minimum duration of a flight; shorter flights are ignored"});
       visit(p.alternative_flight_s,
             {"alternative_flight_s", "s", 0.0, 1e3,
-             "a fault is reported if another sensor orientation explains at least this much flight time"});
+             "minimum flight time that another sensor orientation must explain before a fault is reported"});
       visit(p.half_scale_flight_s,
             {"half_scale_flight_s", "s", 0.0, 1e3,
-             "a fault is reported if twice the measured rate explains at least this much flight time"});
-      visit(p.alternative_evidence_ratio, {"alternative_evidence_ratio", "1", 0.0, 1e6,
-                                           "minimum ratio for a fault: flight time explained by the other orientation "
-                                           "over that explained by the stated one"});
+             "minimum flight time that twice the measured rate must explain before a fault is reported"});
+      visit(p.alternative_evidence_ratio,
+            {"alternative_evidence_ratio", "1", 0.0, 1e6,
+             "minimum ratio for a fault: flight time that the other orientation explains, divided by the flight time "
+             "that the stated orientation explains"});
       visit(p.thrown_evidence_ratio,
             {"thrown_evidence_ratio", "1", 0.0, 1e6, "minimum ratio for a fault if the body is not hand-held"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap between two samples ends the flight"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "maximum time between two samples of one flight"});
     }
   };
   /// Reading is one averaged IMU reading.

@@ -44,15 +44,16 @@ class FrozenAxes {
             {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
       visit(p.accel_range_m_s2,
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
-      visit(p.frozen_s, {"frozen_s", "s", 1e-3, 1e4,
-                         "an axis that repeats its reading for longer, while the body moves, is frozen"});
-      visit(p.rail_stationary_s,
-            {"rail_stationary_s", "s", 1e-3, 1e4,
-             "an axis at its saturation limit is frozen if all other axes are stationary for this long"});
+      visit(p.frozen_s,
+            {"frozen_s", "s", 1e-3, 1e4,
+             "duration after which an axis counts as frozen, if it repeats one reading while the body moves"});
       visit(
-          p.rail_repeated_s,
-          {"rail_repeated_s", "s", 1e-3, 1e4,
-           "an axis is frozen if it repeats one reading at its saturation limit for this long while other axes move"});
+          p.rail_stationary_s,
+          {"rail_stationary_s", "s", 1e-3, 1e4,
+           "duration after which an axis at its saturation limit counts as frozen, if all other axes are stationary"});
+      visit(p.rail_repeated_s, {"rail_repeated_s", "s", 1e-3, 1e4,
+                                "duration after which an axis counts as frozen, if it repeats one reading at its "
+                                "saturation limit while other axes move"});
     }
   };
   /// State of one axis of the gyro or of the accelerometer.

@@ -79,8 +79,9 @@ struct RateContactParams {
                            "the standard deviations of rates fitted through an impact are multiplied by this factor"});
     visit(p.lever_rad_m, {"contact_lever_rad_m", "rad/m", 0.0, 1e3,
                           "largest angular acceleration perpendicular to a contact force, per force"});
-    visit(p.twist_share, {"contact_twist_share", "1", 0.0, 1.0,
-                          "angular acceleration about the contact force, as a share of the perpendicular one"});
+    visit(p.twist_share,
+          {"contact_twist_share", "1", 0.0, 1.0,
+           "angular acceleration about the contact force, as a share of the angular acceleration perpendicular to it"});
     visit(p.force_share,
           {"contact_force_share", "1", 0.0, 1e3,
            "standard deviation of the unknown contact force, as a share of the force; 0: no assumption"});

@@ -22,8 +22,8 @@ struct RateDescentParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of iterations of one optimisation"});
-    visit(p.tolerance_rad_s,
-          {"tolerance_rad_s", "rad/s", 1e-12, 1.0, "the optimisation stops when no rate changes by more than this"});
+    visit(p.tolerance_rad_s, {"tolerance_rad_s", "rad/s", 1e-12, 1.0,
+                              "change of the rates in one iteration, below which the optimisation stops"});
     visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of a rate in one iteration"});
     visit(p.widen_first,
           {"widen_first", "1", 1.0, 1000.0,
@@ -32,8 +32,8 @@ struct RateDescentParams {
         p.bound_iterations,
         {"bound_iterations", "1", 0, 1000,
          "number of iterations after convergence that treat the bounds in contact as truncated normal distributions"});
-    visit(p.bound_damping,
-          {"bound_damping", "1", 0.01, 1.0, "share of the change of a bound that each of these iterations applies"});
+    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0,
+                            "share of the change of a bound that each iteration after convergence applies"});
   }
 };
 

@@ -46,16 +46,18 @@ struct FrozenImuParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.after_s, {"frozen_after_s", "s", 1e-12, 1e3,
-                      "an IMU is frozen if its reading repeats for this long while the others move"});
-    visit(p.rate_rad_s,
-          {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "minimum change of the other IMUs' rates during this time"});
-    visit(p.force_m_s2,
-          {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "minimum change of the other IMUs' forces during this time"});
-    visit(p.turned_rad, {"frozen_turned_rad", "rad", 1e-12, 1e3,
-                         "an accelerometer is frozen if its reading repeats while the IMUs rotate by this angle"});
-    visit(p.thawed_after_s, {"thawed_after_s", "s", 1e-12, 1e3,
-                             "a frozen IMU is used again after its readings have changed for this long"});
+    visit(p.after_s,
+          {"frozen_after_s", "s", 1e-12, 1e3,
+           "duration after which an IMU counts as frozen, if it repeats one reading while the other IMUs move"});
+    visit(p.rate_rad_s, {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3,
+                         "minimum change of the rates of the other IMUs while an IMU repeats its reading"});
+    visit(p.force_m_s2, {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4,
+                         "minimum change of the forces of the other IMUs while an IMU repeats its reading"});
+    visit(p.turned_rad,
+          {"frozen_turned_rad", "rad", 1e-12, 1e3,
+           "rotation of the IMUs after which an accelerometer that repeats one reading counts as frozen"});
+    visit(p.thawed_after_s,
+          {"thawed_after_s", "s", 1e-12, 1e3, "duration of changing readings after which a frozen IMU is used again"});
   }
 };
 
@@ -69,14 +71,16 @@ struct DisagreeingImuParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_rad_s, {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
-                         "an IMU disagrees if its mean rate over 0.5 s is this far from the median"});
+    visit(p.rate_rad_s,
+          {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
+           "difference of an IMU's mean rate over 0.5 s from the median of all IMUs, above which the IMU disagrees"});
     visit(p.rate_share,
           {"disagree_rate_share", "1", 0.0, 1.0,
            "additional accepted difference between an IMU's mean rate and the median, as a share of the rate"});
-    visit(p.force_m_s2, {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
-                         "an IMU disagrees if its mean force over 0.5 s is this far from the median"});
-    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "an IMU is excluded after it has disagreed for this long"});
+    visit(p.force_m_s2,
+          {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
+           "difference of an IMU's mean force over 0.5 s from the median of all IMUs, above which the IMU disagrees"});
+    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "duration of disagreement after which an IMU is excluded"});
   }
 };
 

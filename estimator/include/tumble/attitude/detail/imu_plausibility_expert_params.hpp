@@ -43,14 +43,15 @@ struct GravityRotationParams {
                         "minimum ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro"});
     visit(p.slope_max, {"rotation_slope_max", "1", 1.0, 1e6,
                         "maximum ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro"});
-    visit(p.rotation_min_rad2,
-          {"rotation_min_rad2", "rad^2", 1e-12, 1e6, "minimum sum of squared rotations for a check of this ratio"});
+    visit(p.rotation_min_rad2, {"rotation_min_rad2", "rad^2", 1e-12, 1e6,
+                                "minimum sum of squared rotations for a check of the ratio of rotations"});
     visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 1e-12, 3.0, "minimum rotation of a compared window"});
     visit(p.rotated_windows_min, {"rotated_windows_min", "1", 1.0, 1e6,
                                   "minimum number of windows with a rotating force for a check of the rotation"});
-    visit(p.unexplained_share_max, {"rotation_unexplained_share_max", "1", 0.0, 1.0,
-                                    "a gyro with another scale or sign is reported if it leaves less than this share "
-                                    "of the rotation that the stated gyro leaves unexplained"});
+    visit(p.unexplained_share_max,
+          {"rotation_unexplained_share_max", "1", 0.0, 1.0,
+           "maximum unexplained rotation with another scale or sign of the gyro, as a share of the unexplained "
+           "rotation with the stated gyro; below this share, a fault is reported"});
     visit(p.still_share,
           {"still_share", "1", 0.0, 1.0,
            "the force counts as not rotating if it rotates by less than this share of the gyro's rotation"});
@@ -65,12 +66,12 @@ struct AxisNamingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.unexplained_share_max, {"relabelled_share_max", "1", 0.0, 1.0,
-                                    "exchanged axes are reported if they leave less than this share of the rotation "
-                                    "that the stated axes leave unexplained"});
+                                    "maximum unexplained rotation with exchanged axes, as a share of the unexplained "
+                                    "rotation with the stated axes; below this share, a fault is reported"});
     visit(
         p.unexplained_least,
         {"relabelled_least", "1", 0.0, 1.0,
-         "exchanged axes are tested if the stated axes leave more than this share of gravity's rotation unexplained"});
+         "share of gravity's rotation that the stated axes leave unexplained, above which exchanged axes are tested"});
   }
 };
 
@@ -82,13 +83,14 @@ struct FrozenTriadParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.repeats_s, {"frozen_s", "s", 1e-12, 1e4,
-                        "an axis may be frozen if its reading repeats for this long after an equally long motion"});
+    visit(p.repeats_s,
+          {"frozen_s", "s", 1e-12, 1e4,
+           "duration after which an axis may be frozen, if it repeats one reading after an equally long motion"});
     visit(p.longest_share, {"frozen_share", "1", 1.0, 1e6,
                             "minimum length of a frozen run of equal readings, relative to the longest earlier run"});
     visit(p.unexplained_least,
           {"frozen_unexplained_least", "1", 0.0, 1.0,
-           "a gyro that never moved is frozen if more than this share of gravity's rotation is unexplained"});
+           "share of unexplained rotation of gravity, above which a gyro with constant readings counts as frozen"});
   }
 };
 

@@ -43,7 +43,7 @@ struct PivotCheckParams {
     visit(p.segment_s, {"segment_s", "s", 0.1, 100.0, "duration of one segment of motion"});
     visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 0.0, 1e3, "minimum rotation within a segment"});
     visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3,
-                           "a segment counts as explained if the rms velocity of its pivot is below this"});
+                           "maximum rms velocity of the pivot in a segment that counts as explained"});
     visit(p.noise_m_s, {"noise_m_s", "m/s", 1e-6, 1e3, "noise floor of the rms velocity"});
     visit(p.evidence_least,
           {"evidence_least", "1", 0.0, 1e6,
@@ -64,7 +64,7 @@ struct PivotCheckParams {
           {"scale_segments_least", "1", 2.0, 1e6, "minimum number of segments for a measurement of the gyro's scale"});
     visit(p.scale_share_least, {"scale_share_least", "1", 0.0, 1.0,
                                 "minimum share of the explained segments that measure the gyro's scale"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap between two samples ends the segment"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "maximum time between two samples of one segment"});
   }
 };
 

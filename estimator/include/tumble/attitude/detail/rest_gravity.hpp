@@ -64,7 +64,7 @@ class RestGravity {
       visit(p.rotation_least_rad,
             {"rotation_least_rad", "rad", 0.0, 1e3, "minimum rotation between two compared rests"});
       visit(p.span_most_s, {"span_most_s", "s", 0.1, 1e6, "maximum time between two compared rests"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples ends the rest"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples of one rest"});
       visit(p.accel_range_m_s2,
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }

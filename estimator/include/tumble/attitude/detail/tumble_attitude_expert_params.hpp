@@ -42,7 +42,7 @@ struct AttitudeRollingParams {
           {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
            "a slip starts when the velocity residual exceeds this value, and ends below half of this value"});
     visit(p.slip_quiet_s,
-          {"slip_quiet_s", "s", 0.0, 10.0, "a slip ends after the velocity residual has been small for this long"});
+          {"slip_quiet_s", "s", 0.0, 10.0, "duration of small velocity residuals after which a slip ends"});
     visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3,
                              "maximum duration of a slip; the rolling velocity is used again after this time"});
   }
@@ -60,8 +60,8 @@ struct AttitudeGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.least_s,
-          {"gap_least_s", "s", 1e-6, 1e4, "a longer time between two samples counts as a gap of the IMU data"});
+    visit(p.least_s, {"gap_least_s", "s", 1e-6, 1e4,
+                      "maximum time between two samples; a longer time counts as a gap of the IMU data"});
     visit(p.rate_walk_rad_s_sqrts,
           {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
     visit(p.velocity_walk_m_s_sqrts,

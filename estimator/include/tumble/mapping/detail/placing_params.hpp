@@ -76,9 +76,8 @@ struct RegistrationStagesParams {
     visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "coarse start: minimum number of matches"});
     visit(p.coarse_kernel_min_m,
           {"coarse_kernel_min_m", "m", 1e-6, 1e3, "coarse start: minimum width of the robust kernel"});
-    visit(p.coarse_rematch_m,
-          {"coarse_rematch_m", "m", 0.0, 10.0,
-           "coarse start: the plane of a point is searched again after the point has moved this far"});
+    visit(p.coarse_rematch_m, {"coarse_rematch_m", "m", 0.0, 10.0,
+                               "coarse start: distance that a point moves before its plane is searched again"});
     visit(p.coarse_step_m,
           {"coarse_step_m", "m", 1e-12, 1.0, "coarse start: position step below which the registration has converged"});
     visit(p.coarse_step_rad, {"coarse_step_rad", "rad", 1e-12, 1.0,
@@ -140,10 +139,10 @@ struct RelocalisationParams {
            "first increase of the initial saturation deficit; later tries use two, three and five times this value"});
     visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100,
                                "number of initial poses per sweep after a tracking failure, including the prior pose"});
-    visit(p.shift_m,
-          {"shift_m", "m", kShiftMin_m, 100.0, "maximum position offset of these initial poses in the first round"});
+    visit(p.shift_m, {"shift_m", "m", kShiftMin_m, 100.0,
+                      "maximum position offset of the initial poses from the prior pose in the first round"});
     visit(p.rotation_rad, {"rotation_rad", "rad", kRotationMin_rad, 3.15,
-                           "maximum rotation offset of these initial poses in the first round"});
+                           "maximum rotation offset of the initial poses from the prior pose in the first round"});
     visit(p.rounds, {"rounds", "1", 1, 100,
                      "number of rounds of initial poses; each round increases the maximum offsets by the same amount"});
   }

@@ -64,7 +64,8 @@ struct StandstillParams {
     visit(p.creep_max_m_s,
           {"creep_max_m_s", "m/s", 0.0, 100.0,
            "if no surface constrains the pose, an IMU that measures only gravity is at rest below this speed"});
-    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "number of consecutive sweeps after which this rest is accepted"});
+    visit(p.sweeps_min,
+          {"sweeps_min", "1", 1, 1e6, "number of consecutive sweeps at rest after which the rest is accepted"});
     visit(p.noise_share,
           {"noise_share", "1", 1e-9, 1.0,
            "standard deviations of the inertial prediction at rest, as a share of the standard deviations in motion"});

@@ -49,7 +49,7 @@ class SecondPass {
                         "calibration; 0: no second pass"});
       visit(p.lost_s,
             {"lost_s", "s", 0.0, 100.0,
-             "the second pass starts early, once, if no sweep was registered for this time; 0: no early start"});
+             "time without a registered sweep after which the second pass starts early, once; 0: no early start"});
       visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
       visit(p.sweeps, {"sweeps", "1", 2, 1000,
                        "number of sweeps that the second pass processes per new sweep; a larger value finishes earlier "

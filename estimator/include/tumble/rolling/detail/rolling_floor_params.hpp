@@ -37,7 +37,7 @@ struct RollingContactParams {
            FieldRank::basic});
     visit(p.rough_radius_walk_m_sqrts, {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0,
                                         "random walk of the effective rolling radius on a rough floor"});
-    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope when it begins"});
+    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope at its start"});
     visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
     visit(p.impact_share,
           {"impact_share", "1", 0.0, 1e3,
@@ -89,9 +89,9 @@ struct RollingModeParams {
           {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from rough to smooth floor"});
     visit(p.event_shortest_s,
           {"event_shortest_s", "s", 0.0, 10.0, "minimum duration of a slip or bump", FieldRank::basic});
-    visit(p.uncertain_m,
-          {"uncertain_m", "m", 1e-12, 1e3,
-           "an event is reported as uncertain if the horizontal standard deviation grows by more than this"});
+    visit(p.uncertain_m, {"uncertain_m", "m", 1e-12, 1e3,
+                          "growth of the horizontal standard deviation during an event, above which the event is "
+                          "reported as uncertain"});
   }
 };
 
