@@ -37,12 +37,9 @@ expect 'all pass' "$(outcome none --all)" "$(lines 'build passed' 'tests passed'
 expect 'one fails, the others run' "$(outcome threads --all --from sanitize)" "$(lines 'sanitize passed' 'threads FAILED' \
   'fuzz passed' 'lint passed' 'bench passed' 'failed : threads' 'exit 1')"
 expect 'no release build: nothing is tested in it' "$(outcome release --all | grep -c 'not run: no build')" 4
-expect 'as CI runs it' "$(outcome none)" "$(lines 'build passed' 'warnings passed' 'tests passed' 'exit 0')"
-expect 'as CI runs it, a build that fails' "$(outcome release)" "$(lines 'build FAILED' 'warnings passed' 'tests not run: no build' \
+expect 'as CI runs it' "$(outcome none)" "$(lines 'build passed' 'tests passed' 'exit 0')"
+expect 'as CI runs it, a build that fails' "$(outcome release)" "$(lines 'build FAILED' 'tests not run: no build' \
   'failed : build tests' 'exit 1')"
-expect 'as CI runs it, a warning of Clang' "$(outcome lint)" "$(lines 'build passed' 'warnings FAILED' 'tests passed' \
-  'failed : warnings' 'exit 1')"
-expect 'what CI asks the linter' "$(grep '^tools/lint' "$scratch/called")" 'tools/lint --warnings'
 expect 'an unknown stage' "$(outcome none --all --from nowhere)" 'exit 2'
 expect 'a stage without --all' "$(outcome none --from long)" 'exit 2'
 expect 'two stages as one' "$(outcome none --all --from 'tests long')" 'exit 2'
