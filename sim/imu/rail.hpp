@@ -15,8 +15,8 @@ namespace tumble::sim {
 ///   level after the signal has fallen below 90 % of the level.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
-///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`. The
-///   model excludes a saturation level that depends on temperature, and a device that stops permanently.
+///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
+/// The model excludes a saturation level that depends on temperature, and a device that stops permanently.
 class Rail {
  public:
   struct Params {

@@ -9,7 +9,7 @@
 /// Copies and decompresses chunks of ROS 1 bags. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// A chunk as stored in the file.
+/// Ros1Chunk is a chunk as stored in the file.
 struct Ros1Chunk {
   std::string compression;           ///< "none", "lz4", "bz2"
   std::uint32_t unpacked_bytes = 0;  ///< uncompressed size of its data
