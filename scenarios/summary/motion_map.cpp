@@ -11,14 +11,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// Margin of the grid around the points of the simulated runs, in decades.
+/// kMargin is the margin of the grid around the points of the simulated runs, in decades.
 constexpr double kMargin = 0.25;
 
 struct Decades {
   double rate, force;
 };
 
-/// One axis of the grid. Its numbers are in decades.
+/// GridAxis is one axis of the grid, with numbers in decades.
 struct GridAxis {
   double low = 0.0, step = 1.0;
   double width = 0.0;  ///< kernel width in cells

@@ -41,7 +41,8 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
   for (sim::SeriesRecord& series : sensors.series) series.T_BX.translation() += shift_m;
 }
 
-/// Rotates the stated mounting between primary IMU and lidar. The rotation replaces the mounting error in the scenario.
+/// Rotates the stated mounting between primary IMU and lidar. This rotation replaces the mounting error in the
+/// scenario.
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
   if (sensors.lidars.empty() || truth.lidars.empty())
@@ -51,7 +52,8 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU without changing its jitter. The shift replaces the time offset in the scenario.
+/// Shifts the clock of the primary IMU without changing its jitter. This shift replaces the time offset in the
+/// scenario.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
@@ -92,8 +94,8 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Changes the stated range relative to the true saturation level. Also removes the device's clip flags, which would
-/// reveal the true level.
+/// Changes the stated range relative to the true saturation level. The function also removes the device's clip flags,
+/// which would reveal the true level.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);

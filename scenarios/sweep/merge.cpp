@@ -43,7 +43,7 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// Joins the version notes of external methods with the methods' rows. Rejects two versions of one method.
+/// Joins the version notes of external methods with the methods' rows. The merge rejects two versions of one method.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -81,14 +81,14 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
-/// Returns the keep rule that all inputs share. Empty if the rules differ.
+/// Returns the keep rule that all inputs share, or an empty text if the rules differ.
 std::string common_rule(const std::vector<Notes>& notes) {
   const std::string rule = text_of(notes.front(), kKeepNote);
   const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
   return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
 }
 
-/// Removes a newly created database if the merge fails.
+/// Made removes a newly created database if the merge fails.
 class Made {
  public:
   explicit Made(const fs::path& path) : path_(path), is_new_(!fs::exists(path)) {}

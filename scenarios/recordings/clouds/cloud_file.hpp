@@ -33,7 +33,7 @@ inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 /// more than 2^26 points or impossible columns, or if its content contradicts KITTI's columns.
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
-/// Content of a PLY or PCD header.
+/// CloudHeader is the content of a PLY or PCD header.
 struct CloudHeader {
   std::uint64_t points = 0;
   std::uint64_t point_bytes = 0;  ///< 0 for text
@@ -44,7 +44,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// These functions read and check only the header. They throw BadInput like read_cloud.
+/// These functions read and check only the header of a point file. Both functions throw BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 
