@@ -9,11 +9,11 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
+/// paths.hpp computes paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
 namespace tumble::tools {
 
-/// Path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass of another
-/// robot.
+/// Path is the path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass
+/// of another robot.
 struct Path {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> points_W_m;
@@ -42,8 +42,9 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
 /// estimate would fill the whole picture.
 Path near_truth(const Path& path, const Path& truth);
 
-/// First and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval is widened by
-/// `margin_s` on each side and limited to the time of the truth. Without motion, the interval is the whole truth.
+/// Span contains the first and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval is
+/// widened by `margin_s` on each side and limited to the time of the truth. Without motion, the interval is the whole
+/// truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

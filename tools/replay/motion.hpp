@@ -9,11 +9,12 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Motion of the body by the truth or by an estimate, in one common world frame.
+/// motion.hpp computes the motion of the body by the truth or by an estimate, in one common world frame.
 namespace tumble::tools {
 
-/// Poses of the body B in W at increasing instants. Positions are interpolated linearly and attitudes by slerp. The
-/// pose is undefined outside the samples, and in gaps of more than half a second or four usual steps.
+/// Motion contains poses of the body B in W at increasing instants. Between samples, positions are interpolated
+/// linearly and attitudes by slerp. The pose is undefined outside the samples, and in gaps of more than half a second
+/// or four usual steps.
 class Motion {
  public:
   Motion() = default;
@@ -23,7 +24,7 @@ class Motion {
   bool empty() const { return time_ns_.empty(); }
   std::int64_t begin_ns() const { return time_ns_.front(); }
   std::int64_t end_ns() const { return time_ns_.back(); }
-  /// Returns the interpolated pose. The cost is O(log N).
+  /// Returns the interpolated pose. Cost: O(log N).
   std::optional<Eigen::Isometry3d> at(std::int64_t time_ns) const;
 
  private:

@@ -6,7 +6,8 @@
 #include "tools/replay/motion.hpp"
 #include "tools/replay/replay.hpp"
 
-/// Lidar returns that a replay shows, and their distance to the true surface when a motion is used to transform them.
+/// points.hpp provides the lidar returns that a replay shows, with their distance to the true surface for a given
+/// motion.
 namespace tumble::tools {
 
 /// Selects at most `most` returns of the first lidar, spread evenly over its sweeps and beams. Return i is selected if
