@@ -47,7 +47,7 @@ class Silence {
 
 enum class Scalar : std::uint8_t { float64, float32, int64, int32, uint64, uint32, uint16, uint8 };
 
-/// Memory layout of a row of a std::vector: `columns` scalars without padding.
+/// RowLayout is the memory layout of a row of a std::vector: `columns` scalars without padding.
 template <class Row>
 struct RowLayout;
 template <Scalar kScalarOfRow, std::size_t kColumns>

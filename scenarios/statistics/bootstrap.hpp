@@ -9,11 +9,11 @@
 
 namespace tumble::scenarios {
 
-/// Computes bootstrap intervals for the median of samples of one size, statistics.md (S1) to (S4). The intervals are
-/// bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks of a resample's middle values do not
-/// depend on the values. The ranks are therefore drawn once, instead of resampling n values. For a given sample size,
-/// the resamples are equal on every machine. The constructor evaluates `resamples` inverse beta functions; an interval
-/// costs O(resamples log resamples).
+/// MedianBootstrap computes bootstrap intervals for the median of samples of one size, statistics.md (S1) to (S4). The
+/// intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks of a resample's middle
+/// values do not depend on the values. The ranks are therefore drawn once, instead of resampling n values. For a given
+/// sample size, the resamples are equal on every machine. The constructor evaluates `resamples` inverse beta functions;
+/// an interval costs O(resamples log resamples).
 class MedianBootstrap {
  public:
   /// Throws BadInput if `size` is 0 or `resamples` is below 100.

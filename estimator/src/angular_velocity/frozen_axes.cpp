@@ -19,7 +19,7 @@ constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
 // A body is at rest if the rate of another axis and the change of the specific force are below these limits.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
-// kRestMost is the largest reading of a working axis at rest, caused by bias and gravity.
+// kRestMost_rad_s and kRestMost_m_s2 are the largest readings of a working axis at rest, caused by bias and gravity.
 constexpr double kRestMost_rad_s = 1.0, kRestMost_m_s2 = 15.0;
 
 constexpr bool is_gyro(std::size_t channel) {

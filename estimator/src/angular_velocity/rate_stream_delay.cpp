@@ -36,8 +36,8 @@ bool repeats_readings(const RateStream::State& state) {
          state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
-// Integral of the norm of the specific force around a sample of the window. Between readings, the norm is linear.
-// Before the first and after the last reading, the norm is constant.
+// ForceAbout integrates the norm of the specific force around a sample of the window. Between readings, the norm is
+// linear. Before the first and after the last reading, the norm is constant.
 class ForceAbout {
  public:
   ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {

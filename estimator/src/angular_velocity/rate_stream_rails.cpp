@@ -56,8 +56,8 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// The samples with the gyro readings before and after a sample's own reading. If there is no such reading in the
-// window, the pointer is null.
+// Beside contains the samples with the gyro readings before and after a sample's reading. If there is no such reading
+// in the window, the pointer is null.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };

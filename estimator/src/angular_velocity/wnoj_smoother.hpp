@@ -11,7 +11,8 @@
 
 namespace tumble {
 
-/// Smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of samples.
+/// WnojSmoother smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of
+/// samples.
 ///
 /// The state at each sample (knot) consists of angle, rate and angular acceleration. The motion prior between samples
 /// is that of Tang, Yoon and Barfoot (RA-L 2019). The prior has a transition matrix Phi and process noise Q of order

@@ -11,8 +11,8 @@ namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// Computes A^-1 B in place for positive definite A, by Cholesky factorisation. If A is not positive definite, `ok()`
-/// returns false and the results are undefined.
+/// Cholesky computes A^-1 B in place for positive definite A, by Cholesky factorisation. If A is not positive definite,
+/// `ok()` returns false and the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);

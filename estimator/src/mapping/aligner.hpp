@@ -17,8 +17,9 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Registers a sweep to the map in stages. The verdict of `found` states whether the registration succeeded. After
-/// success, `trajectory` is the registered motion. After a failure, `trajectory` is the motion of the failed attempt.
+/// Aligner registers a sweep to the map in stages. The verdict of `found` states whether the registration succeeded.
+/// After success, `trajectory` is the registered motion. After a failure, `trajectory` is the motion of the failed
+/// attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);

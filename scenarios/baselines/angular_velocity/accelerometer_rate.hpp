@@ -13,8 +13,8 @@
 
 namespace tumble::baselines {
 
-/// Estimates angular rates from several accelerometers at known positions (gyro-free inertial system), by an extended
-/// Kalman filter.
+/// AccelerometerRate estimates angular rates from several accelerometers at known positions (gyro-free inertial
+/// system), by an extended Kalman filter.
 ///
 /// The filter state contains the angular rate and the angular acceleration, driven by white jerk. The measurement is
 /// the difference of the specific force between each auxiliary IMU and the primary IMU: alpha x p + w x (w x p). The

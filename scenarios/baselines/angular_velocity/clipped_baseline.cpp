@@ -108,8 +108,8 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// Models the rate of one axis as a linear Gaussian process. The process model ignores clipped readings, unless `bounds`
-// adds one Gaussian factor per clipped sample.
+// Chain models the rate of one axis as a linear Gaussian process. The process model ignores clipped readings, unless
+// `bounds` adds one Gaussian factor per clipped sample.
 template <typename Process>
 class Chain {
  public:

@@ -12,7 +12,7 @@
 
 namespace tumble::baselines {
 
-/// Estimates clipped angular rates from the gyro alone, with one of three models of the hidden rate.
+/// ClippedBaseline estimates clipped angular rates from the gyro alone, with one of three models of the hidden rate.
 ///
 /// ClippedBaseline estimates each gyro axis independently. The estimate is limited to the range from the saturation
 /// level to a maximum rate. ClippedBaseline ignores the accelerometer.

@@ -12,9 +12,9 @@
 
 namespace tumble::baselines {
 
-/// Estimates angular rates between standstills with an inertial navigation filter and a backward smoothing pass. At
-/// rest the filter applies zero-velocity and zero-rate updates. The smoother distributes the rotation lost to
-/// saturation over the clipped samples between two rests.
+/// StandstillSmoother estimates angular rates between standstills with an inertial navigation filter and a backward
+/// smoothing pass. At rest the filter applies zero-velocity and zero-rate updates. The smoother distributes the
+/// rotation lost to saturation over the clipped samples between two rests.
 ///
 /// The error state has 12 elements: attitude, velocity, rate and angular acceleration. The filter integrates the
 /// specific force and models the rate as a Matern 3/2 process: white angular jerk over short times, bounded rate over

@@ -26,10 +26,10 @@ struct AutogainGains {
   double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
 };
 
-/// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). The
-/// filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the
-/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The filter estimates
-/// neither bias nor heading.
+/// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
+/// 2-5). The filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight
+/// falls with the rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The
+/// filter estimates neither bias nor heading.
 class Autogain {
  public:
   struct Params {

@@ -9,8 +9,8 @@
 
 namespace tumble::baselines {
 
-/// Estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The
-/// specific force measures the up direction. The textbook form of the filter is that of J. Sola, arXiv 1711.02508,
+/// Eskf estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias.
+/// The specific force measures the up direction. The textbook form of the filter is that of J. Sola, arXiv 1711.02508,
 /// sections 5-7, but with the error in world axes.
 ///
 /// The filter models body acceleration as zero-mean white noise on the force. The filter uses the unnormalised force

@@ -16,12 +16,13 @@
 
 namespace tumble::baselines {
 
-/// Estimates trajectory and map from given rates with the published mapping chain (Deschenes et al., ICRA 2024, with
-/// the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer odometry
-/// estimates position with velocity feedback from registration. The chain deskews each sweep, weights its points by
-/// time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers to the
-/// start of the sweep, or to the common time of the sweep's points. The published chain adds points only where the map
-/// is empty. A parameter switches each known error of the published chain; the defaults are those of the launch files.
+/// PublishedChain estimates trajectory and map from given rates with the published mapping chain (Deschenes et al.,
+/// ICRA 2024, with the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer
+/// odometry estimates position with velocity feedback from registration. The chain deskews each sweep, weights its
+/// points by time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers
+/// to the start of the sweep, or to the common time of the sweep's points. The published chain adds points only where
+/// the map is empty. A parameter switches each known error of the published chain; the defaults are those of the launch
+/// files.
 class PublishedChain {
  public:
   struct Params {

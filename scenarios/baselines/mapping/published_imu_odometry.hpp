@@ -11,9 +11,9 @@
 
 namespace tumble::baselines {
 
-/// Computes attitude by Madgwick's filter and position from the accelerometer, in the odometry frame "odom".
-/// PublishedChain uses this odometry for deskewing and as the registration prior. The estimated position is constant
-/// until the first velocity feedback.
+/// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
+/// frame "odom". PublishedChain uses this odometry for deskewing and as the registration prior. The estimated position
+/// is constant until the first velocity feedback.
 class PublishedImuOdometry {
  public:
   /// `rates` contains one angular rate per sample, which replaces the gyro. `samples` must outlive this object.

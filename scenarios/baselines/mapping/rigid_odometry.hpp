@@ -16,9 +16,9 @@
 
 namespace tumble::baselines {
 
-/// Registers sweeps to a map, with a motion model that the caller supplies. RigidOdometry deskews each sweep once, to
-/// its end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar odometries differ in
-/// the motion model (`Motion`) and in how they use the registered pose; the caller chooses both.
+/// RigidOdometry registers sweeps to a map, with a motion model that the caller supplies. RigidOdometry deskews each
+/// sweep once, to its end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar
+/// odometries differ in the motion model (`Motion`) and in how they use the registered pose; the caller chooses both.
 ///
 /// RigidOdometry neglects motion errors within the sweep, mounting errors and clock offsets, and does not recover after
 /// a tracking failure.

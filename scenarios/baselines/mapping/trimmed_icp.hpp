@@ -14,10 +14,10 @@
 
 namespace tumble::baselines {
 
-/// Aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per point. The
-/// registration determines the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips et al.,
-/// 2007, with lambda). The registration weights each match by the inverse variances of both points. Each iteration
-/// solves normal equations for small angles.
+/// TrimmedIcp aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per
+/// point. The registration determines the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips
+/// et al., 2007, with lambda). The registration weights each match by the inverse variances of both points. Each
+/// iteration solves normal equations for small angles.
 ///
 /// The registration result has no measure of observability. If a direction is unobservable, as in a corridor, the
 /// registration still reports success. LidarInertialOdometry, in contrast, detects unobservable directions. The cost of

@@ -10,11 +10,12 @@
 
 namespace tumble::baselines {
 
-/// Estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated accelerometer
-/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only during rotation. The
-/// filter limits the integrated acceleration to slightly more than the rolling velocity, then averages both. Only the
-/// sign of the integral matters, so the estimated path of a sphere that rolls without slip is up to half too short.
-/// AutogainFusion is a baseline for comparisons; its options select the variants of the paper and of the authors' code.
+/// AutogainFusion estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated
+/// accelerometer (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only during
+/// rotation. The filter limits the integrated acceleration to slightly more than the rolling velocity, then averages
+/// both. Only the sign of the integral matters, so the estimated path of a sphere that rolls without slip is up to half
+/// too short. AutogainFusion is a baseline for comparisons; its options select the variants of the paper and of the
+/// authors' code.
 class AutogainFusion {
  public:
   struct Params {

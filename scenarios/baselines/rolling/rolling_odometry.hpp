@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Computes the position of a rolling sphere's centre G from the angular velocity. The velocity is v = r w_W x n on a
-/// plane with normal n, integrated by the trapezoid rule. The position is exact without slip; RollingOdometry does not
-/// detect slip, sliding and height changes.
+/// RollingOdometry computes the position of a rolling sphere's centre G from the angular velocity. The velocity is v =
+/// r w_W x n on a plane with normal n, integrated by the trapezoid rule. The position is exact without slip;
+/// RollingOdometry does not detect slip, sliding and height changes.
 class RollingOdometry {
  public:
   struct Params {

@@ -11,8 +11,8 @@
 
 namespace tumble::baselines {
 
-/// Estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of the contact
-/// point: v = r w x n + u.
+/// SlipObserver estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of
+/// the contact point: v = r w x n + u.
 ///
 /// Without slip, the acceleration of the sphere's centre is r w' x n. The residual e is the measured acceleration minus
 /// r w' x n over a window of 11 samples. A slip event starts when e is large. During a slip event, the observer

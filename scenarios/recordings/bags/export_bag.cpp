@@ -108,7 +108,7 @@ std::vector<SensorNames> names_of_lidars(const sim::Sensors& sensors, const std:
   return out;
 }
 
-/// Writes a recording to a bag.
+/// Export writes a recording to a bag.
 class Export {
  public:
   Export(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag)
