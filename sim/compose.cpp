@@ -57,8 +57,8 @@ int count_pairs(const mjModel& model) {
 }
 
 /// Returns whether the robot has one geom, and MuJoCo's bounding-volume tree gives the contacts in the order of a test
-/// of every pair. The bounding-volume tree sorts contacts by the first geom of a pair. The first geom of a pair is that
-/// with the lower type number.
+/// of every pair. The bounding-volume tree sorts contacts by the first geom of a pair. The first geom of a pair is the
+/// one with the lower type number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {

@@ -50,8 +50,8 @@ struct BenchCell {
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// BenchWins is the number of simulated runs on which `result` is better than `baseline`. Only runs that count for both
-/// methods are included.
+/// BenchWins is the number of simulated runs on which `result` is better than `baseline`. BenchWins counts only runs
+/// that count for both methods.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

@@ -106,7 +106,8 @@ class Shrinking {
   }
 
  private:
-  /// Finds the first single input whose truth removes the original failure. The last trial replaces all inputs.
+  /// Finds the first single input whose truth removes the original failure. The last trial replaces all inputs by their
+  /// truth.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),

@@ -178,8 +178,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. This effect is 6e-8 for a
-  // simple pendulum, and about fifty times larger for the higher modes.
+  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect of the amplitude is
+  // 6e-8 for a simple pendulum, and about fifty times larger for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",

@@ -15,7 +15,7 @@
 // wand, x is 0.003 to 0.009 (0.005 to 0.010). The offset of the planes changes with the bias from day to day.
 //
 // Wand, y: Test06 trial 1 has 39 and 42 readings at the two limits, and the residual is 0.004 (0.014). Because only one
-// recording exists, the interval is three standard errors. This interval includes planes from more readings at the ends
+// recording exists, the interval is three standard errors. The interval includes planes from more readings at the ends
 // of the saturated intervals.
 //
 // Pendulum, z: the third segment saturates in Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07

@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// kAgrees is the largest accepted error relative to the median rotation. Above kAgrees, lidar and gyro do not measure
-/// the same motion. The relative error of the lidar's rotation is about 0.1.
+/// kAgrees is the largest accepted error relative to the median rotation. If the error is larger, lidar and gyro do not
+/// measure the same motion. The relative error of the lidar's rotation is about 0.1.
 constexpr double kAgrees = 0.3;
 /// A correction of the gyro is only reported if the remaining error is below this fraction of the original error.
 /// kConclusive applies to units and axes, and kDelayConclusive applies to a delay.

@@ -17,8 +17,8 @@ struct ProbableDevice {
 };
 
 /// Detects the data sheet of a lidar. A spinning lidar is detected from the number and the elevations of its rings:
-/// each ring must be within half a degree of a beam of the data sheet. Otherwise, the name of the sensor must contain
-/// the name of the device ("livox_mid360"). The lidar points must be in memory.
+/// each ring must be within half a degree of a beam of the data sheet. For other lidars, the name of the sensor must
+/// contain the name of the device ("livox_mid360"). The lidar points must be in memory.
 std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std::span<const DataSheet> sheets);
 
 /// Detects the data sheet of an IMU. The name of the sensor must contain the name of the device, or the name of the

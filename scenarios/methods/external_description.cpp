@@ -167,7 +167,7 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// Returns the kind of the only method function in the text. Without such a function, the result is the kind of a
+/// Returns the kind of the only method function in the text. Without a method function, the result is the kind of a
 /// matching assignment.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");

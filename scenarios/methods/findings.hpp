@@ -46,8 +46,8 @@ inline constexpr std::array kAllFindings = {
     HealthFinding::About::beyond_range, HealthFinding::About::digest,         HealthFinding::About::learnt_rig,
     HealthFinding::About::unit_frozen,  HealthFinding::About::unit_disagrees, HealthFinding::About::unit_silent};
 
-/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. Only this
-/// function defines keys of failed checks.
+/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. Only
+/// row_of() defines keys of failed checks.
 std::string row_of(const HealthFinding& finding);
 
 /// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. The new failed check

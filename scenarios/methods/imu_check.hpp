@@ -30,8 +30,8 @@ void check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, 
 /// or gravity.
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
-/// Adds the covariance of suspect rates (suspect_covariance) to the estimate's rates. Only batch methods may call this
-/// function, because the results of a live or lagged method must not depend on later readings.
+/// Adds the covariance of suspect rates (suspect_covariance) to the estimate's rates. Only batch methods may call
+/// inflate_rates(), because the results of a live or lagged method must not depend on later readings.
 void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

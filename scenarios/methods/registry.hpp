@@ -84,7 +84,7 @@ struct KnownMotion {
 /// SlamChain contains the options of the lidar-inertial chain.
 struct SlamChain {
   /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. With calibration, the chain processes
-  /// the recording twice. The second pass starts from the calibration of the first pass.
+  /// the recording twice. The second pass over the recording starts from the calibration of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   /// OracleInput::on_sweep

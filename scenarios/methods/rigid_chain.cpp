@@ -29,8 +29,8 @@ TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
   return samples.size() > 1 ? 2 * samples[0].time_ns - samples[1].time_ns : samples[0].time_ns;
 }
 
-/// Calls `add(k, from, to)` for each IMU averaging window that overlaps the interval. The first window is extended back
-/// to the start of the interval.
+/// Calls `add(k, from, to)` for each IMU averaging window that overlaps the interval. The first averaging window is
+/// extended back to the start of the interval.
 template <typename Add>
 void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_ns, Add add) {
   const auto first = std::upper_bound(samples.begin(), samples.end(), from_ns,

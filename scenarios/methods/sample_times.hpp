@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
 /// Calls `run` with the sensor data without the samples that OutlierFilter rejects. The health counts rejected samples
-/// in `rejected_readings`, if there are any. Without outliers, `run` receives `sensors`, otherwise a copy.
+/// in `rejected_readings`, if there are any. If there are no outliers, `run` receives `sensors`, otherwise a copy.
 Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
 /// Wraps a RunCore with the correction of sample times and the removal of outliers. Oracles and the methods of tumble

@@ -68,7 +68,8 @@ class SettingsTable {
   std::size_t first_rows() const { return first_rows_; }
   /// Returns true for integer parameters: counts, switches and choices.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Returns whether the recording states the parameter's value. Only a user's value overrides the recording.
+  /// Returns whether the recording states the parameter's value. Only a value that the user sets overrides the
+  /// recording.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
   /// Returns every number of the `Params` struct, taken from `values`, by the library's names.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;

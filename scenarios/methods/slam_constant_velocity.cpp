@@ -17,8 +17,8 @@ constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
 /// ConstantVelocity predicts that the last change of pose repeats, in translation and rotation. ConstantVelocity uses
-/// the IMU only for the times of the poses and the initial vertical, which the scores need. Without an IMU, the body is
-/// assumed upright at the start.
+/// the IMU only for the times of the poses and the initial vertical, which the scores need. Without an IMU,
+/// ConstantVelocity assumes that the body is upright at the start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {

@@ -29,8 +29,8 @@ void require_own_kind(const std::string& format, const std::filesystem::path& ou
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Function that adds estimates to a bag (scenarios/exchange); may be empty. The first argument of this function is
-  /// the sensors; their points and truth are on disk.
+  /// Function that adds estimates to a bag (scenarios/exchange); may be empty. The sensors that the function receives
+  /// have their points and truth on disk.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`: frame of the written true poses, as in true_mounting
 };

@@ -14,8 +14,8 @@
 namespace tumble::scenarios {
 
 /// kLeftOutShareMax is the largest fraction of the readings or clouds of one sensor that is left out as faulty. Single
-/// faults of drivers, buses and files stay below this limit. A wrong clock, unit or layout affects most items, so the
-/// recording is refused.
+/// faults of drivers, buses and files affect a smaller fraction of the items. A wrong clock, unit or layout affects
+/// most items, so the recording is refused.
 inline constexpr double kLeftOutShareMax = 0.05;
 /// A sensor with at least kLeftOutOneOf items may lose one item, even if one item exceeds kLeftOutShareMax.
 inline constexpr std::size_t kLeftOutOneOf = 5;
@@ -65,11 +65,11 @@ class LeftOut {
   std::size_t faulty_ = 0, unlimited_ = 0;
 };
 
-/// Returns which stamps to keep, such that the kept stamps increase. The function drops as few stamps as possible
-/// (longest increasing subsequence); of several choices, it keeps early stamps. If there are at least ten stamps, a
-/// first or last stamp may also be dropped. The first or last stamp is dropped if its distance from the remaining
-/// stamps exceeds their duration. A few stamps at either end are dropped if the gap also exceeds a day. Stamps from
-/// before a clock was set have such gaps. O(N log N), or O(N) for stamps that increase.
+/// Returns for each stamp whether to keep it, so that the kept stamps increase. The function drops as few stamps as
+/// possible (longest increasing subsequence); of several choices, it keeps early stamps. If there are at least ten
+/// stamps, a first or last stamp may also be dropped. The first or last stamp is dropped if its distance from the
+/// remaining stamps exceeds their duration. A few stamps at either end are dropped if the gap also exceeds a day.
+/// Stamps from before a clock was set cause gaps of more than a day. O(N log N), or O(N) for stamps that increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// Removes the elements of `rows` for which `kept` is false. A list of another length, for data that the sensor lacks,

@@ -35,8 +35,8 @@ struct RecordingInfo {
 /// recording. kExportOrigin_ns is 1 000 000 000 s after 1970, because ROS treats a stamp of 0 as unset.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
-/// Returns the stamp of time 0 in every export of a recording. The stamp is `origin_ns`, or kExportOrigin_ns if
-/// `origin_ns` is unknown or before 1970, because bags cannot store such stamps.
+/// Returns the stamp of time 0 in every export of a recording. The export stamp is `origin_ns`, or kExportOrigin_ns if
+/// `origin_ns` is unknown or before 1970, because bags cannot store earlier stamps.
 inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
   return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
 }

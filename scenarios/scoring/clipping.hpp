@@ -19,16 +19,16 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// The saturation deficit of element j is row j of the misalignment matrix M times the unclipped minus the delivered
 /// reading. The unclipped reading has the errors of the delivered reading but no saturation. Element j is beyond its
 /// saturation level if the deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white
-/// noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s. Smaller deficits do not matter for the scores.
+/// noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s. The scores ignore smaller saturation deficits.
 ///
-/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes. This
-/// change is the deficit times entries of the inverse of M. An axis has a cross-axis error if another element changes
-/// its reading by more than the tolerance while its own element is unsaturated. An axis with a cross-axis error does
-/// not count as clipped.
+/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes. A
+/// saturated element changes the other readings by the deficit times entries of the inverse of M. An axis has a
+/// cross-axis error if another element changes its reading by more than the tolerance while its own element is
+/// unsaturated. An axis with a cross-axis error does not count as clipped.
 ///
 /// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
-/// In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Cross-axis errors
-/// are unknown in this case. Samples without a reference rate are not scored.
+/// With a reference, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Cross-axis
+/// errors are unknown with a reference. Samples without a reference rate are not scored.
 class ClippingTruth {
  public:
   struct Sample {

@@ -14,9 +14,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the time up to which sweeps enter the comparison. This time is a quarter of a period after the end of the
-// last sweep that the primary IMU covers completely. If the IMU covers a sweep in part, some methods drop the sweep and
-// others shorten it.
+// Returns the time up to which sweeps enter the comparison. The comparison ends a quarter of a period after the end of
+// the last sweep that the primary IMU covers completely. If the IMU covers a sweep in part, some methods drop the sweep
+// and others shorten it.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
@@ -42,7 +42,7 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
-// Computes the start and end poses of the end error. Returns false if the estimate has no such poses.
+// Computes the start and end poses of the end error. Returns false if the estimate has no start or end pose.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // external trajectory

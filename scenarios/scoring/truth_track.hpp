@@ -30,7 +30,7 @@ class TruthTrack {
   std::int64_t last_ns() const { return last_ns_; }
   /// Returns true if the pose is known at this time. The poses of a reference can have gaps.
   bool covers(std::int64_t time_ns) const;
-  /// Returns true if the attitude is known at this time. The position may be unknown at this time.
+  /// Returns true if the attitude is known at this time. The position may be unknown although the attitude is known.
   bool covers_attitude(std::int64_t time_ns) const;
 
   /// Returns the pose of the frame in W and the velocity of its origin, with NaN where the position is unknown. The

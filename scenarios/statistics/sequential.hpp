@@ -7,8 +7,8 @@
 namespace tumble::scenarios {
 
 /// Returns the part of a two-sided risk that one side may have used after the fraction `share` in [0, 1] of all
-/// simulated runs. This part is almost zero at first and half of `risk` at the end. The spending function is that of
-/// Lan and DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, statistics.md (S13).
+/// simulated runs. The spent part of the risk is almost zero at first and half of `risk` at the end. The spending
+/// function is that of Lan and DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, statistics.md (S13).
 double spent_by(double risk, double share);
 
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations

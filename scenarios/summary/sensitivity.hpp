@@ -61,7 +61,7 @@ struct SensitivityOptions {
 };
 
 /// kSensitivityDrawsMin is the minimum number of simulated runs for a row of the table; kSensitivityFailuresMin is the
-/// minimum number of failures, and of successes, for the row "not ok". Below 24 simulated runs, only the rank
+/// minimum number of failures, and of successes, for the row "not ok". With fewer than 24 simulated runs, only the rank
 /// correlation is used.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 

@@ -43,8 +43,8 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 /// Throws BadInput with the reason if a method does not apply to a scenario.
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed. Otherwise
-/// `outcome` stays ok and can be scored. The first score is the estimate's CPU time.
+/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed. Without an error,
+/// `outcome` stays ok and can be scored. The first score of a method is the estimate's CPU time.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
 /// Adds verdict and scores of a completed estimate. `surface` may be null.

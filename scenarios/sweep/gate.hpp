@@ -100,8 +100,8 @@ struct GateResult {
 /// Compares new results with the gate. Throws BadInput if the seeds differ or the accepted results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Such results must not become
-/// accepted results.
+/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Results without an ok outcome
+/// must not become accepted results.
 void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

@@ -41,8 +41,7 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
   for (sim::SeriesRecord& series : sensors.series) series.T_BX.translation() += shift_m;
 }
 
-/// Rotates the stated mounting between primary IMU and lidar. This rotation replaces the mounting error in the
-/// scenario.
+/// Rotates the stated mounting between primary IMU and lidar. The rotation replaces the mounting error in the scenario.
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
   if (sensors.lidars.empty() || truth.lidars.empty())
@@ -52,8 +51,8 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU without changing its jitter. This shift replaces the time offset in the
-/// scenario.
+/// Shifts the clock of the primary IMU without changing its jitter. The shift of the clock replaces the time offset in
+/// the scenario.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));

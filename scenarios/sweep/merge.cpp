@@ -29,8 +29,7 @@ std::string text_of(const Notes& notes, const std::string& key) {
   return found == notes.end() ? std::string() : found->second;
 }
 
-/// Throws BadInput if outcomes come from different programs, models or scenarios, because such outcomes are not
-/// comparable.
+/// Throws BadInput if outcomes come from different programs, models or scenarios, and are therefore not comparable.
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
   const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
                                                          {"data", "was made from models and scenarios"}};
@@ -71,7 +70,7 @@ void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Reads the notes of all inputs before any merge. Only one input is open at a time.
+/// Reads the notes of all inputs before any merge. Only one input database is open at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {

@@ -20,8 +20,8 @@ struct RunKey {
 };
 RunKey key_of(const Outcome& outcome);
 
-/// These functions return the keys of the notes that a sweep stores for reproduction. These notes contain the
-/// description file of an external method and the path of a recording.
+/// These functions return the keys of the notes that a sweep stores for reproduction. The notes for reproduction
+/// contain the description file of an external method and the path of a recording.
 std::string description_note(const std::string& kind, const std::string& method);
 std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);

@@ -82,7 +82,7 @@ struct SweepOptions {
   Keep keep;                         ///< which runs are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
   /// Simulates without lidars if the built-in methods of the suite read no lidar. Estimates and scores are unchanged
-  /// without lidars, but the recording's digest differs. This option cannot be combined with `keep`.
+  /// without lidars, but the recording's digest differs. The option recordings_unseen cannot be combined with `keep`.
   bool recordings_unseen = false;
 };
 

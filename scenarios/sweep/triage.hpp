@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording has no such input or if
+  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording lacks this input or if
   /// the input is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
@@ -46,9 +46,9 @@ struct TriageOptions {
 };
 
 /// Runs a method on the unmodified sensor data, then with each input replaced by its truth, in separate processes. All
-/// runs are scored against one truth and the original sensor data. The first result is that of the unmodified sensor
-/// data. Errors that no true input removes come from the method or the scenario. Throws the exceptions of simulate_draw
-/// for the simulation, and BadInput if the method does not apply to the scenario.
+/// runs are scored against one truth and the original sensor data. The first triage result is that of the unmodified
+/// sensor data. Errors that no true input removes come from the method or the scenario. Throws the exceptions of
+/// simulate_draw for the simulation, and BadInput if the method does not apply to the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

@@ -16,9 +16,9 @@ namespace tumble::scenarios {
 /// are three sorts of keys.
 ///
 /// - A key such as `world.rock_count` or `sensors.imu.output_rate_hz` is a number of the scenario (fixed_number.hpp).
-///   Each value of such a key needs a new simulation.
+///   Each value of a scenario number needs a new simulation.
 /// - A key such as `given.lever_arm_error_m` is an error in the methods' input (given_errors.hpp). One simulation
-///   serves all values of such a key.
+///   serves all values of an input error.
 /// - A key such as `rate/saave.jerk_psd_rad2_s5` is a parameter of one method. One simulation serves all values, and
 ///   only the method with the parameter is repeated.
 struct Variation {

@@ -15,8 +15,8 @@ namespace tumble::sim {
 /// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix, so the reading is
 /// y = M^-1 (c(s) - o). Saturation of sensing elements has these consequences:
 /// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
-/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. This saturation
-///   limit is a plane in the readings, tilted against the axes, and different for the two signs.
+/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturation limit
+///   is a plane in the readings, tilted against the axes, and different for the two signs.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
 ///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i.
 /// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of

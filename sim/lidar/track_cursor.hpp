@@ -16,8 +16,9 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the
 /// body's position is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5
-/// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. Beyond the last motion
-/// sample, the last interval is extrapolated. The current interval is cached, so that ascending times are fast.
+/// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. After the last motion
+/// sample, TrackCursor extrapolates the last interval. The current interval is cached, so that ascending times are
+/// fast.
 class TrackCursor {
  public:
   /// Interval is the time between two samples of the motion. At the fraction `x` of the interval, the body has rotated

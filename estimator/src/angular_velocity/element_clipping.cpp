@@ -53,9 +53,9 @@ bool lopsided(const RailPlane& rail) {
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two finders of saturation planes, one with and one without a stated range. The first finder uses the stated
-// range, or the range of the axis-aligned saturation levels if the data sheet states none. The second finder searches
-// for saturation planes without a range.
+// Returns two finders of saturation planes, one with and one without a stated range. The first of the two plane finders
+// uses the stated range, or the range of the axis-aligned saturation levels if the data sheet states none. The second
+// plane finder searches for saturation planes without a range.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;

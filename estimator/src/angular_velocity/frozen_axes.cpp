@@ -136,7 +136,7 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
 }
 
 /// Returns whether the other axes of the triad change by far more than one quantisation step of the tested axis. The
-/// other axes must change in at least a fraction `changing_share` of the samples.
+/// test needs changes of the other axes in at least a fraction `changing_share` of the samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.smallest_change);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -40,7 +40,7 @@ constexpr double kToleranceShare = 2e-3;
 
 // Returns whether the intercept of a saturation plane is known to two standard deviations within the next run's
 // tolerance. If two sensing elements only clip together, the readings do not determine the cross-axis sensitivity
-// between them. In this case the intercept of the saturation plane is also unknown.
+// between them. The intercept of the saturation plane is then unknown too.
 bool reported_level(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;

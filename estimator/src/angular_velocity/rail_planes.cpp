@@ -155,8 +155,8 @@ struct SideSearch {
   }
 
   // Searches the saturation plane of one sign of a sensing element. The search starts near the element's sensing
-  // direction if the direction is known. Otherwise the search starts near zero cross-axis sensitivities, or near the
-  // sensitivities of an earlier run.
+  // direction if the direction is known. If the direction is unknown, the search starts near zero cross-axis
+  // sensitivities, or near the sensitivities of an earlier run.
   Side look(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rate_model_errors.cpp contains the part of RateModel that protects the calibration from contact and corrects sensor
-// errors. This part also sums the information about sensor errors and computes the reported covariance.
+// errors. rate_model_errors.cpp also sums the information about sensor errors and computes the reported covariance.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {

@@ -132,7 +132,7 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 }
 
 // The readings clearly contradict the data sheet if the odds of a device that matches the sheet are below kPlainOdds.
-// Above kPlainOdds, a mixture of a calibrated and an uncalibrated device represents the uncertainty.
+// At higher odds, a mixture of a calibrated and an uncalibrated device represents the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
@@ -337,8 +337,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const SensorErrorPriors sizes = leave_open(rounds, fit, rounds_state, health);
   const SensorErrorPriors stated = as_stated(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
-    // A run without flight contains no information about the device beyond the prior. All sensor errors keep their
-    // prior uncertainty in this case.
+    // A run without flight contains no information about the device beyond the prior. All sensor errors then keep their
+    // prior uncertainty.
     rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     rounds_state.found.known.errors = rounds_state.errors;
   } else {

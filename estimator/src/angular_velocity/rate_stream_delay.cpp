@@ -22,7 +22,7 @@ constexpr double kMoved_s = 3e-4;
 // replaces the current delay if their difference exceeds `kGuessFar` standard deviations.
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
 // `kIntervalsMin` is the minimum number of intervals. `kGainMin` is the minimum difference between the correlations at
-// the estimated and at the stated delay. The first impacts of a tumble correlate by chance.
+// the estimated and at the stated delay. The first impacts of a tumble correlate by chance with the rate changes.
 constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
 // Maximum delay, in standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
@@ -69,8 +69,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
-// Stores the specific force at the time of sample k, or the closest force in the window. Also stores the remaining
-// delay between the force and the sample: rate_stream.md (R105).
+// Stores the specific force at the time of sample k, or the closest force in the window. The function also stores the
+// remaining delay between the force and the sample: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;

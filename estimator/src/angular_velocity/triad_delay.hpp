@@ -17,8 +17,8 @@ namespace tumble {
 /// specific force is large. The best delay maximises the correlation between the square roots of angular acceleration
 /// and force, over equal intervals between unsaturated gyro readings. The correlation of angular acceleration and force
 /// must be at least 0.6. At least 30 readings must be faster than 1 rad/s, with 10 readings above 30 m/s^2 and a tenth
-/// of the readings below 5 m/s^2. Otherwise the body may be hand-held, and the method by impacts gives no estimate. The
-/// standard deviation of the method by impacts is 0.15 of the slower sensor's period.
+/// of the readings below 5 m/s^2. If a condition fails, the body may be hand-held, and the method by impacts gives no
+/// estimate. The standard deviation of the method by impacts is 0.15 of the slower sensor's period.
 ///
 /// The method by flight follows if the method by impacts gives no estimate. The best delay makes most accelerometer
 /// readings equal to the force of flight at the lever arm of a rigid body. The force of flight is alpha x t + w x (w x

@@ -9,8 +9,8 @@
 /// hand_held_readings.hpp assigns the IMU readings of a hand-held body to nodes, as input of Problem.
 namespace tumble::hand_held {
 
-/// kRowsMin is the minimum determinant of the matrix of sensing directions. Below kRowsMin, the sensing directions do
-/// not span three dimensions.
+/// kRowsMin is the minimum determinant of the matrix of sensing directions. With a smaller determinant, the sensing
+/// directions do not span three dimensions.
 inline constexpr double kRowsMin = 0.1;
 /// kAge_samples is the standard deviation of a repeated reading's time, uniform within the previous sample: 1/sqrt(12).
 inline constexpr double kAge_samples = 0.29;

@@ -83,8 +83,9 @@ void ImuPlausibility::process_average(State& state) const {
   if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2)
     state.non_rest_force_s += length_s;
   if (state.window_started) {
-    // Each averaged force belongs to the centre of its averaging interval. The first and the last rotation therefore
-    // count by half. To first order, the sum with halves equals the sum of all rotations except the first.
+    // Each averaged force belongs to the centre of its averaging interval. The sum of rotations therefore counts the
+    // first and the last rotation by half. To first order, the sum with halves equals the sum of all rotations except
+    // the first.
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();

@@ -22,8 +22,8 @@ RestDetector::Params without_force(RestDetector::Params rests) {
   return rests;
 }
 
-/// Returns rest parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. These units are
-/// certain, because no robot stands still at ten times gravity.
+/// Returns rest parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. Readings far
+/// above gravity at rest prove a wrong unit, because no robot stands still at ten times gravity.
 RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;

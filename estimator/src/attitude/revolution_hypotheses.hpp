@@ -18,17 +18,18 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 ///
 /// Data after a clipped segment determine the rotation during the segment only up to whole revolutions. The
 /// optimisation finds the number of revolutions that is closest to its initial values. The function tests a clipped
-/// segment if the integral of the rate's standard deviation reaches a third of pi. This integral is an upper bound of
+/// segment if the integral of the rate's standard deviation reaches a third of pi. The integral is an upper bound of
 /// the angle's standard deviation. The function also tests a clipped segment that stays at the saturation level and is
-/// long enough for a revolution. In such a segment, the optimisation may have stopped with too few revolutions.
+/// long enough for a revolution. In a segment that stays at the saturation level, the optimisation may have stopped
+/// with too few revolutions.
 ///
 /// The function solves the segment and its surroundings again with one revolution more and less, and with two if
-/// possible. The information of all other nodes about the ends of the tested part is included. Only the costs of the
-/// solutions are compared, because the widths of the cost minima hardly differ. The function selects the solution with
-/// the lowest cost. An alternative within odds of 1 to 1000 increases the covariances of the nodes to the second moment
-/// of the mixture. If a number of revolutions changes, the function solves the whole problem again. If the whole
-/// problem cannot be solved, the previous solution remains, and the alternatives increase the covariances. The problem
-/// is unchanged if no segment is tested.
+/// possible. The information of all other nodes about the ends of the tested part is included. The function compares
+/// only the costs of the solutions, because the widths of the cost minima hardly differ. The function selects the
+/// solution with the lowest cost. An alternative within odds of 1 to 1000 increases the covariances of the nodes to the
+/// second moment of the mixture. If a number of revolutions changes, the function solves the whole problem again. If
+/// the whole problem cannot be solved, the previous solution remains, and the alternatives increase the covariances.
+/// The problem is unchanged if no segment is tested.
 ///
 /// The caller must have computed the covariances of `problem`. The function sets the counters of `report`. The test
 /// neglects correlated revolutions of two segments, and the effect of a revolution on the calibration constants. The

@@ -322,7 +322,8 @@ double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index,
 }
 
 /// Corrects velocity and displacement of a body other than a sphere: attitude.md (A12), (A14). TumbleAttitude corrects
-/// the velocity while the body moves. TumbleAttitude corrects the displacement of such a body towards zero.
+/// the velocity while the body moves. TumbleAttitude corrects the displacement of a body other than a sphere towards
+/// zero.
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {

@@ -172,7 +172,8 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
       fading * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
   state.prediction_error_ns = limited_ns;
 
-  // Sample numbers count from the current sample. Only the current sample has a non-zero residual about the line.
+  // Sample numbers count from the current sample. Only the current sample has a non-zero residual about the fitted
+  // line.
   const double keep = 1.0 - fading;
   state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
                                               2.0 * number * state.weighted_number_sum + number * number * state.sum);

@@ -128,8 +128,8 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the angular step from each beam to the previous beam on its ring. The first beam of each ring has a step of
-/// 1.
+/// Computes the angular step from each beam to the previous beam on its ring. The first lidar beam of each ring has a
+/// step of 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();

@@ -10,8 +10,8 @@ namespace {
 
 // At a wrong pose, a covered surface point agrees with the prior map by chance with at most probability kChance.
 constexpr double kChance = 0.8;
-// The second best pose shows how many points agree by chance in these surroundings. The fraction kChanceMargin of the
-// second pose's disagreeing points is a margin for sampling error.
+// The second best pose shows how many points agree with the prior map by chance in these surroundings. The fraction
+// kChanceMargin of the second pose's disagreeing points is a margin for sampling error.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // bound for one search
 constexpr std::size_t kLeastPoints = 100;  // number of surface points for a search

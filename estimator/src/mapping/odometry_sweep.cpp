@@ -92,8 +92,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // If the lidar clock is wrong, the first sweep may start before the first IMU sample. In this case, the initial rest
-  // extends backwards to the start of the sweep.
+  // If the lidar clock is wrong, the first sweep may start before the first IMU sample. If the lidar clock is wrong,
+  // the initial rest extends backwards to the start of the first sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};

@@ -62,9 +62,9 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 /// Returns the normalised innovation that SweepReport::innovation reports, see mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// Returns whether a pose agrees with the prediction, within the predicted covariance and the matching distance. Beyond
-/// the matching distance, any nearby surface may match by chance. `innovation` is the normalised innovation of the
-/// pose, see mapping.md (R67).
+/// Returns whether a pose agrees with the prediction, within the predicted covariance and the matching distance.
+/// Farther than the matching distance, any nearby surface may match by chance. `innovation` is the normalised
+/// innovation of the pose, see mapping.md (R67).
 bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
 

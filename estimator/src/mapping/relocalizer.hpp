@@ -43,8 +43,8 @@ struct Placed {
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Computes the initial pose number `index` of a search. Initial pose 0 is the predicted pose. The other initial poses
-/// are shifted along each axis by the standard deviation, closest first, mapping.md (R66).
+/// Computes the initial pose number `index` of a search. Initial pose 0 is the predicted pose. All further initial
+/// poses are shifted along each axis by the standard deviation, closest first, mapping.md (R66).
 void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

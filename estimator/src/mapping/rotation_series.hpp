@@ -8,8 +8,8 @@
 /// final s is sin(x) / x, where x is the half angle.
 namespace tumble::rotation_series {
 
-/// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. Larger angles would need more
-/// terms of the series.
+/// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. For larger angles, the series
+/// would need more terms.
 inline constexpr double kAngle2_rad2 = 1.0;
 /// kRatios contains the ratios of successive terms in the series of cos(x) and of sin(x) / x, last term first.
 inline constexpr std::pair<double, double> kRatios[] = {

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 namespace {
 
 // kMovedToRange is the minimum ratio of a return's range to the sensor's motion before or after the middle of the
-// sweep. SightGrid sorts returns into bins by their direction from one position. Above this ratio, the direction error
+// sweep. SightGrid sorts returns into bins by their direction from one position. At larger ratios, the direction error
 // is below 0.1 rad, which is the size of the checked bins.
 constexpr float kMovedToRange = 10.0f;
 constexpr int kEmptyMost = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins

@@ -29,7 +29,7 @@ inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 /// kLeastVariance is the variance of an exactly known unknown; it is above 0 so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
 /// kAgrees is the largest squared Mahalanobis distance at which a sweep's motion agrees with its prior, mapping.md
-/// (R25), (R71). It is the 95 % quantile of chi-square with nine degrees of freedom.
+/// (R25), (R71). kAgrees is the 95 % quantile of chi-square with nine degrees of freedom.
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 

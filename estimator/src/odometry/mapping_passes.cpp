@@ -14,8 +14,8 @@ namespace {
 constexpr int kSearches = 3;                    // additional passes for a calibration that has not converged
 constexpr std::size_t kSweepsPerRejection = 5;  // more rejections: the pass does not determine the calibration
 
-/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut, a clock offset would discard
-/// the last sweep.
+/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut of the last sweep, a clock
+/// offset would discard the whole sweep.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;

@@ -148,7 +148,7 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffer, fewer samples follow than the lag needs. The second pass then processes these samples
+  // At the end of the buffer, fewer samples follow than the lag needs. The second pass then processes the last samples
   // without a lag.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {

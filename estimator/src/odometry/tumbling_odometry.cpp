@@ -190,8 +190,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
 }
 
 /// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, the newest sample
-/// must be at least the lag minus 1.5 periods later than the sample at the sweep's end. This second condition delays
-/// the sweep after a gap.
+/// must be at least the lag minus 1.5 periods later than the sample at the sweep's end. The condition on the newest
+/// sample delays the sweep after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;

@@ -25,9 +25,9 @@ namespace tumble::baselines {
 /// The method follows zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh).
 /// StandstillSmoother is designed for motions of one or two seconds between rests with few clipped samples. If the tilt
 /// or velocity error at the next standstill is too large for a linear filter, attitude and velocity restart at that
-/// standstill. After such a restart, the rates since the previous standstill follow only from the limits of the clipped
-/// readings and from smoothness. A tumble of several turns causes a restart. StandstillSmoother neglects clipped
-/// specific force, a lever arm and sensor bias.
+/// standstill. After a restart of attitude and velocity, the rates since the previous standstill follow only from the
+/// limits of the clipped readings and from smoothness. A tumble of several turns causes a restart. StandstillSmoother
+/// neglects clipped specific force, a lever arm and sensor bias.
 class StandstillSmoother {
  public:
   struct Params {

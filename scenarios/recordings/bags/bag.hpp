@@ -109,7 +109,7 @@ struct BagReading {
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
   /// Leaves out a topic that cannot be read, with a note, if the caller did not choose the topics and another topic of
-  /// the same kind can be read. Otherwise, one such topic is an error.
+  /// the same kind can be read. If the caller chose the topics, an unreadable topic is an error.
   bool leave_out_topics = false;
 };
 
@@ -122,7 +122,7 @@ struct BagReading {
 /// converted and noted. Each sensor is named after its topic. The rules of import_sweeps apply to points. Duplicate
 /// messages (equal stamp and content) are read once. Single faulty messages are left out and noted (left_out.hpp).
 ///
-/// Unless the caller chooses topics, clouds in "world", "map" or "odom" are skipped, because such clouds are not raw
+/// Unless the caller chooses topics, the reader skips clouds in "world", "map" or "odom", because they are not raw
 /// sensor data. Lidars whose points have times then come first.
 ///
 /// The parts of a ROS 1 bag in a folder are merged by time. Files of a ROS 2 bag are read by time. Files that are
@@ -130,9 +130,9 @@ struct BagReading {
 ///
 /// If /tf_static states the pose of a sensor in "body" or "base_link", or else relative to another sensor, this pose is
 /// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (81 bytes per
-/// sample) and some bytes per message. Without `sweeps.scratch`, memory holds all points. Throws BadInput with file and
-/// location for damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty messages, or a cycle
-/// of frames.
+/// sample) and some bytes per message. Without `sweeps.scratch`, the reader keeps all points in memory. Throws BadInput
+/// with file and location for damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty
+/// messages, or a cycle of frames.
 Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

@@ -41,8 +41,8 @@ class BagStamps {
   /// Describes how far record stamps are behind header stamps, for the stamps in order. The text is empty if the lag is
   /// always below one millisecond. The text is a warning if the lag reaches a second, is negative, or changes.
   std::string remark() const;
-  /// Returns true if header stamps are ahead of record stamps, or if header stamps are a second or more behind. Only
-  /// stamps in order count for this test.
+  /// Returns true if header stamps are ahead of record stamps, or if header stamps are a second or more behind. The
+  /// test considers only stamps in order.
   bool other_clock() const;
 
  private:

@@ -24,7 +24,7 @@ class BagWriter {
  public:
   virtual ~BagWriter() = default;
   /// Registers these topics before all other topics, in order. Returns false if this bag type registers topics with
-  /// their first messages. In this case, other topics may be written earlier.
+  /// their first messages. A bag of this type may contain other topics earlier.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
   /// Writes a message. Messages must be sorted by time, and each topic has one message type. Throws BadInput.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;

@@ -24,8 +24,8 @@ struct CloudHeaders {
   std::string remark;
   bool follow_records = true;  ///< records appear to use the headers' clock and are later than the stamps
   std::string frame;
-  /// Returns whether the caller did not choose the topic and its frame is not a sensor's frame. The clouds of such a
-  /// topic are a map, or points that are already transformed.
+  /// Returns whether the caller did not choose the topic and its frame is not a sensor's frame. Clouds in the frame of
+  /// no sensor are a map, or points that are already transformed.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }

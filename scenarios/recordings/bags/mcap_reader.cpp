@@ -106,7 +106,7 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // Times beyond int64 are invalid in ROS; such times are limited to int64.
+    // Times beyond int64 are invalid in ROS; the reader limits them to int64.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();

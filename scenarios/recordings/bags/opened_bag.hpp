@@ -48,8 +48,8 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the named topics, which must have a matching type. Without names, the function returns all topics of a
-  /// matching type.
+  /// Returns the named topics, which must have a matching type. Without topic names, the function returns all topics of
+  /// a matching type.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;

@@ -21,9 +21,9 @@ class SensorMountings {
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA from /tf_static. If the user has set T_BA (`given`, or not the identity), the function only
-  /// reports differences. The mounting refers to the body's frame if the bag has such a frame. Otherwise, the mounting
-  /// refers to the first earlier sensor that is connected to this sensor. If /tf_static does not state the mounting, a
-  /// note names the option that sets the mounting.
+  /// reports differences. The mounting refers to the body's frame if the bag has such a frame. If the bag has no body
+  /// frame, the mounting refers to the first earlier sensor that is connected to this sensor. If /tf_static does not
+  /// state the mounting, a note names the option that sets the mounting.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

@@ -38,9 +38,9 @@ struct PointTimeRule {
 
 /// Finds the time field and its unit from the first clouds. The time field has one of these names (any case): t time
 /// timestamp timestamps time_stamp offset_time time_offset offset_ns. A suffix _s _ms _us _ns of the field name states
-/// the unit. Otherwise the unit is chosen such that a sweep's times cover 0.15 to 150 % of `period_ns` (median over the
-/// clouds). At most one time unit fits. If the period is unknown (0), the size of stamps since 1970 determines the
-/// unit. If all times of a sweep are equal, the points have no times.
+/// the unit. If no name states the unit, the times of a sweep must cover 0.15 to 150 % of `period_ns` (median over the
+/// clouds) in the chosen unit. At most one time unit fits. If the period is unknown (0), the size of stamps since 1970
+/// determines the unit. If all times of a sweep are equal, the points have no times.
 ///
 /// A stated unit is rejected if it does not fit, another unit fits, and the sweeps have at least 100 points. Point
 /// times are absolute if they start more than two periods from 0 in any cloud, or in two clouds if there are at least
@@ -89,7 +89,7 @@ class SweepBuilder {
   LeftOut& left_out() { return left_out_; }
 
   /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
-  /// stated period, the period is the median step of the stamps, or the latest point offset if that is larger. Throws
+  /// stated period, the period is the median step of the stamps, or the latest point offset if it is larger. Throws
   /// BadInput, with a message that starts with `where`, if too many clouds are left out or if there are no points.
   /// Throws BadInput also if most points are beyond twice the range in the data sheet, or for a single sweep of unknown
   /// length.

@@ -24,9 +24,9 @@ constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-/// kSlopeReach is half of the time span for differentiating the reference: 70 ms. With this span, the noise at rest
-/// stays below the thresholds that scores use for rest (measured: 0.022 rad/s at half of the span). This time span
-/// blurs fast rotations.
+/// kSlopeReach is half of the time span for differentiating the reference: 70 ms. With kSlopeReach, the noise at rest
+/// stays below the thresholds that scores use for rest (measured: 0.022 rad/s at half of the span). A time span of 140
+/// ms blurs fast rotations.
 constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {

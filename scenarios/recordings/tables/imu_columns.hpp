@@ -35,8 +35,8 @@ struct ImuColumns {
 /// Finds the IMU columns of a table. Column names take precedence over positions. The following names are known: names
 /// of tools that flatten ROS messages (".../angular_velocity/x", "field.angular_velocity.x"), names of `export` (each
 /// once and no other names), short forms of the export names (sec nsec wx.. fx..), and names of loggers
-/// (logger_columns.hpp). Without a header, the positions identify the columns. Throws BadInput with file and line for
-/// unknown, repeated or missing columns.
+/// (logger_columns.hpp). In a table without a header, the positions identify the columns. Throws BadInput with file and
+/// line for unknown, repeated or missing columns.
 ImuColumns imu_columns(const LoggedTable& table);
 
 /// Returns a line's stamp in nanoseconds. Throws BadInput with file, line and column.

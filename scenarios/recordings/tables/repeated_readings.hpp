@@ -27,10 +27,10 @@ struct RepeatReport {
 };
 
 /// Extracts the readings of a log without repetitions. A sensor repeats readings (sample-and-hold) if 5 to 98 % of its
-/// rows repeat all three axes. Above 98 %, the sensor counts as frozen. Only new gyro readings are kept. The times of
-/// the readings are regularised within the log step in which they arrived. If the accelerometer repeats readings for
-/// longer than the gyro, its readings are interpolated linearly at the gyro's times, which low-passes the specific
-/// force. The function fills in time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
+/// rows repeat all three axes. A sensor whose rows repeat more often counts as frozen. The function keeps only new gyro
+/// readings. The times of the readings are regularised within the log step in which they arrived. If the accelerometer
+/// repeats readings for longer than the gyro, its readings are interpolated linearly at the gyro's times, which
+/// low-passes the specific force. The function fills in time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
 RepeatReport remove_repeats(const LoggedReadings& log, sim::ImuRecord& imu);
 
 /// Returns a note on probable accelerometer saturation, or "". An axis and sign counts as saturated if readings

@@ -66,10 +66,10 @@ std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// Converts body poses to a truth. The stamps of `poses` increase in the recording's clock and may start before time 0.
 /// If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid, and poses are unchanged.
-/// Otherwise, the truth has steps of 1 ms, or longer steps for recordings above two million samples. Between poses at
-/// most 2.5 median steps apart, position is interpolated linearly and attitude by slerp. In larger gaps, position and
-/// attitude are unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose
-/// is known, or if the truth would be longer than a day.
+/// If the poses are irregular, the truth has steps of 1 ms, or longer steps for recordings above two million samples.
+/// Between poses at most 2.5 median steps apart, position is interpolated linearly and attitude by slerp. In larger
+/// gaps, position and attitude are unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws
+/// BadInput if no pose is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 /// Returns the rotation vector of `q`, with an angle of at most pi.

@@ -27,8 +27,8 @@ struct GlitchReport {
 /// rad/s faster for only 30 ms. The three samples on either side of a jump are also removed.
 ///
 /// Jumps less than 0.5 s apart form a pair, and the samples between the two jumps are removed. After a jump without a
-/// return jump, the attitude is uncertain; such a jump only counts in `leaps`. The function uses no other sensor. Cost:
-/// O(N).
+/// return jump, the attitude is uncertain; the function only counts this jump in `leaps`. The function uses no other
+/// sensor. Cost: O(N).
 GlitchReport leave_out_glitches(std::vector<ReferencePose>& poses);
 
 }  // namespace tumble::scenarios
