@@ -77,7 +77,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// What one method made of one draw.
+/// Run contains the results of one method on one simulated run.
 struct Run {
   double inclination_rad = std::numeric_limits<double>::infinity();
   double attitude_rad = std::numeric_limits<double>::infinity();

@@ -79,7 +79,8 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// The draw with the primary IMU's rate and numbers, those of a sphere's others too; 0: as the scenario has it.
+/// Returns the simulated run with the rate and numbers of the primary IMU, and of all IMUs of a sphere; 0 keeps the
+/// scenario's rate.
 scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request& request, std::uint64_t seed,
                                  double rate_hz, bool lidar) {
   scenarios::SimulatedDraw draw;
@@ -113,7 +114,7 @@ Metrics metrics_of(Kind kind) {
   return {"ate_m", "pose_nees"};
 }
 
-/// One method at one rate, over the draws.
+/// Pool contains the results of one method at one rate, over the simulated runs.
 struct Pool {
   std::map<std::uint64_t, double> error_of;  ///< by seed: of the draws that have one
   std::vector<double> coverage;
@@ -127,7 +128,7 @@ std::vector<double> errors(const Pool& pool) {
   return out;
 }
 
-/// Of each draw that has an error at both rates, the one against the other; median with its interval.
+/// Returns the median ratio, with its interval, of the errors at both rates, over the runs that have an error at both.
 scenarios::Interval paired(const Pool& pool, const Pool& own) {
   std::vector<double> ratios;
   for (const auto& [seed, error] : pool.error_of) {
@@ -172,7 +173,7 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
   std::printf("\n");
 }
 
-/// `oracle`: the oracle's median of pairs, NaN where there is none.
+/// `oracle` is the oracle's median of pairs, or NaN.
 void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own, double oracle) {
   const std::vector<double> error = errors(pool), own_error = errors(own);
   const double median = scenarios::quantile(error, 0.5);

@@ -75,7 +75,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-// Draw `seed`; with `other`, its rig on the way of another draw.
+// Returns the recording of seed `seed`; with `other`, the rig of the seed with the motion of another seed.
 sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Scenario& scenario, std::uint64_t seed,
                             const std::filesystem::path& keep, bool other = false) {
   constexpr std::uint64_t kOther = 1'000'000;
@@ -83,7 +83,7 @@ sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Sc
   return bench::kept_recording(data, keep, name, scenario.name, seed, [&] {
     sim::Situation own = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
     if (!other) return own;
-    // its own seed too: the sensing elements of a device are drawn from it
+    // the far seed is also the device's seed, because the sensing elements are drawn from it
     const sim::Situation far = scenarios::without_lidars(scenarios::draw(data, scenario, seed + kOther));
     own.world = far.world;
     own.motion = far.motion;
@@ -95,7 +95,7 @@ const scenarios::Method& method_of(const std::string& name) {
   return *scenarios::find_methods("rate/" + name).front();
 }
 
-// What the batch learns of a rig in one recording.
+// Returns the calibration that the batch smoother estimates from one recording.
 scenarios::RigCalibrationUse learn(const sim::Recording& recording) {
   scenarios::RigCalibrationUse learning;
   (void)scenarios::calibrating_method(method_of("tumble"), learning).run(recording.sensors, {}, {});

@@ -70,8 +70,8 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-// Of the samples in which the body turns: the deviations that a tenth exceeds, and the median of the error as a share
-// of the rate.
+// Judges the samples in which the body turns: the deviations that a tenth exceeds, and the median error relative to the
+// rate.
 Judgement judge_rates(const sim::Recording& recording, const std::vector<RateState>& before,
                       const scenarios::Estimate& estimate) {
   constexpr double kTurns_rad_s = 1.0;
@@ -89,7 +89,7 @@ Judgement judge_rates(const sim::Recording& recording, const std::vector<RateSta
   return out;
 }
 
-// Of the samples in which the body moves: the deviations of the tilt that a tenth exceeds, and its median.
+// Judges the samples in which the body moves: the deviations of the tilt that a tenth exceeds, and their median.
 Judgement judge_attitudes(const sim::Recording& recording, const scenarios::Estimate& estimate) {
   const scenarios::TruthTrack truth(recording.truth, estimate.frame);
   std::vector<double> deviations, tilts;
@@ -126,7 +126,7 @@ Judgement judgement_of(const scenarios::Method& method, const sim::Recording& tr
   return judge_rates(truth, scenarios::testing::rates_before_doubt(estimate), estimate);
 }
 
-/// Leaves of rows at the times of `all_ns` those at the times of `kept_ns`, which are some of them in their order.
+/// Keeps the rows whose times, among `all_ns`, are in `kept_ns`, an ordered subset.
 template <class Row>
 void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::int64_t>& kept_ns,
                std::vector<Row>& rows) {
@@ -137,7 +137,7 @@ void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::i
   rows.resize(kept);
 }
 
-/// The two rates of a classifier, as counts.
+/// Tally contains the counts for the two rates of a classifier.
 struct Tally {
   int wrong = 0, wrong_told = 0, good = 0, good_told = 0;
 
@@ -158,7 +158,8 @@ struct Tallies {
   Tally reported, before, root_chi2;
 };
 
-/// What to score an answer to `given` by: of samples that are missing there the truth is missing too.
+/// Returns the run by which an estimate from `given` is scored: the truth also lacks the samples that are missing
+/// there.
 scenarios::SimulatedDraw scored_at_kept(const scenarios::SimulatedDraw& draw, const scenarios::SimulatedDraw& given) {
   scenarios::SimulatedDraw scored = scenarios::scored_by(draw, given);
   for (std::size_t i = 0; i < given.recording.sensors.imus.size(); ++i) {

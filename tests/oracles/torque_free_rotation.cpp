@@ -40,7 +40,7 @@ TorqueFreeRotation::TorqueFreeRotation(const Eigen::Vector3d& moments, const Eig
   steady_ = rate0_.cross(L).norm() <= 1e-14 * rate0_.norm() * momentum_;
   if (steady_) return;
 
-  // roles: dn on the axis (of largest or smallest moment) that the rate circles, sn on the middle one
+  // roles: dn on the axis (of largest or smallest moment) that the rate circles, sn on the middle axis
   std::sort(axes_, axes_ + 3, [&](int i, int j) { return moments[i] < moments[j]; });
   const double twice_energy = rate0_.dot(L);
   const double L2 = momentum_ * momentum_;
