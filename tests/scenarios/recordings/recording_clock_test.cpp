@@ -73,7 +73,7 @@ TEST(RecordingClock, ClocksOfExportsAreConverted) {
   EXPECT_EQ(shift(kExportOrigin_ns + 11 * second, kExportOrigin_ns + 12 * second), std::nullopt);
 }
 
-// poses that count from zero, of a recording that was exported and imported
+// the poses count from zero, and the recording was exported and imported
 TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   sim::Recording recording = fixture::recording();
   Imported imported;
