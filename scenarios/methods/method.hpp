@@ -88,7 +88,7 @@ struct MethodInfo {
   std::size_t parameters_first = 0;  ///< number of leading parameters that users set most often
   bool needs_truth = false;
   std::vector<std::string> robots;  ///< "rig", "sphere"; empty: all
-  /// Returns why the method cannot run on the recording, for example "needs a lidar, and there is none"; empty if it
+  /// Returns why the method cannot run on the recording, for example because the recording lacks a lidar; empty if it
   /// can run. All slam methods need a lidar.
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }

@@ -56,9 +56,9 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
 struct RigCalibrationUse {
   std::optional<CalibratedRig> given;  ///< empty: start without calibration
   std::optional<CalibratedRig> of_batch, of_stream;
-  /// Returns the calibration to save, or null if there is none. The function prefers the result of the smoother over
-  /// the whole recording. If the smoother found only saturation levels and the stream found more, the function returns
-  /// the streaming result.
+  /// Returns the calibration to save, or null if no calibration was learnt. The function prefers the result of the
+  /// smoother over the whole recording. If the smoother found only saturation levels and the stream found more, the
+  /// function returns the streaming result.
   const CalibratedRig* found() const;
 };
 

@@ -136,7 +136,7 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// kPcdWords lists the header words in the order of the format; the last word is an alternative name of FIELDS.
+/// kPcdWords lists the header words in the order of the format; the final entry is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
