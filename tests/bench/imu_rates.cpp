@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]: the
-// same draws with IMUs of other rates, and with other numbers of a data sheet (`gyro_range_rad_s=8.7`; SCENARIO may be
-// the path of a file, with other devices). A line per method and rate: how many draws have a figure; the error (rate:
-// median at clipped samples; attitude: inclination; position: at the end; slam: ate_m), median and mean over the draws;
-// both against the scenario's own rate; pair by pair, the median over the draws of a draw's error against its own at
-// that rate, with its 95 % interval (BCa, statistics.md (S1) to (S4)); the same median of the oracle of that kind,
-// where it is among the methods: what the sensor allows; the share within three deviations (slam: of the draws whose
-// last pose lies within the 99.7 % of its NEES), that of the worst draw, and the CPU time against the length of the
-// recording. FOLDER keeps the recordings (of one set of numbers); --draws prints a line a draw too. Not a test: 2 to
-// 10 s a draw and rate.
+// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]
+//
+// The program simulates the same draws with IMUs of other rates, and with other numbers of a data sheet
+// (`gyro_range_rad_s=8.7`). SCENARIO may also be the path of a file, with other devices. Each method and rate has one
+// line with these columns: the number of draws with a result; median and mean over the draws of the error (rate: median
+// at saturated samples; attitude: inclination; position: at the end; slam: ate_m); both relative to the scenario's own
+// rate; the median over the draws of the ratio of a draw's error to its error at that rate, with its 95 % interval
+// (BCa, statistics.md (S1) to (S4)); the same median of the oracle of that kind, if the oracle is among the methods,
+// which shows the limit of the sensor; the share within three standard deviations (slam: of the draws whose last pose
+// lies within the 99.7 % of its NEES), and that of the worst draw; and the CPU time relative to the length of the
+// recording. FOLDER stores the recordings (of one set of numbers). --draws also prints a line per draw. The program is
+// no test: it needs 2 to 10 s per draw and rate.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

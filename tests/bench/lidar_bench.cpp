@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lidar points a second on one core, beside the engine's own rays in the same run, over a height field of 400 x 400
-// cells with 40 rocks, 40 trunks and a cage of 12 struts.
-//   engine    mj_ray and mj_multiRay on a sample of the very rays of cast/rs16_*
-//   build     the mirror of the world that rays are cast against, once a recording
-//   cast      sweeps after that: each firing from its own pose, errors, intensity, surface id, exact hit
+// The program measures lidar points per second on one core, and the engine's own rays in the same run. The world is a
+// height field of 400 x 400 cells with 40 rocks, 40 trunks and a cage of 12 struts.
+//   engine    mj_ray and mj_multiRay on a sample of the rays of cast/rs16_*
+//   build     the copy of the world against which rays are cast, once per recording
+//   cast      sweeps in the built copy: each firing from its own pose, errors, intensity, surface id, exact hit
 //   simulate  simulate_lidar as a whole: build, cast and a recording of 10 s written to memory
-// `returns` counts finished points (what a recording holds), `firings` the beams sent out: on the open hill half of
-// them go to the sky; in the hall (the same ground under a roof, within walls) nearly all return. Rates are of
-// processor time.
+// `returns` counts finished points (those in a recording), and `firings` counts the emitted beams: on the open hill
+// half of the beams go to the sky; in the hall (the same ground under a roof, within walls) nearly all return. Rates
+// are per processor time.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sweeps of 28 800 points through the odometry on one core, everything included, in a tumble at 15 rad/s: one of them
-// again and again (the odometry is copied from a saved state before each run, outside of the time taken), all of them
-// with median and worst; the parts; and ten minutes of small sweeps, whose cost and memory must not grow.
+// The program measures the odometry on one core with sweeps of 28 800 points in a tumble at 15 rad/s. The first
+// measurement repeats one sweep (each run copies the odometry from a saved state, outside of the measured time), and
+// the second uses all sweeps and gives median and worst. Others measure the parts, and ten minutes of small sweeps,
+// whose cost and memory must not grow.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// motion_distribution SCENARIO FIRST LAST: simulates the draws without lidar and prints a line each and how they are
-// spread, to be held against the published campaign. The program is no test, because it takes minutes.
+// motion_distribution SCENARIO FIRST LAST
+//
+// The program simulates the draws without lidar and prints a line per draw and their distributions, for comparison with
+// the published campaign. The program is no test, because it takes minutes.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_measures AXIS RAIL FILE...: what a gyro does at its rail of RAIL rad/s on AXIS (x, y, z), a line a file: share
-// of rows that repeat the readings before; of the gyro's own readings those at the rail; how long they stay there; the
-// true rate there; how far the readings of one sign, inside of segments, scatter there, before and after a plane
-// through them. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is the cameras'. Not a test.
+// rail_measures AXIS RAIL FILE...
+//
+// The program measures a gyro at its saturation level of RAIL rad/s on AXIS (x, y, z), and prints a line per file. The
+// columns are the share of rows that repeat the readings before; the share of the gyro's own readings at the saturation
+// level; how long they stay there; the true rate there; and the scatter of the readings of one sign within segments,
+// before and after the fit of a plane. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is that
+// of the cameras. The program is no test.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_contact SCENARIO FIRST LAST: what a model of the contact could tell of the rate of a tumbling rig. From the
-// truth, for every IMU sample in contact with a clipped gyro: the torque about the centre of mass and the force, both
-// means over the window, and how well the torque is foretold by (a) nothing, (b) a force through one point, at right
-// angles to it, (c) a force through the point that the sample before gives, (d) through the best single point of the
-// whole impact. Prints what is left of the torque as a share of it, and how long contacts last. The program is no test:
-// it needs 2 s per simulated run.
+// rate_contact SCENARIO FIRST LAST
+//
+// The program measures how much a contact model could reveal about the rate of a tumbling rig. For every IMU sample in
+// contact with a saturated gyro, it computes the true torque about the centre of mass and the true force, both as means
+// over the window. It predicts the torque by (a) nothing, (b) a force through one point, at right angles to it, (c) a
+// force through the point that the sample before gives, and (d) a force through the best single point of the whole
+// impact. The program prints the remaining share of the torque, and how long contacts last. The program is no test: it
+// needs 2 s per simulated run.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

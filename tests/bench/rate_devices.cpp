@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]: what real
-// devices do besides clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a
-// gyro's window too long, a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together
-// (`hill_consumer`). Prints for each method of kind `rate` the error at clipped samples, the same against the first
-// row, the share of clipped axes within three reported deviations (all draws, the worst draw), their mean squared error
-// over variance, and of the elements from which the rail took more than 0.1 rad/s the share that the method calls
-// clipped, and of those it calls so the share from which it took anything. FOLDER keeps recordings; --draws prints a
-// line a draw too;
-// --ablation takes `hill_consumer` with one of its errors switched off at a time instead; with --learnt methods start
-// from what they have learnt in another tumble of the same rig and device, those that learn alone. Not a test: 2 to 3 s
-// of one core a draw and row.
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]
+//
+// The program tests errors of real devices besides saturation, one row each, on the same draws of `hill` without lidar:
+// a late accelerometer, a gyro window that is too long, a low-pass, scale errors, g-sensitivity, repeated readings, and
+// all of them together (`hill_consumer`). For each method of kind `rate` it prints the error at saturated samples, its
+// ratio to the first row, the share of saturated axes within three reported standard deviations (all draws, the worst
+// draw), and their mean squared error over variance. It also prints the share of elements that the method reports as
+// saturated, among elements that lost more than 0.1 rad/s, and the share of reported elements that lost anything.
+// FOLDER stores the recordings. --draws also prints a line per draw. --ablation uses `hill_consumer` with one of its
+// errors switched off at a time instead. With --learnt, only methods that learn run, from the calibration learnt in
+// another tumble of the same rig and device. The program is no test: it needs 2 to 3 s of one core per draw and row.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

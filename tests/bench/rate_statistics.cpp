@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_statistics SCENARIO FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] [--exact-mounting] [--learnt]:
-// simulates the draws without
-// lidar, runs methods of kind `rate` and prints their errors pooled over all clipped samples of all draws, coverage and
-// normalised squared error in flight and in contact, and the worst clipped segments. The first method is what the
-// others are held against; where `tumble` is among them, the last part holds all to it. FOLDER keeps recordings, so
-// that a second call need not simulate. With --exact-mounting methods are given the true lever arm; with --learnt
-// `tumble` and `tumble_lag` start from what `tumble` learns in another tumble of the same rig. Not a test: 2 to 3 s of
-// one core a draw.
+// rate_statistics SCENARIO FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] [--exact-mounting] [--learnt]
+//
+// The program simulates the draws without lidar and runs methods of kind `rate`. It prints their errors pooled over all
+// saturated samples of all draws, coverage and normalised squared error in flight and in contact, and the worst
+// saturated segments. The other methods are compared with the first one; if `tumble` is among them, the last part
+// compares all methods with `tumble`. FOLDER stores the recordings, so that a second call need not simulate. With
+// --exact-mounting the methods receive the true lever arm. With --learnt `tumble` and `tumble_lag` start from the
+// calibration that `tumble` learns in another tumble of the same rig. The program is no test: it needs 2 to 3 s of one
+// core per draw.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scoring_cost SCENARIO FIRST LAST METHOD...: seconds of processor, user and system, that the verdict and the scores of
-// an estimate take, beside those of the estimate itself, a line a draw and method, the medians and the mean in all.
-// Equal digests of the scores show that two builds scored the same bits. The method's name has the form that `tumble
-// run` accepts.
+// scoring_cost SCENARIO FIRST LAST METHOD...
+//
+// The program measures the processor time (user and system) of the verdict and the scores of an estimate, and that of
+// the estimate. It prints a line per draw and method, the medians and the overall mean. Equal digests of the scores
+// show that two builds scored the same bits. The method's name has the form that `tumble run` accepts.
 #include <cstdio>
 #include <cstdlib>
 #include <map>

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method on draws as they are and on the same with wrong inputs
-// (units, axes, signs, clocks, mountings, sensors that die, dust, people), and holds what it says of itself against
-// what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES, which is chi-square over
-// six, beyond 25; rate, attitude: a tenth of the samples that turn, or move, are off by more than five, or half of them
-// by a fifth of their rate, or by 0.5 rad of tilt, unless it says `attitude_unknown_s`). Told: the status, `localised`,
-// or a key of its health that says so. Who tells of trouble may widen the covariance with it, and then is wrong no
-// more: rates are judged by the covariance before that as well, and a pose of slam by the root of chi-square beside
-// that of its mean. Prints a line per run and the two rates of a classifier by each of these: wrong runs that say so,
-// runs with inputs as they are that cry wolf. Not a test: a minute a draw for `slam`, seconds for `position`.
+// verdicts SCENARIO FIRST LAST METHOD [HARM]...
+//
+// The program runs a method on unchanged draws and on the same draws with wrong inputs (units, axes, signs, clocks,
+// mountings, failing sensors, dust, people), and compares the method's verdict with the truth. A run is wrong if its
+// end differs from the truth by more than five of its standard deviations (slam: pose NEES, which is chi-square over
+// six, beyond 25). A run of rate or attitude is wrong if a tenth of the turning or moving samples differ by more than
+// five standard deviations, or half of them by a fifth of their rate or by 0.5 rad of tilt, unless the method reports
+// `attitude_unknown_s`. A run reports trouble by its status, by `localised`, or by a key of its health. A method that
+// reports trouble may widen the covariance, after which the run is no longer wrong: rates are therefore also judged by
+// the covariance before the report, and a pose of slam by the root of chi-square as well as by its mean. The program
+// prints a line per run, and for each criterion the two rates of a classifier: wrong runs that report trouble, and
+// unchanged runs that report trouble. The program is no test: it needs a minute per draw for `slam`, and seconds for
+// `position`.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
