@@ -21,8 +21,8 @@ class Online {
 
   /// Processes a line "time_ns wx wy wz fx fy fz" (rad/s, m/s^2, sensor axes) and returns "time_ns x y z qx qy qz qw
   /// mode sigma_m [uncertain]" (centre of the sphere in W, sensor axes to W, horizontal sigma). If ok() is false, the
-  /// sample is left out and the result is the error message; the next sample may follow. The result is empty for an
-  /// empty line and for a comment (#). The returned view refers to this object and is valid until the next call.
+  /// sample is left out and the result is the error message; the next sample may follow. The returned text is empty for
+  /// an empty line and for a comment (#). The returned view refers to this object and is valid until the next call.
   std::string_view take(std::string_view line);
   bool ok() const { return ok_; }
   std::uint64_t samples() const { return samples_; }

@@ -13,8 +13,8 @@
 /// value that the closed form assumes.
 namespace tumble::scenarios {
 
-/// In this measurement, the rig is thrown high and rotates near its unstable axis. Euler's equations conserve energy
-/// and angular momentum.
+/// For the free-flight measurement, the rig is thrown high and rotates near its unstable axis. Euler's equations
+/// conserve energy and angular momentum.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;

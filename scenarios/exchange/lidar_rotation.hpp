@@ -71,8 +71,8 @@ struct LidarRotationCheck {
   std::optional<Eigen::Isometry3d> better_BL;  ///< pose of the first lidar that makes lidar and primary IMU agree
 };
 
-/// Compares each IMU of a recording with the first lidar. The result is empty unless the recording has a lidar and an
-/// IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
+/// Compares each IMU of a recording with the first lidar. The returned check is empty unless the recording has a lidar
+/// and an IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

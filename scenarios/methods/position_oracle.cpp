@@ -85,7 +85,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// The settings omit parameters that are not needed because the attitude is exact.
+/// The oracle omits parameters of the attitude estimate, because its attitude is exact.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",

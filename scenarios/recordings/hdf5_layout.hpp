@@ -15,7 +15,8 @@
 /// scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// Handle is an identifier of the HDF5 library. Its destructor closes the identifier with the matching function.
+/// Handle is an identifier of the HDF5 library. The destructor of Handle closes the identifier with the matching
+/// function.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);

@@ -143,10 +143,10 @@ bool is_repoimu(const std::filesystem::path& path);
 
 /// Reads a flight log of AirbrakesV2 (NCSU High-Powered Rocketry Club, MIT). Columns are identified by name:
 /// timestamp_seconds, raw_acceleration_{x,y,z}_gs, raw_angular_rate_{x,y,z}_deg_per_s, and optionally
-/// magnetic_field_{x,y,z}_microteslas. The importer ignores other columns. There is no truth, because the filter of the
-/// log is not a reference instrument. Rows with repeated stamps are dropped and counted. If the log has segments more
-/// than a second apart, the longest segment is used, with a note. Throws BadInput with file and line if the file is
-/// invalid.
+/// magnetic_field_{x,y,z}_microteslas. The importer ignores other columns. The imported recording has no truth, because
+/// the filter of the log is not a reference instrument. Rows with repeated stamps are dropped and counted. If the log
+/// has segments more than a second apart, the longest segment is used, with a note. Throws BadInput with file and line
+/// if the file is invalid.
 Imported import_airbrakes(const std::filesystem::path& path);
 
 /// Returns whether the file has a header of AirbrakesV2.

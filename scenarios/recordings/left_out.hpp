@@ -48,7 +48,7 @@ class LeftOut {
 
   std::size_t count() const { return faulty_ + unlimited_; }
   /// Throws BadInput with the first error if more items are faulty than may be left out. `kept` is the number of items
-  /// that were not left out.
+  /// that remain.
   void require_few(std::size_t kept) const;
   /// Returns a note for the user, or "" if no item was left out.
   std::string note(std::size_t kept) const;

@@ -45,8 +45,8 @@ struct StoredLidarTruth {
 /// StoredTruth is a sim::Truth on disk. The lists of rows are columns of scratch files. All other members are those of
 /// sim::Truth.
 struct StoredTruth {
-  /// Returns the body states from row `first` to row `last` - 1. The result contains the mountings and `p_BG_m`, but
-  /// neither sensors nor contacts.
+  /// Returns the body states from row `first` to row `last` - 1. The returned truth contains the mountings and
+  /// `p_BG_m`, but neither sensors nor contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 

@@ -11,9 +11,9 @@
 
 namespace tumble::scenarios {
 
-/// Nearness tests whether any point of a set is within a fixed distance of a query point. The result of the test is
-/// exact. Nearness uses a hash of cells as wide as the distance and checks 27 cells per query. Nearness ignores
-/// non-finite points.
+/// Nearness tests whether any point of a set is within a fixed distance of a query point. The distance test is exact.
+/// Nearness uses a hash of cells as wide as the distance and checks 27 cells per query. Nearness ignores non-finite
+/// points.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);

@@ -15,8 +15,8 @@ struct Plan {
 };
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
-/// (S11) of statistics.md. The formula assumes that the fraction of zero differences stays as observed. The result is
-/// at least the minimum number of pairs that can be significant. The number of pairs is infinite if the differences
+/// (S11) of statistics.md. The formula assumes that the fraction of zero differences stays as observed. The returned
+/// number of pairs is at least the minimum that can be significant. The number of pairs is infinite if the differences
 /// have no tendency. Cost: O(n log n). Throws BadInput for an invalid plan.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 

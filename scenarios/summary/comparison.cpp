@@ -139,7 +139,7 @@ class Comparing {
   }
 
   /// Compares failures on the simulated runs of both methods. `seeds` contains all seeds, and `failed` the seeds of
-  /// failed runs. Both lists are ascending.
+  /// failed runs. The lists `seeds` and `failed` are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {

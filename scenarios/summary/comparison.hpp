@@ -20,9 +20,9 @@ struct Margin {
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is negative if `own`
-/// is worse by less than the margin. A negative margin requires an improvement. The result is infinite if only `own`
-/// belongs to a failed run, and 0 if both runs failed.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The difference is negative if
+/// `own` is worse by less than the margin. A negative margin requires an improvement. The difference is infinite if
+/// only `own` belongs to a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {

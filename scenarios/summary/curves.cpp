@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// These measures sort whole simulated runs into bins (scenarios/sweep/motion_values.hpp).
+/// The measures in kDrawMeasures sort whole simulated runs into bins (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 

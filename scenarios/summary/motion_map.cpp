@@ -86,8 +86,8 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   return out;
 }
 
-/// Returns the maxima from the two publications on the rig by Deschênes and others. The earlier publication reports
-/// rates and forces. The later publication reports forces in its abstract, and an angular acceleration.
+/// Returns the maxima from the two publications on the rig by Deschênes and others. The ICRA 2024 paper reports rates
+/// and forces. The CRV 2021 paper reports forces in its abstract, and an angular acceleration.
 std::vector<PublishedExtreme> published() {
   return {{"rig, 32 tumbles down a hill",
            "Deschênes and others, ICRA 2024: up to 18.6 rad/s and 157.8 m/s² (the accelerometer has a range of 16 g)",

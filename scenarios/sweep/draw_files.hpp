@@ -35,7 +35,7 @@ class DrawFiles {
   /// Returns the folder in which a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
   /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written, the
-  /// function removes all files instead. Existing estimates of other methods stay if they were computed from equal
+  /// function removes all files instead. Stored estimates of other methods remain if they were computed from equal
   /// sensor data.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.

@@ -80,7 +80,7 @@ std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// GateResult is one result of the gate, for one scenario or all scenarios. The result is about one metric, or about
+/// GateResult is one result of the gate, for one scenario or all scenarios. A GateResult is about one metric, or about
 /// the outcomes of a method (no metric).
 struct GateResult {
   std::string scenario;  ///< empty: all scenarios that have the metric

@@ -12,8 +12,8 @@
 
 namespace tumble::scenarios {
 
-/// Variation is a curve of a suite: one number, or several numbers that change together, set to a list of values. There
-/// are three sorts of keys.
+/// Variation is a curve of a suite: one number, or several numbers that change together, set to a list of values. A
+/// Variation has one of three sorts of keys.
 ///
 /// - A key such as `world.rock_count` or `sensors.imu.output_rate_hz` is a number of the scenario (fixed_number.hpp).
 ///   Each value of a scenario number needs a new simulation.

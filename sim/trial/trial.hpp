@@ -41,8 +41,8 @@ class Trial {
   BodyState state() const;  ///< state of the body that carries the sensors
   /// Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
-  /// Returns the angle of a hinge, given its name, for a robot on joints; joint_rate_rad_s returns its rate. Both
-  /// functions throw InvalidSituation for an unknown name.
+  /// Returns the angle of a hinge, given its name, for a robot on joints; joint_rate_rad_s returns its rate. joint_rad
+  /// and joint_rate_rad_s throw InvalidSituation for an unknown name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);

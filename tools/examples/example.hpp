@@ -87,8 +87,8 @@ struct FoundExamples {
   std::vector<std::string> unreadable;  ///< path and reason for each part of the list that cannot be read
 };
 /// Reads the examples of a folder; the result is empty if the folder has no list. An unreadable example does not affect
-/// other examples. These errors are reported: the list has the wrong format or is truncated (examples that end before
-/// the cut are returned), a picture is missing, or a name leads out of the folder.
+/// other examples. read_examples reports these errors: the list has the wrong format or is truncated (examples that end
+/// before the cut are returned), a picture is missing, or a name leads out of the folder.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
 /// Copies a list that is damaged or truncated to examples.json.damaged, so that the next list does not overwrite the

@@ -15,8 +15,8 @@ Plot sphere_track_plot(const scenarios::RunResult& run);
 Plot sphere_speed_plot(const scenarios::RunResult& run);
 /// Plots the height of the centre relative to its start over time.
 Plot sphere_height_plot(const scenarios::RunResult& run);
-/// Plots the tilt relative to its mean over the longest standstill, in the direction in which the tilt varies most.
-/// This plot shows jitter and drift of the attitude. The plot has no lines without attitude methods or without a
+/// Plots the tilt relative to its mean over the longest standstill, in the direction in which the tilt varies most. The
+/// standstill plot shows jitter and drift of the attitude. The plot has no lines without attitude methods or without a
 /// standstill.
 Plot sphere_standstill_plot(const scenarios::RunResult& run);
 

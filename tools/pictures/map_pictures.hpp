@@ -26,7 +26,7 @@ struct ErrorMap {
   double share_within(float limit_m) const;
 };
 
-/// Computes the error of each map point. Non-finite points are left out. The result is empty if the estimate has no
+/// Computes the error of each map point. Non-finite points are left out. The error map is empty if the estimate has no
 /// map, or no pose within the time of the truth.
 ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estimate, const sim::Truth& truth,
                       const sim::Surface& surface);

@@ -33,8 +33,8 @@ bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const s
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
 
 /// Returns the path of an estimate, aligned with the truth at the estimate's first pose by position and yaw, as for the
-/// scores. The result is empty if the estimate has no poses, or if the frame of the poses belongs to a sensor that the
-/// recording lacks.
+/// scores. The returned path is empty if the estimate has no poses, or if the frame of the poses belongs to a sensor
+/// that the recording lacks.
 Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth& truth);
 
 /// Returns `path` up to the first point outside of the surroundings of `truth`. The surroundings are the bounding box

@@ -34,15 +34,15 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// Samples the truth at instants `step_ns` apart. The result is empty if the truth has no positions. Throws BadInput if
-/// the truth is inconsistent.
+/// Samples the truth at instants `step_ns` apart. The returned motion is empty if the truth has no positions. Throws
+/// BadInput if the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
 /// Converts an estimate to poses of the body, by the mounting that the estimator received. If there is a truth, the
 /// motion is aligned with the truth as for the scores: position and heading at the first pose within the time of the
-/// truth. Otherwise it is aligned with `reference` in the same way. An estimate that has no common time with the
-/// reference is not moved. The result is empty without poses, or if the frame of the poses belongs to a sensor that the
-/// recording lacks. `truth` may be null.
+/// truth. Without a truth, the motion is aligned with `reference` in the same way. An estimate that has no common time
+/// with the reference is not moved. The returned motion is empty without poses, or if the frame of the poses belongs to
+/// a sensor that the recording lacks. `truth` may be null.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

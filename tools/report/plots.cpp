@@ -83,7 +83,7 @@ class Boxes {
     }
   }
 
-  /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise the axis starts at 0 if
+  /// Uses a logarithmic axis if values are positive and span more than a decade. A linear axis starts at 0 if
   /// `from_zero` is set, or at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();

@@ -56,10 +56,10 @@ class Palette {
 /// scenario stays unchanged.
 std::string axis_title(const std::string& metric);
 
-/// Plots every run as a point next to a box of the quartiles. There is one box per method and scenario, with at most
-/// `kBoxPoints` points. Failed runs are points of the box on the line "failed", beyond the worst value, so that the
-/// quartiles count failed runs as in the tables. The axis is logarithmic if values are positive and span more than a
-/// decade.
+/// Plots every run as a point next to a box of the quartiles. The figure has one box per method and scenario, with at
+/// most `kBoxPoints` points. Failed runs are points of the box on the line "failed", beyond the worst value, so that
+/// the quartiles count failed runs as in the tables. The axis is logarithmic if values are positive and span more than
+/// a decade.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption, const Palette& palette = {});
 

@@ -18,8 +18,8 @@ class LearntFile {
   /// BadInput if the file cannot be read.
   explicit LearntFile(std::filesystem::path path);
 
-  /// Throws BadInput if the file cannot be written, and leaves no file behind. This check runs before the run, after
-  /// the folder of the file was created.
+  /// Throws BadInput if the file cannot be written, and leaves no file behind. require_place is called before the run,
+  /// after the folder of the file was created.
   void require_place() const;
 
   /// Compares the lever arm in the file with the lever arm of the recording; returns a warning if the file belongs to

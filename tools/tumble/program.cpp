@@ -90,7 +90,7 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// This text is shown when `tumble` is called without arguments.
+/// Shows the text of `tumble` without arguments.
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "

@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// These are the defaults; each example costs one more simulated run, and its pictures.
+/// The constants are defaults of `tumble sweep`; each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {

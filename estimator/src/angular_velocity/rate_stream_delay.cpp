@@ -118,7 +118,7 @@ void RateStream::accumulate_impacts(State& state) const {
   impacts.add((end - begin).norm() / span_s, mean);
 }
 
-// Returns the delay estimated from impacts. The result is empty if the log repeats readings, since each repetition
+// Returns the delay estimated from impacts. The estimate is empty if the log repeats readings, since each repetition
 // would count as a reading.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const ImpactSums& impacts = state.device.front().delay.impacts;

@@ -36,8 +36,8 @@ bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
-// Returns the first sample of the reading that precedes the reading of sample k. The result is empty if that first
-// sample is not in the window.
+// Returns the first sample of the reading that precedes the reading of sample k. Returns nothing if the first sample of
+// the preceding reading is outside the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;

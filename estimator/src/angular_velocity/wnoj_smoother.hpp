@@ -25,8 +25,8 @@ namespace tumble {
 ///
 /// WnojSmoother smooths the three axes independently. The neglected commutators of SO(3) would change the angular
 /// acceleration by about dt^2 |w x alpha| / 4. The published code uses +gyro, although its sign convention requires
-/// -gyro. The sign of the gyro acts only through the commutators, because the linear problem is unchanged if angle,
-/// rate and acceleration change sign. WnojSmoother therefore needs no parameter for the sign of the gyro.
+/// -gyro. The sign of the gyro matters only in the commutators, because the linear problem is unchanged if angle, rate
+/// and acceleration change sign. WnojSmoother therefore needs no parameter for the sign of the gyro.
 class WnojSmoother {
  public:
   struct Params {

@@ -80,7 +80,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 
 /// Returns the probability of hand-held motion for samples within segments of clipped or suspect readings: carried.md
 /// (C40). The function takes the smallest probability within `near_s` of the sample and within the sample's segment.
-/// The result is 0 outside segments of clipped or suspect readings.
+/// The probability is 0 outside segments of clipped or suspect readings.
 std::vector<double> RegimeSmoother::hand_held_by_segment(std::span<const RegimeProbabilities> probabilities,
                                                          const RateReport& report,
                                                          std::span<const RateState> rates) const {

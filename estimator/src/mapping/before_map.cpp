@@ -113,8 +113,9 @@ StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in a frame in which the IMU's attitude has no error. This frame is rotated by the tilt
-/// error φ of the IMU. In the rotated frame, velocity v and gravity g have the errors δv + v × φ and g × φ.
+/// Returns the state estimate in a frame in which the IMU's attitude has no error. The frame without attitude error is
+/// rotated by the tilt error φ of the IMU. In the rotated frame, velocity v and gravity g have the errors δv + v × φ
+/// and g × φ.
 StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

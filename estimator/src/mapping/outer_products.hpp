@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// OuterProducts computes a sum of outer products of columns with up to `Rows` numbers. The result equals that of
+/// OuterProducts computes a sum of outer products of columns with up to `Rows` numbers. The sum equals the result of
 /// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack, which needs 86 KiB
 /// for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls Eigen's kernel directly.
 template <int Rows, int Columns>

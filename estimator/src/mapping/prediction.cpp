@@ -41,7 +41,7 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
 }
 
 /// Returns the largest standard deviation that the rate method reports for a clipped axis within the segment. The
-/// result is at least the parameter `deficit_sigma_min_rad_s`.
+/// returned standard deviation is at least the parameter `deficit_sigma_min_rad_s`.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {

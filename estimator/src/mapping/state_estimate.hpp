@@ -7,8 +7,8 @@
 
 namespace tumble::mapping {
 
-/// StateEstimate is the estimate of all unknowns at one time. Its covariances `weight` and `error` are C and E of
-/// mapping.md (section 6).
+/// StateEstimate is the estimate of all unknowns at one time. The covariances `weight` and `error` of a StateEstimate
+/// are C and E of mapping.md (section 6).
 struct StateEstimate {
   Registration::Estimate mean;  ///< the covariance of its state is the motion block of `weight`
   /// Covariance that weights the mean against the next sweep. `weight` assumes that points carry less information than
@@ -51,7 +51,7 @@ void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, co
             TimeNs end_ns, StateEstimate& end);
 
 /// Returns the derivative of the IMU's pose error with respect to mounting errors for an exact lidar pose, at the given
-/// attitude. The result is the matrix K of mapping.md (R54).
+/// attitude. The derivative is the matrix K of mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
 /// Returns the covariance with small variances in place of zeros, so that the matrix is invertible.

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the state in normal operation. In this state, a certain prior or an abandoned search may make a sweep
+/// Tracking is the state in normal operation. During tracking, a certain prior or an abandoned search may make a sweep
 /// acceptable without registration.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration

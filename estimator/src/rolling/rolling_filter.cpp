@@ -154,9 +154,9 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the position covariance that differences between the hypotheses cause: rolling.md (R27). The result is the
-/// mean of d d^T, weighted by the weights of the hypotheses. The vector d is the position of a hypothesis relative to
-/// that of the best hypothesis.
+/// Returns the position covariance that differences between the hypotheses cause: rolling.md (R27). The position
+/// covariance is the mean of d d^T, weighted by the weights of the hypotheses. The vector d is the position of a
+/// hypothesis relative to that of the best hypothesis.
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

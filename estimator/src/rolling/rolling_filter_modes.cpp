@@ -21,9 +21,9 @@ namespace {
 constexpr double kDropped = -120.0;   // log weight relative to the best hypothesis, below which a hypothesis is pruned
 constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest; limits the effect of a single bad node
 constexpr double kLongAgo_s = 1.0;    // time in one mode after which the start of the mode no longer matters
-// These constants describe a mixture density for the horizontal change of the contact velocity per node during slip.
-// The component kPlateau_m_s is as narrow as the density of grip. A wider component would classify each phase of
-// constant slip velocity as grip.
+// The constants describe a mixture density for the horizontal change of the contact velocity per node during slip. The
+// component kPlateau_m_s is as narrow as the density of grip. A wider component would classify each phase of constant
+// slip velocity as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of contact velocity, on a bump
 constexpr std::int64_t kAgesApart = 4;

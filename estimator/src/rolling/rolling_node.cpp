@@ -105,8 +105,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< the reading is a lower bound of these components
 };
 
-/// Returns a specific force for a saturated reading: rolling.md (R8). The result is the larger of two forces: the
-/// reading, and the force that keeps the velocity of the centre constant.
+/// Returns a specific force for a saturated reading: rolling.md (R8). The returned force is the larger of two forces:
+/// the reading, and the force that keeps the velocity of the centre constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);

@@ -11,8 +11,8 @@
 
 namespace tumble::rolling {
 
-/// These constants are the first indices in the error state: attitude (W), velocity and position of the IMU (W), then
-/// constants.
+/// Each constant is the first index of a quantity in the error state: attitude (W), velocity and position of the IMU
+/// (W), then sensor errors, lever arm, slope and radius.
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
                      kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
 inline constexpr int kStates = 40;

@@ -11,8 +11,8 @@ namespace tumble::baselines {
 
 /// Madgwick estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report,
 /// 2010, eqs 25-33). The filter integrates q' = q/2 (x) (0, w) - gain * s/|s| by an explicit step with normalisation,
-/// as published. In this equation, s is the gradient of the tilt error. Without a usable gradient (|s| or |f| ~ 0), the
-/// filter only integrates the gyro.
+/// as published. The vector s is the gradient of the tilt error. Without a usable gradient (|s| or |f| ~ 0), the filter
+/// only integrates the gyro.
 ///
 /// Madgwick's filter estimates neither bias nor heading. The correction has a fixed angular speed of 2 gain rad/s, so
 /// the attitude oscillates at rest and follows accelerations.

@@ -119,8 +119,9 @@ struct BagReading {
 ///
 /// Message times come from the source `stamps`. Notes state how the stamps of headers and records differ. Units are
 /// checked against gravity by the checks for CSV files. Specific force in g at rest, as from Livox drivers, is
-/// converted and noted. Each sensor is named after its topic. The rules of import_sweeps apply to points. Duplicate
-/// messages (equal stamp and content) are read once. Single faulty messages are left out and noted (left_out.hpp).
+/// converted and noted. Each sensor is named after its topic. Points of a bag follow the rules of import_sweeps.
+/// Duplicate messages (equal stamp and content) are read once. Single faulty messages are left out and noted
+/// (left_out.hpp).
 ///
 /// Unless the caller chooses topics, the reader skips clouds in "world", "map" or "odom", because they are not raw
 /// sensor data. Lidars whose points have times then come first.

@@ -203,7 +203,7 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Parts of one recording that are farther apart in time are separate recordings.
+/// Bag files that are more than kPartsApart_s apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {

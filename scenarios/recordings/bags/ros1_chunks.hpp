@@ -29,8 +29,8 @@ std::uint64_t bytes_unpacked(const std::filesystem::path& file);
 void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,
                    const std::function<void(Ros1Chunk&)>& change);
 
-/// Decompresses a chunk with any LZ4 frame (linked blocks, checksums, content size). ROS's library only supports
-/// independent blocks. Throws BadInput if the chunk is damaged or if its size differs from the stated size.
+/// Decompresses a chunk with any LZ4 frame (linked blocks, checksums, content size). The ROS 1 library only supports
+/// independent LZ4 blocks. Throws BadInput if the chunk is damaged or if its size differs from the stated size.
 void unpack_lz4(Ros1Chunk& chunk);
 
 }  // namespace tumble::scenarios

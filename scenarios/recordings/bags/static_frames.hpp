@@ -43,7 +43,7 @@ class StaticFrames {
     Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
     std::string problem;         ///< why the transform is invalid; "" if valid
   };
-  /// Returns the frame and all its ancestors. Each entry contains the pose of `frame` in the ancestor.
+  /// Returns the frame and all its ancestors. Each returned FrameLink contains the pose of `frame` in one ancestor.
   std::vector<FrameLink> path_to_root(const std::string& frame, const std::string& where) const;
   std::map<std::string, FrameLink> frames_;
   std::vector<std::string> remarks_;

@@ -44,7 +44,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// These functions read and check only the header of a point file. Both functions throw BadInput like read_cloud.
+/// These functions read and check only the header of a point file. The header readers throw BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

@@ -31,8 +31,8 @@ constexpr std::array<const char*, 8> kNames = {"t",          "time",        "tim
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Time stamps after 1973, in seconds, exceed kEpochMin_s.
 constexpr double kEpochMin_s = 1e8;
-/// With at least kPointsThatSpan points, the times of a sweep cover the sweep's period. Fewer points may cover any
-/// short part of the period and do not contradict a stated unit.
+/// A sweep with at least kPointsThatSpan points covers the sweep's period in time. A sweep with fewer points may cover
+/// a short part of the period, so its times do not contradict a stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
 /// Among kCloudsToCompare clouds with absolute times, at least two start more than two periods after time zero.

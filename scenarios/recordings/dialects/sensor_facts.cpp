@@ -74,7 +74,7 @@ std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t 
 }
 
 /// Returns the number of firings of a ring per sweep: the sweep period divided by the upper median step between returns
-/// of one ring. There are as many steps as points, so the function counts the upper 16 bits first, then the lower 16
+/// of one ring. A sweep has as many steps as points, so the function counts the upper 16 bits first, then the lower 16
 /// bits within the bin of the median.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;

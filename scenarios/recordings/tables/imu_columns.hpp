@@ -43,9 +43,9 @@ ImuColumns imu_columns(const LoggedTable& table);
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
 /// Infers the unit of stamps from up to a thousand steps, as a number of decimals. The unit is that of s, ms, us and ns
-/// which gives 10 to 1000 samples per second. At most one time unit fits. For other sample rates, the file must state
-/// the unit. The function reads the samples from the start. The error message starts with `file`. Throws BadInput if no
-/// unit fits.
+/// which gives 10 to 1000 samples per second. At most one unit of time fits the stamps of a table. For other sample
+/// rates, the file must state the unit. The function reads the samples from the start. The error message starts with
+/// `file`. Throws BadInput if no unit fits.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -30,8 +30,8 @@ struct CandidateFrame {
 /// QuaternionConvention lists the possible meanings of the quaternions in a pose file.
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
-/// TurningFit is the difference between the gyro and the attitudes under one interpretation. This difference is the
-/// median rotation difference over pairs of attitudes, as a fraction of the median rotation.
+/// TurningFit is the difference between the gyro and the attitudes under one interpretation. The difference between
+/// gyro and attitudes is the median rotation difference over pairs of attitudes, as a fraction of the median rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
