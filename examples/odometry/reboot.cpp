@@ -7,7 +7,7 @@
 #include "driver.hpp"
 #include "rig.hpp"
 
-// Usage: reboot [FILE]. The program continues from the state in FILE and saves its state there at the end.
+// Usage: reboot [FILE]. Continues from the state in FILE and saves the state there at the end.
 int main(int count, char** arguments) {
   const std::string file = count > 1 ? arguments[1] : "odometry.state";
   tumble::TumblingOdometry odometry(rig());  // the parameters must be those of the saved state
