@@ -5,7 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Folders of the data files that are read at run time. The caller supplies the root folder.
+/// DataRoot contains the folders of the data files that are read at run time. The caller of DataRoot supplies the root
+/// folder.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

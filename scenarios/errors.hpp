@@ -7,8 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// Error for wrong use or bad input, for example an unknown name, a missing or truncated file, or a value outside its
-/// limits. The message is one line with the fault, its location and the allowed range. The program exits with status 2.
+/// BadInput is the error for wrong use or bad input, for example an unknown name, a missing or truncated file, or a
+/// value outside its limits. The error message is one line with the fault, its location and the allowed range. After a
+/// BadInput, the program exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

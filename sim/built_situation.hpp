@@ -12,14 +12,14 @@ namespace engine {
 struct World;
 }
 
-/// A situation whose world and robot were compiled once to a MuJoCo model. Simulation, start pose, true surface and
-/// pictures all use the compiled model. The compiled model is constant: code that steps the model or changes its look
-/// uses a copy. Copies of a BuiltSituation share the compiled model and may be used from several threads.
+/// BuiltSituation is a situation whose world and robot are compiled to one MuJoCo model. Simulation, start pose, true
+/// surface and pictures all use this compiled model. The compiled model is constant: code that steps or modifies the
+/// model uses a copy. Copies of a BuiltSituation share the compiled model, and several threads may use them.
 class BuiltSituation {
  public:
   /// Reads the robot's MJCF from the folder `models` and composes the world around the robot. The composition takes
   /// milliseconds for a floor and tenths of a second for a hill. Throws InvalidSituation with the message of MuJoCo's
-  /// compiler.
+  /// model compiler.
   BuiltSituation(ResolvedSituation situation, const std::filesystem::path& models);
 
   const ResolvedSituation& situation() const;

@@ -23,14 +23,13 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// Throws std::bad_alloc for a lack of memory, which is not an error of the situation: a larger machine may simulate
-/// it.
+/// Throws std::bad_alloc for a lack of memory, because a larger machine may be able to simulate the situation.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Installs error handlers, because without handlers MuJoCo would write a log file and end the process on an error.
-/// MuJoCo counts its warnings in mjData, and the class Physics checks the counters after every step.
+/// Installs error handlers; otherwise MuJoCo would write a log file and end the process on an error. MuJoCo counts its
+/// warnings in mjData; the class Physics checks the counters after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -47,7 +46,7 @@ bool touches(const mjModel& model, int geom) {
   return model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
 }
 
-/// Counts the pairs that consist of a moving geom and a static geom.
+/// Counts the pairs of a moving geom and a static geom.
 int count_pairs(const mjModel& model) {
   int moving = 0, all = 0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -57,9 +56,9 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Returns true if the robot has one geom and MuJoCo's bounding-volume tree returns the robot's contacts in the same
-/// order as a test of every pair. The tree sorts the contacts by the first geom of a pair. The first geom is the geom
-/// whose type has the lower number.
+/// Returns whether the robot has one geom, and MuJoCo's bounding-volume tree gives the contacts in the order of a test
+/// of every pair. The bounding-volume tree sorts contacts by the first geom of a pair. The first geom of a pair is the
+/// one with the lower type number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -78,7 +77,7 @@ bool sorts_as_asked(const mjModel& model) {
   return true;
 }
 
-/// Returns true if only gravity, contacts and the wrench of the motion act on the moving bodies.
+/// Returns whether only gravity, contacts and the motion's wrench act on the moving bodies.
 bool moves_freely(const mjModel& model) {
   const auto none = [](const mjtNum* numbers, int count) {
     return std::all_of(numbers, numbers + count, [](mjtNum number) { return number == 0.0; });
@@ -89,18 +88,18 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// Disables computations of MuJoCo whose results are not used; the motion stays bit-identical. Sleeping is enabled
-/// because MuJoCo then places static bodies only once instead of at every stage of a step. The robot never sleeps.
+/// Disables computations of MuJoCo whose results are unused; the motion stays bit-identical. Sleeping is enabled
+/// because MuJoCo then places static bodies once instead of at every stage of a step. The robot is always awake.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
-  // bounding boxes of height fields are not tested, because a height field is below every strut; planes have no box
+  // the bounding boxes of height fields are skipped, because a height field is below every strut; planes have no box
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // for few pairs, a tree over the world's geoms costs more than it saves, unless the tree contains only geoms near the
+  // with few pairs, the tree over the world's geoms costs more than it saves unless it contains only geoms near the
   // robot
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;

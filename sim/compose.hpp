@@ -5,11 +5,11 @@
 
 #include "sim/engine/model.hpp"
 
-/// This header is used only within sim. Robots and worlds add elements to a model, which MuJoCo then compiles.
+/// Worlds and robots add elements to a model description, which MuJoCo then compiles.
 namespace tumble::sim::engine {
 
-/// Composes world and robot in memory (mjSpec) and compiles the model. Outside of tests, only BuiltSituation calls this
-/// function. Throws InvalidSituation with the message of MuJoCo's compiler.
+/// Composes world and robot in memory (mjSpec) and compiles them to one model. Outside of tests, only BuiltSituation
+/// calls compose(). Throws InvalidSituation with the message of MuJoCo's model compiler.
 World compose(const ResolvedSituation& situation, const std::filesystem::path& models);
 
 }  // namespace tumble::sim::engine

@@ -26,7 +26,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// Returns true if a parameter with this name is a count or a list number, so that its value must be a whole number.
+/// Returns whether a parameter with this name is a count or a list number, so that its value must be whole.
 bool is_whole(std::string_view name) {
   return name.ends_with("_count") || name == "shape";
 }

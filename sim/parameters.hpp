@@ -11,8 +11,8 @@
 
 namespace tumble::sim {
 
-/// A number that a component of a situation takes, with default, limits, unit and meaning. Switches are numbers: 0 off,
-/// 1 on.
+/// Parameter is a number that a component of a situation takes, with default, limits, unit and meaning. Switches are
+/// numbers: 0 is off, 1 is on.
 struct Parameter {
   std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
   double default_value;
@@ -32,14 +32,14 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
   return all;
 }
 
-/// Thrown for a value out of bounds, an unknown name or an unknown component. The message states place, value and
-/// limit.
+/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component. The error message
+/// states place, value and limit.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Numbers by name; `resolve` returns a set that is complete and within limits.
+/// Values contains numbers by name; `resolve` returns a set that is complete and within limits.
 class Values {
  public:
   void set(const std::string& name, double value) { numbers_[name] = value; }
@@ -53,21 +53,21 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Fills in defaults. Rejects unknown names (suggesting the nearest known name), NaN and values outside their limits.
-/// Error messages start with `place`, for example "world.hill".
+/// Fills in the defaults of a component's parameters. Rejects unknown names (suggesting the nearest known name), NaN
+/// and values outside their limits. Error messages start with `place`, for example "world.hill".
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
 /// Returns the known name nearest to `name` by edit distance; empty if none is similar.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
-/// A kind of world, robot, motion or sensor: one entry of a registry.
+/// ComponentType is a kind of world, robot, motion or sensor: one entry of a registry.
 struct ComponentType {
   std::string name;
   std::string doc;
   std::span<const Parameter> parameters;
 };
 
-/// A component of a situation: the name of its type and its numbers.
+/// Component is a part of a situation: the name of its type and its numbers.
 struct Component {
   std::string type;
   Values values;

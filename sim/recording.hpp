@@ -9,15 +9,15 @@
 
 #include "sim/sensors.hpp"
 
-/// Data types of a simulation's results, with the truth separate from the sensors. Frames and units are as in
-/// docs/design.md: W world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the
+/// recording.hpp defines the results of a simulation, with the truth separate from the sensors. Frames and units are as
+/// in docs/design.md: W world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the
 /// sphere's geometric centre; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
-/// State of contact, over a window that bridges short interruptions of contact.
+/// ContactLabel is the state of contact, over a window that bridges short interruptions.
 enum class ContactLabel : std::uint8_t { air, grip, slip, slide };
 
-/// One contact at one instant of the truth.
+/// ContactTruth is one contact at one instant of the true motion.
 struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
@@ -27,7 +27,7 @@ struct ContactTruth {
   std::int32_t surface_id = -1;
 };
 
-/// True quantities at one IMU, for the averaging windows and time stamps of the readings.
+/// ImuTruth contains the true quantities at one IMU, for the averaging windows and time stamps of the readings.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
@@ -45,7 +45,7 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< true mean over the window, disturbances included
 };
 
-/// Exact lidar returns, parallel to LidarRecord's points.
+/// LidarTruth contains the exact lidar returns, parallel to the points of LidarRecord.
 struct LidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
@@ -53,21 +53,21 @@ struct LidarTruth {
   std::vector<std::int32_t> surface_id;  ///< index into Truth::surfaces; -2 is the robot's own cage
 };
 
-/// True values of a Quantity, parallel to its readings.
+/// QuantityTruth contains the true values of a Quantity, parallel to its readings.
 struct QuantityTruth {
   std::string name;
   std::string unit;
   std::vector<double> values;  ///< exact means over the windows of the readings
 };
 
-/// Readings of a SeriesRecord without any error.
+/// SeriesTruth contains the readings of a SeriesRecord without any error.
 struct SeriesTruth {
   std::string name;
   Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< true mounting
   std::vector<QuantityTruth> quantities;
 };
 
-/// True motion and contacts; physics samples every `period_ns` from time 0.
+/// Truth contains the true motion and contacts; physics samples every `period_ns` from time 0.
 struct Truth {
   std::int64_t period_ns = 500000;
   std::vector<Eigen::Vector3d> p_WB_m;

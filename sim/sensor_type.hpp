@@ -12,7 +12,7 @@
 
 namespace tumble::sim {
 
-/// Input of a sensor's simulation; all members outlive the call.
+/// SensorContext is the input of a sensor's simulation; all members outlive the call.
 struct SensorContext {
   const engine::World& world;
   const SensorSpec& sensor;             ///< resolved
@@ -23,18 +23,17 @@ struct SensorContext {
   int threads;
 };
 
-/// A kind of sensor: its parameters, and the function that adds the sensor's readings and truth to a recording with the
-/// body's truth. An optional check rejects resolved numbers that contradict each other, with a message that starts with
-/// `place`.
+/// SensorType is a kind of sensor: its parameters, and the function that adds its readings and truth to a recording. An
+/// optional check rejects parameters that contradict each other, with a message that starts with `place`.
 struct SensorType {
   ComponentType component;
   void (*simulate)(const SensorContext& context, Recording& recording);
   void (*check)(const Values& values, const std::string& place) = nullptr;
 };
 
-/// Returns all kinds of sensor in the order of registration.
+/// Returns all sensor types in the order of registration.
 std::span<const SensorType* const> all_sensor_types();
-/// Returns the kind of sensor with this name. For an unknown name, throws InvalidSituation with the nearest known kind.
+/// Returns the sensor type with this name. For an unknown name, throws InvalidSituation with the nearest known type.
 const SensorType& find_sensor_type(std::string_view kind);
 
 }  // namespace tumble::sim

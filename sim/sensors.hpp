@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-/// Data types of sensor data, which is all that an estimator receives. Frames and units are as in docs/design.md: B
-/// body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds from the start.
+/// sensors.hpp defines the sensor data, which is all that an estimator receives. Frames and units are as in
+/// docs/design.md: B body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds
+/// from the start.
 namespace tumble::sim {
 
-/// Readings of one IMU, as the device delivers the readings.
+/// ImuRecord contains the readings of one IMU, as the device delivers them.
 struct ImuRecord {
   std::string name;    ///< name of the sensor in the situation: "imu"
   std::string device;  ///< for example "mti30"
@@ -30,7 +31,7 @@ struct ImuRecord {
                                                               ///< unknown
 };
 
-/// Knowledge about the time of points within a sweep.
+/// PointTimes states what is known about the time of points within a sweep.
 enum class PointTimes : std::uint8_t {
   measured,    ///< each point has its own time in offset_ns
   not_skewed,  ///< all points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed;
@@ -38,7 +39,7 @@ enum class PointTimes : std::uint8_t {
   unknown      ///< the sweep is skewed in an unknown way; offset_ns is 0
 };
 
-/// Returns of one lidar, sweep after sweep; a firing without a hit has no point in the record.
+/// LidarRecord contains the returns of one lidar, sweep after sweep; a firing without a hit has no point.
 struct LidarRecord {
   std::string name;
   std::string device;
@@ -54,7 +55,7 @@ struct LidarRecord {
   std::vector<std::uint16_t> ring;
 };
 
-/// One quantity that a sensor measures, with all its readings.
+/// Quantity is one quantity that a sensor measures, with all its readings.
 struct Quantity {
   std::string name;            ///< ends in its unit: "pressure_pa"
   std::string unit;            ///< for example "Pa"
@@ -62,13 +63,14 @@ struct Quantity {
   std::vector<double> values;  ///< one per time stamp of the sensor
 };
 
-/// A known constant of a sensor, for example the position of a beacon.
+/// Constant is a known constant of a sensor, for example the position of a beacon.
 struct Constant {
   std::string name;  ///< ends in its unit
   double value = 0.0;
 };
 
-/// Readings of any other sensor, for example a barometer: one number per quantity at each time stamp.
+/// SeriesRecord contains the readings of any other sensor, for example a barometer: one number per quantity at each
+/// time stamp.
 struct SeriesRecord {
   std::string name;
   std::string kind;  ///< kind of sensor: "barometer"
@@ -80,7 +82,7 @@ struct SeriesRecord {
   std::vector<Constant> constants;  ///< needed to interpret the readings
 };
 
-/// All data that an estimator receives.
+/// Sensors contains all data that an estimator receives.
 struct Sensors {
   std::string robot;           ///< "rig", "sphere", "pendulum"; empty if the robot is unknown
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere

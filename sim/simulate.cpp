@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the pose of a site in the true body frame.
+/// Returns the pose of a sensor's site in the true body frame.
 Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor) {
   const mjModel& model = *world.model;
   const int site = mj_name2id(&model, mjOBJ_SITE, sensor.site.c_str());
@@ -36,8 +36,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   return T_BX;
 }
 
-/// Returns the calibration that an estimator receives: the mounting in the design frame plus the calibration error. The
-/// origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
+/// Returns the sensor calibration that an estimator receives: the mounting in the design frame plus the calibration
+/// error. The origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
 Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BX) {
   const Values& error = sensor.mount_error;
   Eigen::Isometry3d given = T_BX;

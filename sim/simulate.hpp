@@ -9,8 +9,8 @@
 
 namespace tumble::sim {
 
-/// Thrown if a simulated run is rejected. The message states the reason and the simulated time; sweeps count rejected
-/// runs separately. A run is rejected for any of these reasons:
+/// SimulationFailure is thrown if a simulated run is rejected. The message states the reason and the simulated time;
+/// sweeps over scenarios count rejected runs separately. A simulated run is rejected for any of these reasons:
 /// - a warning of MuJoCo, or a state that is not finite;
 /// - a speed above 5 mm/s after the second of settling before the start;
 /// - a position beyond the half extent of the world, or 60 m below the world's origin;
@@ -22,13 +22,12 @@ class SimulationFailure : public std::runtime_error {
 };
 
 /// Simulates one situation: rigid bodies and contact (MuJoCo, RK4, 0.5 ms), IMU readings, lidar sweeps, truth.
-/// `threads` is the number of threads for the lidar; the recording does not depend on `threads`. Throws
-/// InvalidSituation if the robot lacks a sensor's site or the motion is impossible in the situation's world; throws
-/// SimulationFailure for a rejected run.
+/// `threads` is the number of threads for the lidar; the recording is independent of it. Throws InvalidSituation if the
+/// robot lacks a sensor's site or the motion is impossible in the world; throws SimulationFailure for a rejected run.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
-/// Returns the pose of the robot's body frame at the start of a situation, before the body settles into its contacts;
-/// nothing is simulated. Throws InvalidSituation if the motion is impossible in the situation's world.
+/// Returns the initial pose of the robot's body frame, before the body settles into its contacts; nothing is simulated.
+/// Throws InvalidSituation if the motion is impossible in the situation's world.
 Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

@@ -12,21 +12,21 @@
 
 namespace tumble::sim {
 
-/// A sensor of the robot: its mounting, its device, and the error of the estimator's calibration.
+/// SensorSpec describes a sensor of the robot: its mounting, its device, and the error of the estimator's calibration.
 struct SensorSpec {
   std::string name;    ///< unique in the situation: "imu", "imu_reference", "lidar"
   std::string kind;    ///< registry entry: "imu", "spinning_lidar", "barometer"
   std::string device;  ///< data sheet from which the values come ("mti30"); for information
   std::string site;    ///< site of the robot's MJCF at which the sensor is mounted
   Values values;       ///< numbers of the device (data sheet with the scenario's changes)
-  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes). An offset of
-  /// the centre of mass adds to the error of the calibration.
+  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes); an offset of
+  /// the centre of mass adds to it.
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// One situation with every number fixed. Equal situations give bit-identical recordings. Defaults may be omitted;
-/// `resolve` completes and checks the situation.
+/// Situation is one simulated case with every number fixed. Equal situations give bit-identical recordings. A Situation
+/// may omit defaults; `resolve` completes and checks it.
 struct Situation {
   std::string scenario;  ///< name of the scenario from which it was drawn
   std::uint64_t seed = 0;
@@ -46,9 +46,9 @@ std::span<const ComponentType> sensor_types();
 /// Parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
-/// A complete and checked situation. Only `resolve` creates a ResolvedSituation, so receivers need no further checks. A
-/// ResolvedSituation can be read as a Situation. To change a number, copy the Situation, change the copy and resolve
-/// the copy.
+/// ResolvedSituation is a complete and checked situation. Only `resolve` creates a ResolvedSituation, so receivers need
+/// no further checks. A ResolvedSituation can be read as a Situation. To change a number, copy the Situation, change
+/// the copy and resolve it.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }
@@ -67,8 +67,7 @@ class ResolvedSituation {
   Situation situation_;
 };
 
-/// Completes every component with its defaults and checks the component. Throws InvalidSituation with the location of
-/// the error.
+/// Completes every component with its defaults and checks it. Throws InvalidSituation with the location of the error.
 ResolvedSituation resolve(const Situation& situation);
 
 }  // namespace tumble::sim

@@ -1,2 +1,3 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Empty: the headers that the tests share are parsed once, as part of this file (tests/CMakeLists.txt).
+// This file has no code: the compiler parses the headers that the tests share once, as part of this file
+// (tests/CMakeLists.txt).

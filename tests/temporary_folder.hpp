@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios::testing {
 
-/// A test with a folder of its own, gone afterwards.
+/// TemporaryFolder is a test with a temporary folder.
 class TemporaryFolder : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -3,18 +3,20 @@
 
 #include <filesystem>
 
-/// Where the tests find what is not compiled into them. Functions, not definitions on the command line: only tree.cpp
-/// knows the paths of this checkout, and a compiler cache serves all others with the rest.
+/// The functions here return the paths of what is not compiled into the tests. They are functions, and not definitions
+/// on the command line: only tree.cpp contains the paths of this checkout, so a compiler cache works for all other
+/// files in other checkouts.
 namespace tumble::test {
 
-/// The root of the checkout.
+/// Returns the root of the checkout.
 std::filesystem::path source_dir();
-/// The program `tumble` of this build.
+/// Returns the program `tumble` of this build.
 std::filesystem::path program();
-/// Where tests keep certificates of this build, so that what one has measured serves the others.
+/// Returns the folder where tests keep certificates of this build, so that a certificate measured by one test serves
+/// the others.
 std::filesystem::path certificates();
-/// Folder of the real recordings: the environment's TUMBLE_SHARED_DATA, else the one beside the checkout. It need not
-/// be there.
+/// Returns the folder of the real recordings: the environment's TUMBLE_SHARED_DATA, or else the folder next to the
+/// checkout. The folder need not exist.
 std::filesystem::path shared_data();
 
 }  // namespace tumble::test

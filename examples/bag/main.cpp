@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs TumblingOdometry on a ROS bag: example_bag BAG (a ROS 1 file, the folder of a ROS 2 bag, or an MCAP file) prints
 // a pose for each sweep. The readers are those of the harness; sensors and mounting are those of
-// examples/odometry/tumbling.cpp. Exit status 2: invalid input.
+// examples/odometry/tumbling.cpp. Exit status 2 means invalid input.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectory of an MCAP file, with the readers of the harness: example_bag_map FILE.mcap prints t x y z qx qy qz qw.
+// example_bag_map FILE.mcap prints the trajectory of an MCAP file as lines t x y z qx qy qz qw, with the readers of the
+// harness.
 #include <cstdio>
 #include <exception>
 

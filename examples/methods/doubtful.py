@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rate method that is one function: the gyro as it is, with a statement of how sure that is.
-`tumble run hill --seed 1 --method examples/methods/doubtful.py`, or `tumble bench` of it. doubtful.c says the same in C."""
+"""A rate method that is one function: it returns the gyro readings with standard deviations.
+`tumble run hill --seed 1 --method examples/methods/doubtful.py`, or `tumble bench` runs the method. doubtful.c is the same method in C."""
 import numpy as np
 
 AT_RAIL = 0.98                         # of the largest reading of an axis
-FREE_RAD_S, CLIPPED_RAD_S = 0.01, 5.0  # standard deviations
+FREE_RAD_S, CLIPPED_RAD_S = 0.01, 5.0  # standard deviations of unclipped and clipped samples
 
 
 def rate(recording):

@@ -12,8 +12,8 @@
 #include <tumble/tumble.hpp>
 #include <vector>
 
-/// Replaces the drivers of a robot: reads messages as lines of text, in order of time. A program of the robot writes
-/// these lines; `tumble` does not.
+/// driver.hpp replaces the drivers of a robot: it reads messages as lines of text, in order of time. A program of the
+/// robot must write these lines; `tumble` cannot.
 ///
 ///     imu TIME_NS WX WY WZ FX FY FZ        rad/s and m/s^2, one line per IMU; several IMUs share the first one's stamp
 ///     sweep START_NS END_NS POINTS         then POINTS lines: X Y Z OFFSET_NS RING, metres in the lidar's axes
@@ -34,7 +34,7 @@ inline std::optional<Message> stop(const std::string& kind) {
   return std::nullopt;
 }
 
-/// Returns the next message, or nothing at the end. An invalid line is reported and ends the input.
+/// Returns the next message, or nothing at the end of the input. An invalid line is reported and ends the input.
 inline std::optional<Message> next(std::istream& in) {
   Message out;
   std::string kind;
@@ -57,7 +57,7 @@ inline std::optional<Message> next(std::istream& in) {
   return out;
 }
 
-/// Passes a message to the odometry. A rejected message is reported and left out.
+/// Passes a message to the odometry. A message that the odometry rejects is reported and left out.
 inline void add(const Message& message, tumble::TumblingOdometry& odometry) {
   const Sweep& sweep = message.sweep;
   const tumble::Status status =
@@ -65,7 +65,7 @@ inline void add(const Message& message, tumble::TumblingOdometry& odometry) {
   if (!status.ok()) std::fprintf(stderr, "%s\n", status.message().c_str());
 }
 
-/// Returns all bytes of a file, or none if there is no such file.
+/// Returns all bytes of a file, or nothing if the file is missing.
 inline std::vector<std::byte> read_bytes(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -73,7 +73,7 @@ inline std::vector<std::byte> read_bytes(const std::string& file) {
   return {bytes, bytes + text.size()};
 }
 
-/// Writes all bytes or nothing: to a temporary file, which then replaces `file`. Returns false on failure.
+/// Writes all bytes or none: to a temporary file, which then replaces `file`. Returns false on failure.
 inline bool write_bytes(const std::vector<std::byte>& bytes, const std::string& file) {
   const std::string beside = file + ".new";
   std::ofstream out(beside, std::ios::binary);
@@ -90,7 +90,8 @@ inline void print(const tumble::PoseState& pose) {
               p.z(), q.x(), q.y(), q.z(), q.w(), std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace()));
 }
 
-/// Prints the pose at the end of a sweep, or why it has no pose (for example: the sweep starts before the IMU).
+/// Prints the pose at the end of a sweep, or why the sweep has no pose (for example because it starts before the IMU
+/// data).
 inline void print(const tumble::TumblingOdometry::Sweep& sweep) {
   if (!sweep.report.trajectory.empty()) {
     print(sweep.report.pose);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tumble/tumble.hpp>
 
-/// Sensors and mounting of tumbling.cpp, for the other programs.
+/// Returns the sensors and mounting of tumbling.cpp, for the other programs.
 inline tumble::TumblingOdometry::Params rig() {
   tumble::TumblingOdometry::Params params;
   params.imu = tumble::sheets::mti30();

@@ -11,7 +11,7 @@ namespace online {
 
 namespace {
 
-/// The next number of `rest`, which is moved behind it; false when there is none.
+/// Parses the next number of `rest` and removes it from `rest`; returns false if no number remains.
 template <typename Number>
 bool next_number(std::string_view& rest, Number& value) {
   const std::size_t begin = rest.find_first_not_of(" \t,");

@@ -10,8 +10,8 @@
 
 namespace online {
 
-/// The pose of a rolling sphere, one line of text out for each line in. All memory is set aside by the constructor;
-/// `take` allocates nothing.
+/// Online estimates the pose of a rolling sphere, with one line of text out for each line in. The constructor allocates
+/// all memory; `take` allocates nothing.
 class Online {
  public:
   static constexpr std::size_t kLineMax = 512;  ///< of either kind, without its end
@@ -19,10 +19,10 @@ class Online {
   /// Throws tumble::InvalidParams.
   explicit Online(const tumble::RollingParams& params);
 
-  /// Takes a line "time_ns wx wy wz fx fy fz" (rad/s, m/s^2, sensor axes) and gives "time_ns x y z qx qy qz qw mode
-  /// sigma_m [uncertain]" (centre of the sphere in W, sensor axes to W, horizontal sigma), or what was wrong with the
-  /// line, when ok() is false: then the sample is left out and the next may follow. Empty for an empty line and for a
-  /// comment (#). The view is into this object and good until the next call.
+  /// Processes a line "time_ns wx wy wz fx fy fz" (rad/s, m/s^2, sensor axes) and returns "time_ns x y z qx qy qz qw
+  /// mode sigma_m [uncertain]" (centre of the sphere in W, sensor axes to W, horizontal sigma). If ok() is false, the
+  /// sample is left out and the result is the error message; the next sample may follow. The returned text is empty for
+  /// an empty line and for a comment (#). The returned view refers to this object and is valid until the next call.
   std::string_view take(std::string_view line);
   bool ok() const { return ok_; }
   std::uint64_t samples() const { return samples_; }

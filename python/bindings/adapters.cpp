@@ -39,13 +39,13 @@ nb::bytes bytes_of(const std::vector<Record>& records) {
 }
 static_assert(sizeof(ros::DeskewedPoint) == 16 && sizeof(MapPoint) == 28);
 
-/// An object with the methods of ros::Publisher.
+/// PublisherLike is a Python object with the methods of ros::Publisher.
 class PublisherLike : public nb::object {
   NB_OBJECT_DEFAULT(PublisherLike, nb::object, "typing.Any", is_any_object)
 };
 using NumbersByName = nb::typed<nb::dict, nb::str, nb::object>;
 
-/// Passes results to a Python object with the methods of ros::Publisher.
+/// PythonPublisher passes results to a Python object with the methods of ros::Publisher.
 class PythonPublisher : public ros::Publisher {
  public:
   explicit PythonPublisher(nb::object to) : to_(std::move(to)) {}
@@ -67,7 +67,7 @@ class PythonPublisher : public ros::Publisher {
   nb::object to_;
 };
 
-/// An adapter together with its publisher.
+/// Bound is an adapter together with its publisher.
 template <class Adapter>
 struct Bound {
   Bound(nb::object to, const typename Adapter::Params& params) : publisher(std::move(to)), adapter(params, publisher) {}

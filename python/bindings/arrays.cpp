@@ -21,7 +21,7 @@ std::string text(nb::handle value) {
   return nb::str(value).c_str();
 }
 
-/// Rejects masked arrays: numpy would pass on the values below the mask.
+/// Rejects masked arrays, because numpy would pass on the values below the mask.
 void require_unmasked(nb::handle value, const std::string& field) {
   if (!nb::hasattr(value, "_mask")) return;
   if (nb::cast<bool>(nb::module_::import_("numpy.ma").attr("is_masked")(value)))
@@ -34,7 +34,8 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return out + (shape.size() == 1 ? ",)" : ")");
 }
 
-/// Returns an array of exactly this type and shape. For floats, integers and other float types are converted.
+/// Returns an array of exactly this number type and shape. For floats, the function converts integers and other float
+/// types.
 template <class Scalar>
 Given<Scalar> array_of(nb::handle value, const std::string& field, const std::vector<std::size_t>& shape) {
   constexpr bool kFloat = std::is_floating_point_v<Scalar>;
@@ -59,7 +60,7 @@ Given<Scalar> array_of(nb::handle value, const std::string& field, const std::ve
   return out;
 }
 
-/// Converts integers of any width to `Scalar`, each checked to be within its range from 0.
+/// Converts integers of any width to `Scalar`, and checks each to be within its range from 0.
 template <class Scalar>
 std::vector<Scalar> counts_of(nb::handle value, const std::string& field, std::size_t count) {
   std::vector<Scalar> out(count);
@@ -139,7 +140,7 @@ TimeNs time_of(nb::handle value, const char* field) {
   return out;
 }
 
-/// Rejects times that are not in nanoseconds: no IMU has a median sample period below 50 us.
+/// Rejects times that are not in nanoseconds; no IMU has a median sample period below 50 us.
 static void require_nanoseconds(const std::vector<ImuSample>& samples) {
   constexpr std::size_t kMinSamples = 20;
   constexpr std::int64_t kMinStep_ns = 50'000;

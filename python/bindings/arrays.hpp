@@ -13,8 +13,8 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/lidar.hpp"
 
-/// Converts between numpy arrays and the library's messages. Inputs are checked for type and shape, and copied into
-/// messages. Outputs are read-only views that keep the object alive whose memory they show.
+/// arrays.hpp converts between numpy arrays and the library's messages. Input arrays are checked for type and shape,
+/// and copied into messages. Output arrays are read-only views that keep the object alive whose memory they show.
 namespace tumble::python {
 
 namespace nb = nanobind;
@@ -23,12 +23,13 @@ inline bool is_any_object(PyObject*) {
   return true;
 }
 
-/// Any object that numpy can convert to an array. The functions below check it and report errors by the field's name.
+/// ArrayLike is any object that numpy can convert to an array. The functions below check an ArrayLike and report errors
+/// by the field's name.
 class ArrayLike : public nb::object {
   NB_OBJECT_DEFAULT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_any_object)
 };
 
-/// An integer of Python or numpy. The functions below check it.
+/// WholeNumber is an integer of Python or numpy. The functions below check a WholeNumber.
 class WholeNumber : public nb::object {
   NB_OBJECT_DEFAULT(WholeNumber, nb::object, "typing.SupportsIndex", is_any_object)
 };
@@ -37,35 +38,38 @@ inline bool is_array(PyObject* object) {
   return nb::ndarray_check(nb::handle(object));
 }
 
-/// An array of doubles that is returned.
+/// Doubles is an array of doubles that is returned to Python.
 class Doubles : public nb::object {
   NB_OBJECT_DEFAULT(Doubles, nb::object, "numpy.typing.NDArray[numpy.float64]", is_array)
 };
 
-/// Samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or ClipFlag
-/// bits. Raises TumbleError `type` for times that are not int64 (seconds would lose their fractions), `shape`, or
-/// `out_of_range` if the median step of at least twenty samples is below 50 us: such times are not nanoseconds.
+/// Returns samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or
+/// ClipFlag bits. Raises TumbleError `type` for times that are not int64 (seconds would lose their fractions), `shape`,
+/// or `out_of_range` if the median step of at least twenty samples is below 50 us, because such times are not
+/// nanoseconds.
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags);
 
-/// Points of a sweep: N x 3 positions, N offsets; N rings and intensities, or None.
+/// Returns points of a sweep: N x 3 positions, N offsets; N rings and intensities, or None.
 std::vector<LidarPoint> points_of(nb::handle position_L_m, nb::handle offset_ns, nb::handle ring, nb::handle intensity);
 
-/// Converts a time in nanoseconds, an integer of Python or numpy. Raises `type` for anything else.
+/// Converts a time in nanoseconds, an integer of Python or numpy. Raises TumbleError `type` for anything else.
 TimeNs time_of(nb::handle value, const char* field);
 
-/// Converts to a numpy array. Raises `type` if this fails or if some values are masked.
+/// Converts a Python object to a numpy array. Raises TumbleError `type` if the conversion fails or if some values are
+/// masked.
 nb::object as_array(nb::handle value, const std::string& field);
 
-/// Converts one number of Python or numpy. Raises `type` for anything else, including integers beyond a double's range.
+/// Converts one number of Python or numpy. Raises TumbleError `type` for anything else, including integers beyond the
+/// range of a double.
 double number_of(nb::handle value, const std::string& field);
 
 /// Converts an array of `count` numbers.
 std::vector<double> numbers_of(nb::handle value, const std::string& field, std::size_t count);
 Eigen::Vector3d vector_of(nb::handle value, const std::string& field);
 
-/// Converts a 4 x 4 matrix to a rigid transform. Raises `out_of_range` unless the rotation is orthonormal to 1e-6 and
-/// the last row is 0 0 0 1.
+/// Converts a 4 x 4 matrix to a rigid transform. Raises TumbleError `out_of_range` unless the rotation is orthonormal
+/// to 1e-6 and the last row is 0 0 0 1.
 Eigen::Isometry3d pose_of(nb::handle value, const std::string& field);
 /// Converts a 2 x 3 array of the smallest and the largest corner; None gives an empty box.
 Eigen::AlignedBox3d box_of(nb::handle value, const std::string& field);
@@ -73,8 +77,8 @@ Eigen::AlignedBox3d box_of(nb::handle value, const std::string& field);
 template <class Scalar, nb::ssize_t... Shape>
 using Array = nb::ndarray<nb::numpy, const Scalar, nb::shape<Shape...>>;
 
-/// View of one column of `records`, N x Rest, without a copy. `first(record)` points to the first number of a row.
-/// Eigen stores a matrix by columns.
+/// Returns a view of one column of `records`, N x Rest, without a copy. `first(record)` points to the first number of a
+/// row. Eigen stores a matrix by columns.
 template <class Scalar, nb::ssize_t... Rest, class Record, class First>
 Array<Scalar, -1, Rest...> column(const std::vector<Record>& records, First first) {
   static_assert(sizeof(Record) % sizeof(Scalar) == 0);
@@ -91,7 +95,7 @@ Array<Scalar, -1, Rest...> column(const std::vector<Record>& records, First firs
   return Array<Scalar, -1, Rest...>(data, kAxes, shape, nb::handle(), strides);
 }
 
-/// View of a fixed-size vector or matrix of Eigen, without a copy.
+/// Returns a view of a fixed-size vector or matrix of Eigen, without a copy.
 template <nb::ssize_t... Shape, class Scalar>
 Array<Scalar, Shape...> whole(const Scalar* first) {
   const std::size_t shape[] = {static_cast<std::size_t>(Shape)...};

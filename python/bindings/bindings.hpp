@@ -3,7 +3,8 @@
 
 #include <nanobind/nanobind.h>
 
-/// Each source binds its classes into the module, in this order: later sources use classes of earlier ones.
+/// Each source file binds its classes into the module, in this order, because later sources use classes of earlier
+/// ones.
 namespace tumble::python {
 
 void bind_rails(nanobind::module_& m);

@@ -13,13 +13,14 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Latest times that an estimator received, exact to the nanosecond. A Status stores times as doubles.
+/// LastTimes contains the latest times that an estimator received, exact to the nanosecond. A Status stores times as
+/// doubles, which are less exact.
 struct LastTimes {
   std::optional<TimeNs> sample_ns, sweep_end_ns;
 };
 
-/// An estimator that several Python threads may call. Each call waits for the previous one and releases the
-/// interpreter's lock. A copy copies the estimator.
+/// Guarded is an estimator that several Python threads may call. Each call of the estimator waits for the previous one
+/// and releases the interpreter's lock. A copy of Guarded copies the estimator.
 template <class T>
 class Guarded {
  public:

@@ -126,7 +126,7 @@ Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& e
     status = mapper.add_sweep(start, end, points, report);
     if (status.ok() || !report.trajectory.empty()) last.sweep_end_ns = end;
   });
-  // a report with a trajectory has the verdict `rejected` and the pose of the inertial prior: no error
+  // a report with a trajectory has the verdict `rejected` and the pose of the inertial prior, and is no error
   if (report.trajectory.empty())
     require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
   return report;

@@ -15,7 +15,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Maximum number of keywords that an error message lists.
+/// kListedMax is the maximum number of keywords that an error message lists.
 constexpr std::size_t kListedMax = 12;
 
 std::string bounds_text(const Field& field) {
@@ -28,7 +28,7 @@ void require_within_field(const std::string& name, const Field& field, double va
   raise_input("out_of_range", name, nb::float_(value), nb::str(bounds_text(field).c_str()));
 }
 
-/// Levenshtein distance of two names.
+/// Returns the Levenshtein distance of two names.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

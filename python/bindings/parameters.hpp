@@ -11,13 +11,13 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Exposes the numbers of a `Params` as Python keywords. Reading, checking and listing use the descriptions of its
-/// fields (common/parameters.hpp).
+/// parameters.hpp exposes the numbers of a `Params` structure as Python keywords. Reading, checking and listing use the
+/// descriptions of the fields (common/parameters.hpp).
 namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// One number of a `Params`. `parameters()` of a class lists them.
+/// Parameter is one number of a `Params` structure. The function `parameters()` of a class lists its parameters.
 struct Parameter {
   std::string name, unit;
   nb::object value;  ///< the default
@@ -26,26 +26,27 @@ struct Parameter {
   bool first;  ///< whether a user should set it before the others
 };
 
-/// Signature in the stubs for a constructor that accepts Keywords.
+/// Returns the signature in the stubs for a constructor that accepts Keywords.
 inline nb::sig takes_options() {
   return {"def __init__(self, **options: object) -> None"};
 }
 
-/// Keywords of a constructor. Names that are requested are known; done() rejects all others.
+/// Keywords contains the keywords of a constructor. Keywords that are requested become known; done() rejects all
+/// others.
 class Keywords {
  public:
   /// @param of  name of the class, for messages
   Keywords(const char* of, const nb::kwargs& given) : of_(of), given_(given) {}
 
-  /// Returns the value given for a name, or an invalid object if no value is given. The name becomes known.
+  /// Returns the value given for a name, or an invalid object if no value is given. The name becomes a known keyword.
   nb::object take(const std::string& name);
   /// Same as take(), but raises TumbleError `empty` if no value is given.
   nb::object need(const std::string& name);
   /// Reads a number and checks the bounds of its field.
   void read(const std::string& name, const Field& field, bool whole, double& out);
   void read(const std::string& name, const Field& field, Eigen::Vector3d& out);
-  /// Raises TumbleError `unknown` for the first keyword that is not known. The message contains the nearest
-  /// known keyword, and all known keywords if they are few.
+  /// Raises TumbleError `unknown` for the first keyword that is not known. The error message contains the nearest known
+  /// keyword, and all known keywords if they are few.
   void done() const;
 
  private:

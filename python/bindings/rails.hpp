@@ -11,7 +11,7 @@
 
 namespace tumble::python {
 
-/// Reads `gyro_range_rad_s` and `accel_range_m_s2`, the ranges that the data sheet states; None: not stated.
+/// Reads `gyro_range_rad_s` and `accel_range_m_s2`, the ranges that the data sheet states; None means not stated.
 void read_ranges(Keywords& keywords, RailDetector::Params& rails);
 
 /// Returns a list of three elements, each a RailPlane or None.

@@ -34,7 +34,7 @@ void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& 
   read_ranges(keywords, rails);
 }
 
-/// Returns the part of a class's parameters that contains the model and the rails.
+/// Returns the part of a class's parameters that contains the rate model and the saturation levels.
 RateSmoother::Params& rate_part(RateSmoother::Params& params) {
   return params;
 }
@@ -63,7 +63,7 @@ RateStream::Params stream_params(const nb::kwargs& given) {
   return params_of<RateStream>("RateStream", given);
 }
 
-/// RegimeStream derives these from its RateStream; its HandHeldStream makes one iteration per node.
+/// RegimeStream derives these parameters from its RateStream; its HandHeldStream makes one iteration per node.
 const std::vector<const char*> kDerivedRegimeParameters = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                                            "carried_iterations_max"};
 
@@ -205,7 +205,8 @@ void bind_batch(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(Saave::Params{}); });
 }
 
-/// Binds the interface that both streams share. `rate(stream)` and `rate_state(state)` return the RateStream inside.
+/// Binds the interface that both rate streams share. `rate(stream)` and `rate_state(state)` return the RateStream
+/// inside.
 template <class Stream, class Rate, class RateState_>
 auto bind_stream(nb::module_& m, const char* name, const char* doc,
                  typename Stream::Params (*params)(const nb::kwargs&), Rate rate, RateState_ rate_state) {

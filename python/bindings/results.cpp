@@ -28,7 +28,7 @@ auto times(const Rows& self) {
   return column<std::int64_t>(self.rows, [](const auto& row) { return &row.time_ns; });
 }
 
-/// Binds the length and the concatenation of rows.
+/// Binds the length and the concatenation of result rows.
 template <class Rows>
 nb::class_<Rows> bind_rows(nb::module_& m, const char* name, const char* doc) {
   nb::class_<Rows> bound(m, name, doc);

@@ -14,7 +14,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Reads constants in the order of RigConstants, and their covariance.
+/// Reads calibration constants in the order of RigConstants, and their covariance.
 RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
   constexpr int kSize = RigConstants::kSize;
   const std::vector<double> vector = numbers_of(constants, "constants", kSize);

@@ -7,7 +7,7 @@
 
 namespace tumble::python {
 
-/// Converts a RigCalibration of Python. Raises TumbleError `type` for anything else.
+/// Converts a RigCalibration of Python to the library's type. Raises TumbleError `type` for anything else.
 RigCalibration rig_of(nanobind::handle given, const char* field);
 
 void bind_rig(nanobind::module_& m);

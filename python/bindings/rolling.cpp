@@ -126,7 +126,7 @@ void bind_filter(nb::module_& m) {
   bind_keeping<RollingFilter>(bound);
 }
 
-/// Names of the parameters that RollingOdometry determines.
+/// Returns the names of the parameters that RollingOdometry determines.
 const std::vector<const char*>& derived_rolling_parameters() {
   static const std::vector<const char*> all(RollingOdometry::Params::derived_fields().begin(),
                                             RollingOdometry::Params::derived_fields().end());
@@ -160,7 +160,7 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.pose.covariance, p.mode,        p.at_rest,   p.uncertain};
 }
 
-/// Returns the samples of all units, from one triple of arrays or from lists with one array per unit. All units share
+/// Returns the samples of all IMUs, from one triple of arrays or from lists with one array per IMU. All IMUs share
 /// `time_ns`.
 std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, const ArrayLike& gyro,
                                                      const ArrayLike& accel, std::size_t units) {
@@ -184,7 +184,7 @@ RollingPoses take_all(RollingOdometry& odometry) {
   return out;
 }
 
-/// RollingOdometry with the number of its units.
+/// BoundRollingOdometry is a RollingOdometry with the number of its IMUs.
 struct BoundRollingOdometry {
   RollingOdometry odometry;
   std::size_t units;

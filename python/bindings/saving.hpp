@@ -12,15 +12,15 @@
 
 namespace tumble::python {
 
-/// Returns the bytes of a saved state. Raises TumbleError `type` if `given` is not bytes.
+/// Returns the bytes of a saved state. Raises TumbleError `type` if `given` is not of type bytes.
 inline std::span<const std::byte> state_of(nb::handle given) {
   if (!nb::isinstance<nb::bytes>(given)) raise_input("type", "state", given.type(), nb::str("bytes"));
   const auto bytes = nb::borrow<nb::bytes>(given);
   return {reinterpret_cast<const std::byte*>(bytes.c_str()), bytes.size()};
 }
 
-/// save() and load(), which T has, and pickling by them. `restored(bytes)` constructs a T with the parameters stored
-/// in the bytes.
+/// Binds save() and load(), which T has, and pickling by them. `restored(bytes)` constructs a T with the parameters
+/// stored in the bytes.
 template <class T, class Class, class Restored>
 void bind_saving(Class& bound, Restored restored) {
   using Object = Guarded<T>;

@@ -21,15 +21,15 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// A filter of the library with its State, as one Python object.
+/// Running is a filter of the library with its State, as one Python object.
 template <class Filter, class State = typename Filter::State>
 struct Running {
   Filter filter;
   State state;
 };
 
-/// A stream with its State, which can be saved. The State is on the heap because that of a sphere has half a
-/// megabyte.
+/// Streaming is a stream with its State, which can be saved. The State is on the heap, because that of a sphere has
+/// half a megabyte.
 template <SavedStream Stream>
 struct Streaming {
   using Params = typename Stream::Params;
@@ -62,15 +62,15 @@ Streaming<Stream> restored(std::span<const std::byte> bytes) {
   return out;
 }
 
-/// Binds copy, save, load and pickle.
+/// Binds the functions copy, save, load and pickle of a stream.
 template <class Stream, class Class>
 void bind_keeping(Class& bound) {
   bind_copy<Guarded<Streaming<Stream>>>(bound);
   bind_saving<Streaming<Stream>>(bound, &restored<Stream>);
 }
 
-/// Adds samples to an estimator up to the first rejected sample. The TumbleError then has the index of that sample and
-/// the results before it. `step(estimator, sample, out)` returns a Status.
+/// Adds samples to an estimator up to the first rejected sample. The raised TumbleError then has the index of that
+/// sample and the results before it. `step(estimator, sample, out)` returns a Status.
 template <class Out, class Estimator, class Step>
 Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step step) {
   Out out;
@@ -88,13 +88,13 @@ Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step ste
   return out;
 }
 
-/// Exact times of a rejected sweep: relative to its own start, or to the end of the previous sweep.
+/// Returns the exact times of a rejected sweep: relative to its own start, or to the end of the previous sweep.
 inline ExactTimes exact_sweep(const Status& status, TimeNs start_ns, TimeNs end_ns, std::optional<TimeNs> before_ns) {
   if (std::string_view(status.field) == "end_ns") return {end_ns, start_ns};
   return {start_ns, before_ns};
 }
 
-/// Documents the arguments of every method that accepts samples.
+/// kSamples documents the arguments of every method that accepts samples.
 inline constexpr const char* kSamples =
     "time_ns: an int, or (N,) int64, the end of each sample's window; gyro: (3,) or (N, 3), rad/s; accel: specific "
     "force,\n(3,) or (N, 3), m/s^2, +9.8 up at rest; clip_flags: bits gyro x y z, accel x y z that the device reports "

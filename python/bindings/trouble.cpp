@@ -31,7 +31,8 @@ void set_invalid(const std::string& message) {
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
-/// Returns str(value). Python refuses to convert integers with thousands of digits, so those give their type.
+/// Returns the Python text str(value). Python refuses to convert integers with thousands of digits, so their type is
+/// returned.
 std::string text_of(nb::handle value) {
   try {
     return nb::str(value).c_str();
@@ -40,7 +41,7 @@ std::string text_of(nb::handle value) {
   }
 }
 
-/// Returns `exact` if it rounds to `time_ns`, else `time_ns` as an integer, or as a float beyond 64 bits.
+/// Returns `exact` if it rounds to `time_ns`, otherwise `time_ns` as an integer, or as a float beyond 64 bits.
 nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
   if (exact && static_cast<double>(*exact) == time_ns) return nb::int_(*exact);
   constexpr double kLargest_ns = 9.2e18;

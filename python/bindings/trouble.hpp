@@ -12,30 +12,32 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
-/// Converts errors of the library to tumble.TumbleError with trouble, field, value and bound.
+/// trouble.hpp converts errors of the library to tumble.TumbleError with trouble, field, value and bound.
 namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Raises TumbleError with the message "FIELD is VALUE; it must be BOUND". `error_code`: the name of a Trouble, or `type`,
-/// `shape`, `unknown` of an argument. `bound`: a number or a text.
+/// Raises TumbleError with the message "FIELD is VALUE; it must be BOUND". `error_code` is the name of a Trouble, or
+/// `type`, `shape`, `unknown` of an argument. `bound` is a number or a text.
 [[noreturn]] void raise_input(const char* error_code, const std::string& field, nb::handle value, nb::handle bound);
 
-/// Exact value and bound of a time, if known. A Status stores doubles, which cannot represent nanoseconds since 1970.
+/// ExactTimes contains the exact value and bound of a time, if known. A Status stores doubles, which cannot represent
+/// nanoseconds since 1970.
 struct ExactTimes {
   std::optional<TimeNs> value, bound;
 };
 
-/// Raises TumbleError with the message of a status, unless the status is ok. `index`: index of the rejected sample in
-/// an array, whose earlier samples were processed. `so_far`: results from the earlier samples. Times in the error are
-/// whole numbers: `times`, or the rounded times of the status.
+/// Raises TumbleError with the message of a status, unless the status is ok. `index` is the index of the rejected
+/// sample in an array, whose earlier samples were processed. `so_far` contains results from the earlier samples. Times
+/// in the error are whole numbers: those of `times`, or the rounded times of the status.
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
              const ExactTimes& times = {});
 
-/// Raises TumbleError for a recording that was rejected as a whole. Finds the index of the rejected sample.
+/// Raises TumbleError for a recording that was rejected as a whole. The function finds the index of the rejected
+/// sample.
 void require(const Status& status, std::span<const ImuSample> samples);
 
-/// Returns None if all sensors and the pose are healthy, else a TumbleError that is not raised.
+/// Returns None if all sensors and the pose are healthy, otherwise a TumbleError that is not raised.
 nb::object health_of(const Status& status);
 inline constexpr const char* kHealth =
     "Returns None if all sensors and the pose are healthy. Else returns a TumbleError, which is not raised, with the\n"

@@ -35,7 +35,7 @@ TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
 using BoundTumblingOdometry = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
-/// Names of the parameters that the sheets and TumblingOdometry itself determine.
+/// Returns the names of the parameters that the data sheets and TumblingOdometry itself determine.
 const std::vector<const char*>& derived_tumbling_parameters() {
   static const std::vector<const char*> all = [] {
     const auto derived = TumblingOdometry::Params::Expert::derived_fields();

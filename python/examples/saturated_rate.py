@@ -2,7 +2,7 @@
 """Estimates angular velocity through gyro saturation: saturated_rate.py [RepoIMU.csv]
 
 A hand-held wand rotates faster than the range of its gyro. With a file of RepoIMU (github.com/agnieszkaszczesna/RepoIMU, TStick), the
-rotation speed is compared with a camera system. Without a file, a simulated twirl is used, clipped at 7.3 rad/s.
+program compares the rotation speed with a camera system. Without a file, it uses a simulated twirl that clips at 7.3 rad/s.
 """
 import sys
 

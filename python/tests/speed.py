@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the processor time for whole recordings in Python with the same method in the program: speed.py [RUNS]
 
-The program's is its metric estimate_cpu_s, of the estimate alone; Python's is of the call that takes the recording's arrays. The least
-of RUNS (5) each. Called by hand: nothing asserts a clock.
+The time of the program is its metric estimate_cpu_s, for the estimate alone. The time of Python is that of the call that receives the
+recording's arrays. Each result is the smallest of RUNS (5). Run this script by hand; no test asserts computing times.
 """
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests with the released evalio: our pipeline and recordings in evalio, and its pipelines as methods of the program."""
+"""Tests with the released evalio: the pipeline tumble and its recordings in evalio, and evalio's pipelines as methods of the program."""
 import os
 import pathlib
 import subprocess
@@ -75,7 +75,7 @@ RUN = """
 
 
 def test_poses_equal_those_of_tumbling_odometry(recordings, tmp_path):
-    """Poses through evalio are identical to direct ones, and equal to the program's up to the rounding of the mounting quaternion."""
+    """Poses through evalio are identical to direct ones, and equal those of the program up to the rounding of the mounting quaternion."""
     short = cut(recordings["hill"], tmp_path / "tumbling.h5", 40)
     status, said = in_evalio(RUN.format(name="tumbling", out=tmp_path / "poses.npz"), TUMBLE_EVALIO_FILES=short)
     assert status == 0, said
@@ -92,7 +92,7 @@ def test_poses_equal_those_of_tumbling_odometry(recordings, tmp_path):
 
 
 def test_evalio_runs_ours_and_theirs(stroll, tmp_path):
-    """Scores `evalio run` on our recording: both pipelines follow a stroll."""
+    """Scores `evalio run` on a recording of this project: both pipelines follow a stroll."""
     (tmp_path / "both.yaml").write_text("datasets: [{name: tumble/hall}]\npipelines: [tumble, kiss]\n")
     ended = subprocess.run([pathlib.Path(sys.executable).parent / "evalio", "run", "-c", "both.yaml"], cwd=tmp_path, capture_output=True,
                            text=True, timeout=250, env=os.environ | {"EVALIO_CUSTOM": "tumble.evalio", "TUMBLE_EVALIO_FILES": str(stroll)})

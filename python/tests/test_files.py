@@ -42,7 +42,7 @@ def small():
 
 
 def same(a, b, place="recording"):
-    """All members of two recordings, type and bits."""
+    """Compares all members of two recordings, in type and bits."""
     if dataclasses.is_dataclass(a):
         assert type(a) is type(b), place
         for each in dataclasses.fields(a):
@@ -99,7 +99,7 @@ def test_a_reference_that_knows_poses_alone(tmp_path):
 
 
 def test_a_series(tmp_path):
-    """A sensor that is neither IMU nor lidar: quantities by name, no group without a quantity, errors for invalid ones."""
+    """Tests a sensor that is neither IMU nor lidar: quantities by name, no group without a quantity, errors for invalid quantities."""
     recording = small()
     barometer = recording.series[0]
     assert len(barometer) == 3 and barometer["pressure_pa"] is barometer.values["pressure_pa"]

@@ -32,7 +32,7 @@ TAKERS = BATCHES | {name: (lambda make: lambda *s: make().add_imu(*s))(make) for
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
 def test_takes_a_recording(take, spin):
-    """Positive control for the rejections below."""
+    """The estimator accepts a valid recording: positive control for the rejections below."""
     take(*spin[:3])
 
 
@@ -95,7 +95,7 @@ def test_times_of_another_call_are_told_to_the_nanosecond(spin):
 @pytest.mark.parametrize("column", [0, 1, 2])
 def test_refuses_what_is_masked(take, spin, column):
     samples = [np.ma.masked_array(rows) if k == column else rows for k, rows in enumerate(spin[:3])]
-    take(*samples)  # nothing is masked yet
+    take(*samples)  # no value is masked yet
     samples[column][5] = np.ma.masked
     with pytest.raises(tumble.TumbleError) as caught:
         take(*samples)
@@ -159,7 +159,7 @@ def test_layouts_and_types_of_numbers_give_the_same_bits(spin):
 
 @pytest.mark.parametrize("make", STREAMS.values(), ids=STREAMS.keys())
 def test_sample_by_sample_is_the_array(make, spin):
-    """Same results if samples are added in pieces, or if a copy continues midway."""
+    """The results are the same if samples are added in pieces, or if a copy continues midway."""
     whole, single, cut = make(), make(), make()
     kind = type(whole.add_imu(*(r[:1] for r in spin[:3])))
     rows = [name for name in ("rate", "quaternion", "position") if hasattr(kind, name)]
@@ -218,7 +218,7 @@ def test_results_are_views_that_stay(spin):
 
 
 def test_covariances_are_in_place():
-    """Rows and columns: a covariance of a state is symmetric and positive."""
+    """Rows and columns are in the right place: the covariance of a state is symmetric and positive."""
     from conftest import spinning
     rates = tumble.rate(tumble.Imu(*spinning(rail=7.0)[:3]))
     assert rates.covariance.shape == (len(rates), 3, 3)
@@ -363,7 +363,7 @@ def test_doubt_names_what_cannot_be_believed(hill, slip):
 
 
 def test_mapper_alone(hill):
-    """LidarInertialOdometry with rates of a stream, compared with the gyro alone."""
+    """Compares LidarInertialOdometry with rates of a stream and with the gyro alone."""
     imu, until = hill.imus[0], 8
     rates = tumble.rate(imu)
     mapper, believing = (tumble.LidarInertialOdometry(T_IL=hill.T_IL) for _ in range(2))

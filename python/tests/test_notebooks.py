@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The notebooks of docs/notebooks, run from the first cell to the last. They are kept without outputs."""
+"""Runs the notebooks of docs/notebooks from the first cell to the last. The notebooks are kept without outputs."""
 import os
 import pathlib
 import shutil
@@ -71,7 +71,7 @@ def test_all_are_run():
 
 @pytest.mark.program
 def test_a_real_wand(tmp_path, monkeypatch, real_data):
-    """Runs if the recording is available."""
+    """The notebook runs if the recording is available."""
     if real_data is None:
         return
     monkeypatch.setenv("REPOIMU", str(real_data / "repoimu/TStick_Test05_Trial1.csv"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Diagnostics of the odometry classes, in addition to poses, rates and map."""
+"""Tests diagnostics of the odometry classes, in addition to poses, rates and map."""
 import numpy as np
 import pytest
 

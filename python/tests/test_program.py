@@ -32,7 +32,7 @@ def same(a, b):
 
 
 def same_covariance(own, expected):
-    """Compares the upper triangles, which files contain: our covariances are symmetric up to rounding."""
+    """Compares the upper triangles, which files contain, because covariances are symmetric only up to rounding."""
     rows, columns = np.triu_indices(3)
     return same(own.covariance[:, rows, columns], expected.covariance[:, rows, columns])
 
@@ -53,7 +53,7 @@ def test_rate_stream(hill, estimates):
 
 
 def test_rate_of_who_carries_what(twirl, estimates):
-    """Hand-held motion, for which HandHeldSmoother is used."""
+    """Tests hand-held motion, for which HandHeldSmoother is used."""
     expected = estimates("rate/tumble", "twirl")
     own = tumble.rate(twirl.imus[0], twirl.gravity_m_s2)
     assert expected.health["regime_carried_asked"] == 1.0
@@ -85,7 +85,7 @@ def test_vqf(hill, estimates):
 
 
 def test_tumbling(hill, estimates):
-    """Sweeps, poses, verdicts, covariances and map of a whole tumble."""
+    """Compares sweeps, poses, verdicts, covariances and map of a whole tumble."""
     expected = estimates("slam/tumble_lag")
     own = tumble.tumbling(hill)
     assert same(own.poses.position, expected.sweep_poses.position) and same(own.poses.quaternion, expected.sweep_poses.quaternion)
@@ -111,7 +111,7 @@ def test_tumbling_sample_by_sample(hill, estimates):
 
 
 def test_rolling_is_the_programs(slip, estimates):
-    """RollingOdometry merges the IMUs itself, the program merges them first: the results agree to 1 % of the path length."""
+    """RollingOdometry merges the IMUs sample by sample, and the program merges them first: the results agree to 1 % of the path length."""
     expected = estimates("position/tumble_lag", "slip", **{"position/tumble_lag.lag_s": 1.0}).poses
     own = tumble.rolling(slip, lag_s=1.0)
     way = np.linalg.norm(np.diff(expected.position, axis=0), axis=1).sum()
@@ -149,7 +149,7 @@ def test_rolling_filter(slip, estimates, recordings, tmp_path):
 
 def test_carried_stream(twirl):
     """With a long lag, the stream agrees with the batch smoother. With the default lag, it is far more accurate than the clipped gyro.
-    The stream detects all rails."""
+    The stream detects all saturation levels."""
     imu = twirl.imus[0]
     samples, truth = [rows[:2000] for rows in imu.samples], twirl.truth.imu_rate[0][:2000]
     stated = {"gravity_m_s2": twirl.gravity_m_s2, "gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
@@ -244,7 +244,7 @@ def contents(path):
 
 @pytest.mark.parametrize("name", ["hill", "slip", "twirl"])
 def test_what_the_program_wrote_is_written_again(recordings, name, tmp_path):
-    """A file that is read and written has the same contents, except the digests. Covers later additions to the format too."""
+    """A file that is read and written has the same contents, except the digests. The test also covers later additions to the format."""
     own = tmp_path / "own.h5"
     tumble.write(own, tumble.read(recordings[name]))
     first, again = contents(recordings[name]), contents(own)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Estimators that were saved or pickled continue with the same bits. Invalid bytes are rejected and change nothing."""
+"""Estimators that were saved or pickled continue with the same bits. Invalid bytes are rejected and leave the estimator unchanged."""
 import copy
 import pickle
 

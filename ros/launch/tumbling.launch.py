@@ -17,7 +17,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 TYPES = {"imu": "sensor_msgs/msg/Imu", "points": "sensor_msgs/msg/PointCloud2"}
-SEARCH_S = 5.0  # discovery takes a second or two
+SEARCH_S = 5.0  # the discovery of topics takes a second or two
 
 
 def topics_of_bag(bag: str) -> list[tuple[str, str]]:

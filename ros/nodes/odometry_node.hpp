@@ -26,7 +26,8 @@
 
 namespace tumble::ros {
 
-/// Base of both nodes: parameters, /tf, odometry and diagnostics. tumble/ros.py is the same node in Python.
+/// OdometryNode is the base of both nodes: parameters, /tf, odometry and diagnostics; tumble/ros.py is the same node in
+/// Python.
 class OdometryNode : public rclcpp::Node, public Publisher {
  public:
   OdometryNode(const std::string& name, const rclcpp::NodeOptions& options);
@@ -45,11 +46,12 @@ class OdometryNode : public rclcpp::Node, public Publisher {
 
   std::string text(const std::string& parameter) { return get_parameter(parameter).as_string(); }
   std::vector<double> list(const std::string& parameter) { return get_parameter(parameter).as_double_array(); }
-  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best effort would
-  /// lose large clouds.
+  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. A best-effort
+  /// subscription would lose large clouds.
   template <class Message>
   void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback);
-  /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks it.
+  /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks the
+  /// pose.
   std::optional<Eigen::Isometry3d> mounting(const std::string& parameter, const std::string& frame);
   void report(const char* topic, const Status& status);
 

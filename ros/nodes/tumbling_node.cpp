@@ -41,7 +41,7 @@ sensor_msgs::msg::PointCloud2 cloud(const std::string& frame, TimeNs stamp_ns, s
 
 }  // namespace
 
-/// TumblingOdometry: topics imu and points.
+/// TumblingNode runs TumblingOdometry with the topics imu and points.
 class TumblingNode : public OdometryNode {
  public:
   explicit TumblingNode(const rclcpp::NodeOptions& options) : OdometryNode("tumbling_odometry", options) {

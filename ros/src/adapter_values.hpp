@@ -9,7 +9,7 @@
 #include "tumble_ros/publisher.hpp"
 #include "tumble_ros/schedule.hpp"
 
-/// Texts of the diagnostics and of the calibration file.
+/// adapter_values.hpp contains texts of the diagnostics and of the calibration file.
 namespace tumble::ros {
 
 /// Returns numbers as a YAML list with nine digits: 1 nm at 1 m.
@@ -33,7 +33,7 @@ void add(Diagnostics& out, const char* key, const Value& value) {
   out.values.emplace_back(key, text.str());
 }
 
-/// Adds the counts of a topic.
+/// Adds the message counts of a topic to the diagnostics.
 inline void add_input(Diagnostics& out, const std::string& topic, const Rejections& input) {
   add(out, (topic + " messages").c_str(), input.received);
   add(out, (topic + " messages rejected").c_str(), input.rejected);

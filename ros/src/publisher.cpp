@@ -19,7 +19,7 @@ Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_cov
   const Eigen::Vector3d arm_I = T_IB.translation(), arm_O = R_OI * arm_I;
   out.T_OB.linear() = R_OI * T_IB.linear();
   out.T_OB.translation() = imu.p_WA_m + arm_O;
-  // an attitude error phi in O moves the base by phi x arm
+  // an attitude error phi in O displaces the base by phi x arm
   Matrix6 J = Matrix6::Identity();
   J.topRightCorner<3, 3>() = -so3::hat(arm_O);
   out.pose_covariance = J * imu.covariance * J.transpose();
@@ -38,7 +38,7 @@ Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_cov
 
 namespace {
 
-/// Motion from one pose of a trajectory to the next, also extrapolated to times before the first pose.
+/// Segment is the motion from one pose of a trajectory to the next, also extrapolated to times before the first pose.
 struct Segment {
   TimeNs from_ns;
   double length_s;

@@ -9,7 +9,7 @@ namespace tumble::ros {
 
 namespace {
 
-/// Converts a pose of the sphere. The base frame is the sphere.
+/// Converts a pose of the sphere to an odometry message. The base frame is that of the sphere.
 Odometry odometry_of(const RollingOdometry::Pose& sphere) {
   RateState rate;
   rate.w_WI_I_rad_s = sphere.angular_velocity_rad_s;

@@ -13,7 +13,7 @@
 
 namespace tumble::scenarios {
 
-/// Result of one method on one simulated run of a bench suite.
+/// BenchDraw is the result of one method on one simulated run of a bench suite.
 struct BenchDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -24,7 +24,8 @@ struct BenchDraw {
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 
-/// Result of one method on a bench suite, published as one line of JSON. README.md describes the JSON schema.
+/// BenchResult is the result of one method on a bench suite, published as one line of JSON. README.md describes the
+/// JSON schema.
 struct BenchResult {
   std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A number of the scenario and the ideal value at which its disturbance vanishes.
+/// Ideal names a number of the scenario and the ideal value at which its disturbance vanishes.
 struct Ideal {
   std::string_view number;
   double value = 0.0;
@@ -20,14 +20,16 @@ struct Ideal {
 
 enum class Sort { several, size, count };
 
-/// A registered complication: its name and its numbers. Numbers that a component type does not have are skipped.
+/// ComplicationLine is a registered complication: its name and its numbers. Numbers that a component type lacks are
+/// skipped.
 struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
-/// Returns the ideal values that disable the disturbances of a world (sim/world, "0: none"). Shapes are unchanged.
+/// Returns the ideal values that disable the disturbances of a world (sim/world, "0: none"). The shapes of the world
+/// are unchanged.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
@@ -179,7 +181,7 @@ std::span<const ComplicationLine> of_mounting() {
 
 using Numbers = std::map<std::string, Distribution>;
 
-/// Adds the complications from `lines` if one of their `numbers` at `place` is not ideal.
+/// Adds the complications from `lines` whose `numbers` at `place` are not all ideal.
 void add(const std::string& part, const std::string& place, std::span<const ComplicationLine> lines,
          const Numbers& numbers, std::vector<Complication>& out) {
   for (const ComplicationLine& line : lines) {

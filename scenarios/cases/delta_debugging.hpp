@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-/// Searches for the smallest failing configuration. The caller runs the trials. If the caller returns an empty value,
-/// the budget is used up, and the search ends with its best result.
+/// delta_debugging.hpp searches for the smallest failing configuration. The caller runs the trials of the search. If
+/// the caller returns no result, the budget is used up, and the search ends with its best result.
 namespace tumble::scenarios {
 
-/// Returns true if a run that keeps only the items in `kept` (ascending indices) still fails.
+/// Returns whether a run that keeps only the items in `kept` (ascending indices) still fails.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -23,11 +23,11 @@ struct LeastSet {
 /// the failure. A run with all items must fail. The search is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183,
 /// 2002, algorithm ddmin) with complements only. The search first removes all items, then halves of the remaining
 /// items, quarters, down to single items, and repeats until no item can be removed. The caller should order the items
-/// so that related items are adjacent. If adding items can repair a failure, smaller failing sets may exist. The search
-/// needs about 2 log2(count) trials for one needed item and at most O(count^2). No trial is repeated.
+/// so that related items are adjacent. Smaller failing sets may exist if adding items can repair a failure. The search
+/// needs about 2 log2(count) trials if one item is needed, and at most O(count^2). The search never repeats a trial.
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// Returns true if a run with the number `value` still fails.
+/// Returns whether a run with the number `value` still fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {

@@ -6,21 +6,21 @@
 
 #include "scenarios/cases/shrink.hpp"
 
-/// A named case stores a failing simulated run with the expected result of each method.
+/// hold_case.hpp handles named cases, which store a failing simulated run with the expected result of each method.
 namespace tumble::scenarios {
 
-/// Returns the named case of a shrunk run, with `name` as its scenario name. The case states that `method` (a name for
-/// find_methods) is expected to fail. `command` is the command that created the case.
+/// Returns the named case of a shrunk run, with `name` as its scenario name. The named case states that `method` (a
+/// name for find_methods) is expected to fail. `command` is the command line that created the case.
 Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
                        const std::string& version, const std::string& command);
 
 /// Returns the failure criteria that an expectation states.
 Failure failure_of(const Expectation& expected);
 
-/// Largest accepted factor between the measured and the accepted metric of a failing case.
+/// kCaseFactor is the largest accepted factor between the measured and the accepted metric of a failing case.
 inline constexpr double kCaseFactor = 2.0;
 
-/// Result of the comparison of one expectation with an outcome.
+/// CaseResult is the result of comparing one expectation with an outcome.
 struct CaseResult {
   std::string name, method;
   Expectation expected;

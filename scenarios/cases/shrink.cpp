@@ -35,7 +35,7 @@ std::string text_of(double value) {
   return text.str();
 }
 
-/// A simulated run, its true surface for map scores, and a method to run on it.
+/// Run is a simulated run with its true surface for map scores, and a method to run on it.
 class Run {
  public:
   Run(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, Kind kind)
@@ -45,7 +45,7 @@ class Run {
   Outcome outcome(const Method& method, double timeout_s) const {
     return run_isolated(method, draw_, draw_, surface_ ? &*surface_ : nullptr, timeout_s);
   }
-  /// Returns true if the method does not fail on this run with the true input.
+  /// Returns whether the method succeeds on this run with the true input.
   bool is_cured(const TrueInput& input, const Method& method, const ShrinkOptions& options) const {
     SimulatedDraw cured = draw_;
     if (!input.replace(cured.recording.sensors, draw_.recording.truth)) return false;
@@ -106,7 +106,8 @@ class Shrinking {
   }
 
  private:
-  /// Finds the first single input whose truth removes the original failure. The last input replaces all inputs.
+  /// Finds the first single input whose truth removes the original failure. The last trial replaces all inputs by their
+  /// truth.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),
@@ -116,7 +117,7 @@ class Shrinking {
     shrunk_.cure = cure->name;
   }
 
-  /// Returns why the failure of a run differs from the failure of the original run. Empty if both failures are equal.
+  /// Returns why the failure of a run differs from that of the original run; empty if both are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
       return "the control method also fails: " + options_.control->info.name;
@@ -125,8 +126,8 @@ class Shrinking {
     return "";
   }
 
-  /// Returns true if a simpler scenario fails like the original; the search then continues from the simpler scenario.
-  /// Returns empty if the budget is used up.
+  /// Returns whether a simpler scenario fails like the original; the search then continues from the simpler scenario.
+  /// Returns nothing if the budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
     bool fails = false;
@@ -168,7 +169,7 @@ class Shrinking {
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 
-  /// Removes complications. Complications that cannot be removed are stored in `needed_`.
+  /// Removes complications from the scenario. Complications that cannot be removed are stored in `needed_`.
   bool simplify() {
     const std::vector<Complication> all = complications(shrunk_.scenario);
     const Scenario whole = shrunk_.scenario;

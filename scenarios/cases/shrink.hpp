@@ -8,10 +8,10 @@
 
 #include "scenarios/sweep/triage.hpp"
 
-/// Makes a failing simulated run shorter and simpler, to show the cause of the failure.
+/// shrink.hpp makes a failing simulated run shorter and simpler, to show the cause of the failure.
 namespace tumble::scenarios {
 
-/// One trial of the search: a simpler scenario, simulated and estimated.
+/// ShrinkTrial is one trial of the search: a simpler scenario, simulated and estimated.
 struct ShrinkTrial {
   int run = 0;        ///< from 1, the original run
   std::string what;   ///< "4.5 s", "without world: rocks", "without 12 of 26"
@@ -21,16 +21,16 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// Control: a method of the same kind that must not fail where the tested method fails. A failure of the control
-  /// excludes scenarios that no method can solve. Null disables the control. The control is not used if it fails on the
-  /// original run.
+  /// Control: a method of the same kind that must succeed where the tested method fails; null disables the control. A
+  /// failure of the control method excludes scenarios that no method can solve. The control is not used if it fails on
+  /// the original run.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< limit of one method run
   std::function<void(const ShrinkTrial&)> on_trial;
 };
 
-/// Result of the search for one complication.
+/// Fate is the result of the search for one complication.
 enum class Fate { removed, smaller, needed, not_tried };
 const char* to_string(Fate fate);
 
@@ -49,8 +49,8 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< the budget was sufficient: no single item can be removed
   bool controlled = false;  ///< the control failed on no accepted run
-  /// True input (sweep/triage.hpp) that removes the failure on the original run and on every accepted run. Empty if no
-  /// single input removes the failure on the original run.
+  /// True input (sweep/triage.hpp) that removes the failure on the original run and on every accepted run; empty if no
+  /// single input does.
   std::string cure;
 };
 
@@ -59,8 +59,8 @@ struct Shrunk {
 /// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. Each trial
 /// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp). The true input
 /// that removes the original failure must also remove the failure of the trial; otherwise the search could end at
-/// another cause. The search is deterministic. All trials use the seed of the original run. The search misses simpler
-/// runs that can only be reached through a passing run.
+/// another cause. The search is deterministic. All trials use the random seed of the original run. The search misses
+/// simpler runs that can only be reached through a passing run.
 ///
 /// Throws the exceptions of simulate_draw for the original run. Throws BadInput if the original run does not fail, or
 /// if method or control do not apply.

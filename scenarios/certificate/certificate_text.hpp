@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 /// Returns the certificate as JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value,
-/// low, high, verdict, note}]}. Non-finite numbers are null.
+/// low, high, verdict, note}]}. Non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
 /// Parses the JSON of a certificate bit-exactly. Null becomes NaN, and verdicts are recomputed. Throws BadInput with a

@@ -6,9 +6,9 @@
 
 #include "sim/recording.hpp"
 
-/// Computes the plane that limits the readings of a saturated sensing element, by a fit and in closed form. The plane
-/// is y_j = +-rho + b + sum over k != j of c_k y_k, where c_k = -M_jk / M_jj, rho = r / M_jj and b = -o_j / M_jj. The
-/// matrix M and the offset o are defined in sim/imu/elements.hpp; r is the saturation level.
+/// clipped_plane.hpp computes the plane that limits the readings of a saturated sensing element, by a fit and in closed
+/// form. The plane is y_j = +-rho + b + sum over k != j of c_k y_k, where c_k = -M_jk / M_jj, rho = r / M_jj and b =
+/// -o_j / M_jj. The matrix M and the offset o are defined in sim/imu/elements.hpp; r is the saturation level.
 namespace tumble::scenarios {
 
 /// Returns a motion that saturates every sensing element. The body rotates about x, y and z in turn beyond the gyro's
@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 /// saturates the three accelerometer elements [m/s^2] one after another.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 
-/// Readings of one sensor triad and the parameters of its sensing elements.
+/// SensedTriad contains the readings of one sensor triad and the parameters of its sensing elements.
 struct SensedTriad {
   const std::vector<Eigen::Vector3d>&readings, &unclipped;
   Eigen::Matrix3d axes;
@@ -26,7 +26,8 @@ struct SensedTriad {
 SensedTriad sensed_rates(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_rad_s);
 SensedTriad sensed_forces(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_m_s2);
 
-/// Saturation plane of sensing element j. The cross-axis sensitivities refer to axes j + 1 and j + 2, cyclically.
+/// ClippedPlane is the saturation plane of sensing element j. The cross-axis sensitivities refer to axes j + 1 and j +
+/// 2, cyclically.
 struct ClippedPlane {
   double first_slope, second_slope;  // [1]
   double distance, offset;           // rho and b [unit of the readings]

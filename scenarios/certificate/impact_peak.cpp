@@ -25,8 +25,8 @@ const std::array<Eigen::Quaterniond, 4>& attitudes() {
   return kAll;
 }
 
-/// Returns the largest specific force at the centre of mass, averaged over kWindow_s. The search starts at the drop and
-/// ends shortly after the first contact.
+/// Returns the largest specific force at the centre of mass, averaged over kWindow_s. The search for the peak starts at
+/// the drop and ends shortly after the first contact.
 double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitude, double height_m, double step_s,
                  double contact_time_s) {
   sim::Situation situation = bare_room("rig");

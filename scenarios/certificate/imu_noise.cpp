@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRate_hz = 100.0;
 
-/// Rates [rad/s] and specific forces [m/s^2] of a device at rest.
+/// RestReadings contains rates [rad/s] and specific forces [m/s^2] of a device at rest.
 struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
@@ -62,7 +62,7 @@ std::vector<sim::AllanPoint> curve_of(const std::vector<Eigen::Vector3d>& sample
   return sim::mean_deviation(axes);
 }
 
-/// Data sheet values of one triad that apply at rest.
+/// Stated contains the data sheet values of one triad that apply at rest.
 struct Stated {
   double noise;
   sim::Bias::Params bias;
@@ -82,8 +82,8 @@ struct Stated {
   }
 };
 
-/// Returns the ratio of the measured to the stated deviation at one averaging time. The accepted range is the
-/// statistical interval for three axes.
+/// Returns the ratio of the measured to the stated Allan deviation at one averaging time. The accepted range of the
+/// ratio is the statistical interval for three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // none of about twenty entries fails by chance

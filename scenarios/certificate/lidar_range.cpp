@@ -35,8 +35,8 @@ sim::Situation moving_lidar(const CertificateInput& input, const std::string& ro
   return situation;
 }
 
-/// Returns the distance of a point from the plane of the surface that it hit. Negative if the surface is not a plane of
-/// the room.
+/// Returns the signed distance of a lidar point from the plane of the surface that it hit, or a negative value if the
+/// surface is not a plane of the room.
 double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   if (surface == "floor") return std::abs(p_W_m.z());
   if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 constexpr double kSegment_m = 0.25, kMass_kg = 0.3;
 
-/// Computes the motion of three equal slim bars in a plane without friction, in closed form (Lagrange's equations of
-/// the multiple pendulum). Each angle is measured from the vertical, about +y.
+/// Chain computes the frictionless motion of three equal slim bars in a plane, in closed form (Lagrange's equations of
+/// the multiple pendulum). Each angle of a bar is measured from the vertical, about +y.
 class Chain {
  public:
   Chain(double segment_m, double gravity_m_s2) : length_m_(segment_m) {
@@ -27,8 +27,8 @@ class Chain {
       const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // An off-diagonal entry couples the upper bar's end to the lower bar's middle. A diagonal entry is the inertia
-        // of a bar about its end, with the bars below as point masses.
+        // An off-diagonal entry of the mass matrix couples the upper bar's end to the lower bar's middle. A diagonal
+        // entry is the inertia of a bar about its end, with the bars below as point masses.
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -43,7 +43,7 @@ class Chain {
     return out;
   }
 
-  /// Returns the energy relative to the energy at rest.
+  /// Returns the energy of the pendulum relative to its energy at rest.
   double energy_j(const Vector3d& angle, const Vector3d& rate) const {
     return 0.5 * rate.dot(mass(angle) * rate) + weight_nm_.dot((1.0 - angle.array().cos()).matrix());
   }
@@ -86,7 +86,7 @@ class Chain {
   Vector3d weight_nm_;
 };
 
-/// The simulated pendulum without friction.
+/// Pendulum is the simulated pendulum without friction.
 class Pendulum {
  public:
   Pendulum(const CertificateInput& input, sim::Integrator integrator)
@@ -178,8 +178,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect is 6e-8 for a simple
-  // pendulum, and about fifty times larger for the higher modes.
+  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect of the amplitude is
+  // 6e-8 for a simple pendulum, and about fifty times larger for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",
@@ -190,7 +190,7 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
           ""};
 }
 
-/// Angles and rates of the three bars at one instant.
+/// Joints contains angles and rates of the three bars at one instant.
 struct Joints {
   Vector3d angle, rate;
 };
@@ -243,8 +243,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured error is 1e-6. During fast changes at the bars' turning points, Simpson's rule and RK4 have errors of
-  // a few parts in 1e8.
+  // The measured error of the specific force is 1e-6. During fast changes at the bars' turning points, Simpson's rule
+  // and RK4 have errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",

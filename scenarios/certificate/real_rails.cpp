@@ -12,16 +12,16 @@
 // rad/s; a residual in brackets belongs to a plane without cross-axis sensitivity.
 //
 // Wand, x: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual of the planes of
-// wand, x is 0.003 to 0.009 (0.005 to 0.010). Their offset changes with the bias from day to day.
+// wand, x is 0.003 to 0.009 (0.005 to 0.010). The offset of the planes changes with the bias from day to day.
 //
-// Wand, y: Test06 trial 1 has 39 and 42 readings at the two limits, and the residual is 0.004 (0.014). Only one
-// recording exists, so the interval is three standard errors. The interval includes planes from more readings at the
-// ends of the saturated intervals.
+// Wand, y: Test06 trial 1 has 39 and 42 readings at the two limits, and the residual is 0.004 (0.014). Because only one
+// recording exists, the interval is three standard errors. The interval includes planes from more readings at the ends
+// of the saturated intervals.
 //
 // Pendulum, z: the third segment saturates in Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07
 // trial 3 (10 readings) have a residual of 0.0003 (0.07 and 0.09), below the quantum of 0.0005. The offsets of the
 // planes in Test02a and Test07 are 0.0001 and 0.0003. Fits with repeated readings and partly saturated windows have
-// residuals of 0.02 to 0.07. The cross-axis sensitivities of those fits scatter: 0.045 to 0.054 and -0.027 to 0.009.
+// residuals of 0.02 to 0.07. The cross-axis sensitivities of these fits scatter: 0.045 to 0.054 and -0.027 to 0.009.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +38,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Range of one parameter of the saturation plane over the recordings of a device.
+/// MeasuredRange is the range of one parameter of the saturation plane over the recordings of a device.
 struct MeasuredRange {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
@@ -108,7 +108,7 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
       "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
-/// Standard deviations of the saturation planes of devices drawn from a data sheet.
+/// DrawnPlanes contains standard deviations of the saturation planes of devices drawn from a data sheet.
 struct DrawnPlanes {
   double slope = 0.0, offset_rad_s = 0.0;
 };

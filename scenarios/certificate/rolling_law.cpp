@@ -12,13 +12,14 @@ namespace {
 
 constexpr double kMoving_m_s = 0.05;
 
-/// Path length of the sphere's centre during rolling contact, and the path error of the law r w x n.
+/// Lengths contains the path length of the sphere's centre during rolling contact, and the path error of the law r w x
+/// n.
 struct Lengths {
   double path_length_m = 0.0, missed_m = 0.0;
 };
 
-/// Compares the centre's velocity with r w x n. `n` is the normal of the contact with the largest load. Samples during
-/// short interruptions of contact are skipped.
+/// Compares the velocity of the sphere's centre with r w x n. `n` is the normal of the contact with the largest load.
+/// Samples during short interruptions of contact are skipped.
 Lengths compare(const sim::Truth& truth, double radius_m) {
   Lengths lengths;
   const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;

@@ -8,12 +8,13 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// Declares the certificate's measurements with their settings. The default values are those of the certificate. Tests
-/// modify one number and check that the measurement fails. Members named `stated_*` change the value that the closed
-/// form assumes.
+/// rows.hpp declares the certificate's measurements with their settings. The default settings are those of the
+/// certificate. Tests modify one setting and check that the measurement fails. Members named `stated_*` change the
+/// value that the closed form assumes.
 namespace tumble::scenarios {
 
-/// The rig is thrown high and rotates near its unstable axis. Euler's equations conserve energy and angular momentum.
+/// For the free-flight measurement, the rig is thrown high and rotates near its unstable axis. Euler's equations
+/// conserve energy and angular momentum.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;

@@ -7,7 +7,7 @@
 #include "sim/recording.hpp"
 #include "sim/trial/trial.hpp"
 
-/// Situations and motions that several measurements of the certificate share.
+/// set_up.hpp contains situations and motions that several certificate measurements share.
 namespace tumble::scenarios {
 
 /// Returns a robot ("rig", "sphere" or "pendulum") in an empty room with floor and walls, without sensors.
@@ -26,7 +26,7 @@ sim::Truth fly(sim::Trial& trial, double duration_s);
 /// Returns a sensor specification for the IMU of the data sheet, with the sheet's name.
 sim::SensorSpec imu_of_sheet(const DataSheet& sheet);
 
-/// Returns the larger value. NaN counts as largest, so that a failed measurement is not hidden.
+/// Returns the larger of two values. NaN counts as largest, so that a failed measurement is not hidden.
 double larger(double a, double b);
 
 }  // namespace tumble::scenarios

@@ -30,7 +30,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
   return sensor;
 }
 
-/// Difference between fitted and simulated saturation planes.
+/// PlaneErrors contains the differences between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
   int samples = 0;  ///< smallest number over elements and signs

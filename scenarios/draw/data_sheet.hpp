@@ -9,7 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// Data sheet of a sensor, models/sensors/DEVICE.yaml. Each number has a value, a unit and a source.
+/// DataSheet is the data sheet of a sensor, models/sensors/DEVICE.yaml. Each number of a data sheet has a value, a unit
+/// and a source.
 struct DataSheet {
   struct Entry {
     std::string name;

@@ -14,7 +14,7 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// Smallest fraction of a normal distribution that a truncation may keep.
+/// kLeastKept is the smallest fraction of a normal distribution that a truncation may keep.
 constexpr double kLeastKept = 0.01;
 
 double normal_below(double x) {

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// A number of a scenario, either constant or random. Each random number has its own named random stream, so an added
-/// number does not change the existing numbers.
+/// Distribution is a number of a scenario, either constant or random. Each random number has its own named random
+/// stream, so an added number does not change the existing numbers.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;
@@ -26,7 +26,7 @@ const char* to_string(Distribution::Shape shape);
 std::string find_problem(const Distribution& distribution);
 
 /// Returns the extreme values of a distribution: the ends of the interval, the choices, or the constant. For a normal
-/// distribution without truncation, returns only the mean.
+/// distribution without truncation, the function returns only the mean.
 std::vector<double> support_points(const Distribution& distribution);
 
 /// Draws the number for `seed` and `place` from the random stream sim::Stream(seed, "draw." + place). A truncated

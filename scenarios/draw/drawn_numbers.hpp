@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// A number of the scenario that depends on the seed.
+/// DrawnNumber is a number of the scenario that depends on the random seed.
 struct DrawnNumber {
   std::string place;  ///< stream name: "world.slope_rad", "sensors.imu.mount_error.x_m"
   Distribution distribution;

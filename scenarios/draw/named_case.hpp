@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// Expected result of one method on a named case.
+/// Expectation is the expected result of one method on a named case.
 struct Expectation {
   std::string method;                ///< "slam/tumble"
   bool fails = false;                ///< whether the method is expected to fail
@@ -20,8 +20,9 @@ struct Expectation {
   bool operator==(const Expectation&) const = default;
 };
 
-/// Value of the key `case` in a file of scenarios/regressions: the origin and the expected results of one simulated
-/// run. Methods, metrics and statuses are plain texts in this struct; scenarios/cases checks that they exist.
+/// NamedCase is the value of the key `case` in a file of scenarios/regressions: origin and expected results of one
+/// simulated run. NamedCase stores methods, metrics and statuses as plain texts; scenarios/cases checks that they
+/// exist.
 struct NamedCase {
   std::string scenario;    ///< scenario from which the case was drawn
   std::uint64_t seed = 0;  ///< seed of all random values that the listed numbers do not fix

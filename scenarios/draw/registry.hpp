@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Component types that scenario files and data sheets may name.
+/// Registry contains the component types that scenario files and data sheets may name.
 struct Registry {
   std::span<const sim::ComponentType> worlds;
   std::span<const sim::ComponentType> robots;

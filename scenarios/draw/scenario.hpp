@@ -15,7 +15,7 @@
 
 namespace tumble::scenarios {
 
-/// A parsed scenario file. Each number of the situation is constant or random.
+/// Scenario is a parsed scenario file. Each number of the situation is constant or random.
 struct Scenario {
   struct Part {
     std::string type;
@@ -41,7 +41,7 @@ struct Scenario {
 std::vector<std::string> scenario_names(const DataRoot& data);
 
 /// Returns the names of the named cases (scenarios/regressions/NAME.yaml), sorted. A case name can replace a scenario
-/// name in every function. No name is both a scenario and a case.
+/// name in every function. A name never denotes both a scenario and a case.
 std::vector<std::string> case_names(const DataRoot& data);
 
 /// Loads scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or a file if `name` ends in

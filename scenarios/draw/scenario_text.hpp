@@ -9,11 +9,11 @@
 
 namespace tumble::scenarios {
 
-/// Parses a scenario. Checks its types, its numbers, and the range of each distribution against the limits of the
-/// parameters in `registry`. Throws BadInput with `file`, the line and the place of the fault.
+/// Parses a scenario from YAML text. The parser checks types, numbers, and the range of each distribution against the
+/// limits of the parameters in `registry`. Throws BadInput with `file`, the line and the place of the fault.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry);
 
-/// Returns the limits of a scenario's duration. The duration belongs to no component.
+/// Returns the limits of a scenario's duration. The duration is a parameter of the scenario, not of a component.
 const sim::Parameter& duration_parameter();
 
 /// Parses a data sheet and checks names, units and limits against the parameters of the sheet's kind of sensor.

@@ -28,8 +28,8 @@ constexpr std::uintmax_t kLargestFile = 4u << 20;
 /// including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counts parser events to detect endless loops, which the parser enters on some invalid texts. Each event consumes at
-/// least one byte of text, so more events than bytes indicate an endless loop.
+/// Counter counts parser events to detect endless loops, which the parser enters on some invalid texts. Each event
+/// consumes at least one byte of text, so more events than bytes indicate an endless loop.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}

@@ -16,8 +16,9 @@ namespace tumble::scenarios {
 /// Returns the text of a file. Throws BadInput if the file cannot be read or exceeds 4 MiB.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// A YAML node with its location in the file. Every error is a BadInput with a one-line message: "FILE:LINE: PLACE:
-/// what". The parser is stricter than YAML: it rejects repeated keys, non-text keys, and a second document.
+/// YamlNode is a YAML node with its location in the file. Every error is a BadInput with a one-line message:
+/// "FILE:LINE: PLACE: what". YamlNode is stricter than YAML: it rejects repeated keys, non-text keys, and a second
+/// document.
 class YamlNode {
  public:
   /// Parses a text with one document and returns the root node. Error messages start with `file`.
@@ -43,9 +44,9 @@ class YamlNode {
   double number_or_infinity() const;
   std::uint64_t unsigned_integer() const;
   std::vector<YamlNode> items() const;
-  /// Returns the entries of a map in the order of the file.
+  /// Returns the entries of a YAML map in the order of the file.
   std::vector<std::pair<std::string, YamlNode>> entries() const;
-  /// Returns the entries of a map by key. The map must have every key in `required` and may have the keys in
+  /// Returns the entries of a YAML map by key. The YAML map must have every key in `required` and may have the keys in
   /// `optional`.
   std::map<std::string, YamlNode> fields(std::span<const std::string> required,
                                          std::span<const std::string> optional = {}) const;

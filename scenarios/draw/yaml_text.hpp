@@ -3,7 +3,7 @@
 
 #include <string>
 
-/// Writes scalars as YAML text.
+/// yaml_text.hpp writes scalars as YAML text.
 namespace tumble::scenarios {
 
 /// Returns the shortest text that parses to the same double. Infinite values are `.inf` and `-.inf`. Throws BadInput

@@ -18,17 +18,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Largest time between the starts of two sensors. Drivers that boot for seconds exceed the limit.
+/// kApart_s is the largest accepted time between the starts of two sensors. Drivers that boot for seconds exceed
+/// kApart_s.
 constexpr double kApart_s = 0.5;
-/// Largest share of lost readings or sweeps. A lost reading costs no accuracy; many lost readings are a fault of the
-/// bus, the driver or the recorder.
+/// kLostShareMax is the largest accepted fraction of lost readings or sweeps. A single lost reading costs no accuracy;
+/// many lost readings are a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
 constexpr std::int64_t kLeastLost = 2;
-/// A step longer than this many periods contains a lost reading.
+/// A time step longer than kLostStep periods contains a lost reading.
 constexpr double kLostStep = 1.5;
-/// Duration at the start in which the estimators initialise attitude and gyro bias.
+/// In the first kStart_s seconds, the estimators initialise attitude and gyro bias.
 constexpr double kStart_s = 1.0;
-/// Smallest share of registered sweeps.
+/// kRegisteredShareMin is the smallest accepted fraction of registered sweeps.
 constexpr double kRegisteredShareMin = 0.8;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
@@ -39,7 +40,7 @@ std::string percent_text(double share) {
   return rounded(100.0 * share) + " %";
 }
 
-/// Returns the finding on lost readings or sweeps, if more are lost than kLostShareMax.
+/// Returns a finding about lost readings or sweeps if the lost fraction exceeds kLostShareMax.
 std::optional<RecordingFinding> lost_items(const std::string& name, const char* items, std::int64_t period_ns,
                                            std::span<const std::int64_t> times_ns) {
   if (times_ns.size() < 2 || period_ns <= 0) return std::nullopt;

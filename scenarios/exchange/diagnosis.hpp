@@ -9,11 +9,11 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Finds faults of a recording that impair an estimate. Readers and estimators already report most faults; the
-/// functions collect these reports and add checks of both sensors together.
+/// diagnosis.hpp finds faults of a recording that impair an estimate. Readers and estimators already report most
+/// faults; diagnosis.hpp collects their reports and checks the sensors together.
 namespace tumble::scenarios {
 
-/// A fault of a recording.
+/// RecordingFinding is a fault of a recording.
 struct RecordingFinding {
   std::string where;     ///< sensor, topic or file
   std::string evidence;  ///< what is wrong, with numbers and limits
@@ -29,12 +29,12 @@ std::string recommended_option(const std::string& message);
 /// Returns a finding for each note of an importer that is a caution. A note has the form "NAME: caution: TEXT".
 std::vector<RecordingFinding> findings_in_notes(std::span<const std::string> notes);
 
-/// Saturated readings of one IMU, as ClippingFinder finds them.
+/// Saturation describes the saturated readings of one IMU, as ClippingFinder finds them.
 struct Saturation {
   double gyro_share = 0.0, accel_share = 0.0;  ///< samples with at least one saturated axis
   double gyro_rad_s = 0.0, accel_m_s2 = 0.0;   ///< smallest saturated reading; 0: none
 };
-/// O(N log N). All values are 0 if the IMU cannot be used.
+/// Cost: O(N log N). All saturation values are 0 if the IMU cannot be used.
 Saturation saturation_of(const sim::ImuRecord& imu);
 
 /// Checks the readings: sensors that start apart, lost readings and sweeps, saturation, motion at the start, and points

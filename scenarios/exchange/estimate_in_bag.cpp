@@ -48,7 +48,7 @@ Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   for (const PoseState& pose : estimate.poses) {
     const std::size_t before = static_cast<std::size_t>(std::max<std::int64_t>(pose.time_ns, 0) / truth->period_ns);
     if (pose.time_ns < 0 || before >= truth->size()) continue;
-    // The two states next to the time are sufficient for interpolation.
+    // The two states next to the requested time are sufficient for interpolation.
     const sim::Truth around = truth->states(before, std::min(before + 2, truth->size()));
     const TruthTrack track(around, estimate.frame);
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
@@ -88,7 +88,7 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
   return out;
 }
 
-/// Interpolates the body's pose.
+/// BodyAt interpolates the body's pose.
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}

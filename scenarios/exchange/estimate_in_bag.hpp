@@ -12,9 +12,9 @@
 
 namespace tumble::scenarios {
 
-/// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used. Velocities are
-/// unknown. If the truth is known, the track is aligned like the scores: to the true position and heading at the first
-/// pose within the time of the truth (truth_track.hpp).
+/// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used. Velocities of the
+/// track are unknown. If the truth is known, the track is aligned like the scores: to the true position and heading at
+/// the first pose within the time of the truth (truth_track.hpp).
 ///
 /// The returns of the first lidar become point clouds. The interpolated estimated pose of the lidar transforms each
 /// return, and the cloud's stamp is the end of the sweep. Returns outside the time of the poses, or in gaps longer than

@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// Returns a warning if an IMU repeats one reading, has permuted axes, or measures a force or rotation that contradicts
-/// gravity. Otherwise returns "". `gravity_m_s2` is the gravity of the recording. O(N).
+/// gravity; otherwise "". `gravity_m_s2` is the gravity of the recording. O(N).
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);
 
 /// Returns notes on each IMU of a recording. Each note starts with the IMU's name.

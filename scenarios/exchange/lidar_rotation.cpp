@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Largest accepted error relative to the median rotation. Above this limit, lidar and gyro do not measure the same
-/// motion. The error of the lidar's rotation is about 0.1.
+/// kAgrees is the largest accepted error relative to the median rotation. If the error is larger, lidar and gyro do not
+/// measure the same motion. The relative error of the lidar's rotation is about 0.1.
 constexpr double kAgrees = 0.3;
 /// A correction of the gyro is only reported if the remaining error is below this fraction of the original error.
 /// kConclusive applies to units and axes, and kDelayConclusive applies to a delay.
@@ -31,7 +31,8 @@ constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
-/// Largest relative difference of an attitude from the inverse of the stated attitude, about 10 degrees.
+/// kInverted is the largest relative difference of an attitude from the inverse of the stated attitude, about 10
+/// degrees.
 constexpr double kInverted = 0.2;
 
 /// Returns the sweeps `first` to `last` - 1 as a recording with only this lidar.
@@ -67,8 +68,8 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Integrates the gyro per axis. Between two sweeps the rotation is a few hundredths of a radian, so the integral per
-/// axis is accurate.
+/// Integral integrates the gyro per axis. Between two sweeps, the rotation is a few hundredths of a radian, so the
+/// integral per axis is accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -79,7 +80,7 @@ class Integral {
     }
   }
 
-  /// Returns the integral from `from_ns` to `to_ns`, or empty if the interval leaves the readings or contains a gap.
+  /// Returns the integral from `from_ns` to `to_ns`, or nothing if the interval exceeds the readings or contains a gap.
   std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const auto first = sample_at(from_ns), last = sample_at(to_ns);
     if (!first || !last) return std::nullopt;
@@ -91,7 +92,7 @@ class Integral {
 
  private:
   std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
-  /// Returns the index of the sample whose averaging window contains the instant.
+  /// Returns the index of the sample whose averaging window contains `time_ns`.
   std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
     const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
     if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
@@ -105,7 +106,7 @@ class Integral {
   std::vector<Eigen::Vector3d> sum_;
 };
 
-/// Rotations from lidar and gyro over equal time intervals, both in IMU axes.
+/// Pairs contains rotations from lidar and gyro over equal time intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
   double rotation_rad = 0.0;  // median of the lidar's rotations
@@ -280,7 +281,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // Among a hundred candidate delays, one delay may fit slightly better by chance.
+  // Among a hundred candidate delays, one may fit slightly better by chance.
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
@@ -296,8 +297,8 @@ std::string agreement_text(const std::string& where, const RotationAgreement& fo
 
 namespace {
 
-/// Returns the attitude of the lidar on the body that makes lidar and gyro agree. Empty if they agree with the stated
-/// attitude, or if no rotation makes them agree.
+/// Returns the attitude of the lidar on the body that makes lidar and gyro agree. Returns nothing if lidar and gyro
+/// agree with the stated attitude, or if no rotation makes them agree.
 std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                const RotationAgreement& found) {
   const bool agrees = found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error;

@@ -17,7 +17,7 @@
 /// driven bodies with little tilt, gravity does not reveal wrong axes or units, but the lidar does.
 namespace tumble::scenarios {
 
-/// Rotation of a lidar between two instants.
+/// SeenRotation is the rotation of a lidar between two instants.
 struct SeenRotation {
   std::int64_t from_ns = 0, to_ns = 0;
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
@@ -25,12 +25,12 @@ struct SeenRotation {
 
 /// Returns the rotations between the ends of consecutive sweeps, as `slam/constant_velocity` estimates them from the
 /// lidar alone. The function processes at most ten parts of a dozen sweeps, spread over the recording, each with its
-/// own map. Only pairs of registered sweeps with rates of 0.1 to 2 rad/s are kept. Slower rotations are noise, and
-/// faster rotations distort the sweeps. The points are in `lidar`, or in `aside` if `aside` is not null. The cost is
-/// about 10 ms per sweep.
+/// own map. The function keeps only pairs of registered sweeps with rates of 0.1 to 2 rad/s. Slower rotations are
+/// noise, and faster rotations distort the sweeps. The points are in `lidar`, or in `aside` if `aside` is not null. The
+/// cost is about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
-/// A signed permutation of axes: true axis i is `sign[i]` times axis `axis[i]` of the readings.
+/// SignedAxes is a signed permutation of axes: true axis i is `sign[i]` times axis `axis[i]` of the readings.
 struct SignedAxes {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};
@@ -39,7 +39,8 @@ struct SignedAxes {
   std::string text() const;  ///< "(-x, y, z)"
 };
 
-/// Agreement of a gyro with a lidar. The errors are medians over the sweep pairs, relative to the median rotation.
+/// RotationAgreement states how well a gyro agrees with a lidar. The errors are medians over the sweep pairs, relative
+/// to the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
   double unit = 1.0;        ///< 1, 57.3 or 1/57.3: factor from the gyro's integral to the lidar's rotation
@@ -53,9 +54,9 @@ struct RotationAgreement {
   double turned_error = 1.0;
 };
 
-/// Compares the gyro's rotations with the lidar's rotations `seen`. Returns empty for fewer than a dozen sweep pairs
-/// within the time of the gyro's readings. Returns empty also if no unit, axes or mounting rotation make gyro and lidar
-/// agree within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
+/// Compares the gyro's rotations with the lidar's rotations `seen`. Returns nothing for fewer than a dozen sweep pairs
+/// within the time of the gyro's readings. Returns nothing if no unit, axes or mounting rotation make gyro and lidar
+/// agree within 30 %. The comparison uses the mountings of `imu` and `lidar`. O(pairs).
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
@@ -63,15 +64,15 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
 /// Throws BadInput if the rates are in deg/s instead of rad/s or vice versa. The message starts with `where`.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Result of the comparison of all IMUs with the first lidar.
+/// LidarRotationCheck is the result of comparing all IMUs with the first lidar.
 struct LidarRotationCheck {
   std::vector<std::string> notes;              ///< at most one for each IMU
   std::optional<RotationAgreement> primary;    ///< of the primary IMU; empty if undetermined
   std::optional<Eigen::Isometry3d> better_BL;  ///< pose of the first lidar that makes lidar and primary IMU agree
 };
 
-/// Compares each IMU of a recording with the first lidar. The result is empty unless the recording has a lidar and an
-/// IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
+/// Compares each IMU of a recording with the first lidar. The returned check is empty unless the recording has a lidar
+/// and an IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
 constexpr double kRingOff_rad = 0.5 * kDegree_rad;
-/// Nearer points may belong to the robot, or are seen from the mirror rather than from the origin.
+/// Nearer points may belong to the robot, or the beam may start at the mirror rather than at the origin.
 constexpr float kNear_m = 0.5f;
 constexpr std::size_t kSweepsUsed = 10, kLeastPointsOfRing = 20;
 

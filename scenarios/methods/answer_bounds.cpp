@@ -31,7 +31,7 @@ constexpr std::size_t kStampsToJudge = 10;  // minimum; fewer stamps could span 
 constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
 
 /// Returns "; the values seem to be in UNIT" if the stamps seem to be in another unit than `unit`; empty if no unit
-/// fits. The stamps span `times` the duration of the recording.
+/// fits. The stamps cover `times` the duration of the recording.
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
       {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};

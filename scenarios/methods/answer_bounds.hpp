@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Limits on the result of an external method for one recording. The size of a file is checked before reading, because
-/// the method's time limit does not include reading.
+/// AnswerBounds limits the result of an external method for one recording. The size of a file is checked before
+/// reading, because the method's time limit excludes reading.
 class AnswerBounds {
  public:
   /// Returns the location of row `row` for an error message, for example "poses.tum:3".
@@ -27,7 +27,8 @@ class AnswerBounds {
   /// lidar point.
   std::uintmax_t map_bytes() const;
 
-  /// Throws BadInput unless `file` is a regular file of at most `bytes`. Does not read the file.
+  /// Throws BadInput unless `file` is a regular file of at most `bytes`. The function only checks the size and does not
+  /// read the file.
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
 
   /// These functions check the values of an external method's result and throw BadInput with location, value and limit.
@@ -37,13 +38,13 @@ class AnswerBounds {
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput if ten or more stamps are probably not in `unit`. The unit is wrong if the stamps span less than a
-  /// hundredth of the recording. The unit is also wrong if the stamps span more than a hundred times the recording and
-  /// fit another unit.
+  /// Throws BadInput if ten or more stamps are probably not in `unit`. The unit is wrong if the stamps cover less than
+  /// a hundredth of the recording. The unit is also wrong if the stamps cover more than a hundred times the recording
+  /// and fit another unit.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   /// Checks the pose and trajectory of each sweep, and the points of the map. The limits of positions and quaternions
-  /// apply.
+  /// apply to poses and points.
   void require_slam(const Estimate& estimate) const;
 
  private:

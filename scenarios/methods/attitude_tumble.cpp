@@ -22,7 +22,7 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// Merges all IMUs of the sphere in body axes. The rolling motion determines the velocity.
+/// Merges all IMUs of the sphere in body axes. The rolling motion determines the velocity of the sphere.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;

@@ -18,8 +18,9 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 /// Attitudes computed before an error are kept.
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Reports for how long the inclination is unknown, which means that its 2 sigma exceed 1 rad. Adds a failed health
-/// check and the health value `attitude_unknown_s`. A possible cause is an IMU gap in a tumble.
+/// Reports for how long the inclination is unknown, which means that two standard deviations exceed 1 rad. Adds a
+/// failed health check and the health value `attitude_unknown_s`. An IMU gap in a tumble can make the inclination
+/// unknown.
 void report_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Above this probability of hand-held motion in clipped segments, the hand-held smoother processes the clipped
+/// Above the probability kCarried of hand-held motion in clipped segments, the hand-held smoother processes the clipped
 /// readings. The motion limits of the hand-held smoother then give better results than the recovered rates.
 constexpr double kCarried = 0.5;
 
@@ -38,8 +38,8 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// Checks the rates that the attitude smoother receives against gravity at the rests. The smoother's output cannot be
-/// checked, because the smoother itself aligns gravity at the rests.
+/// Checks the rates that the attitude smoother receives against gravity at the rests. The output of the smoother cannot
+/// be checked, because the smoother itself aligns gravity at the rests.
 void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, const RecoveredRates& recovered,
                     Estimate& estimate) {
   std::vector<RateState> read(recovered.sources.size());

@@ -29,8 +29,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Largest accepted ratio between the median step and the stated period. Stamps in a wrong unit differ at least
-// 1000-fold. The ratio of a device that is read slowly stays below kPeriodsMax.
+// kPeriodsMax is the largest accepted ratio between the median time step and the stated period. Time stamps in a wrong
+// unit differ at least 1000-fold. The ratio of a device that is read slowly stays below kPeriodsMax.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -57,8 +57,8 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Marks readings that are finite, within the values of any sensor, and whose stamps are in order. If too many readings
-// are faulty, all readings are marked, so that the recording is refused.
+// Marks usable readings: finite, within the values of any sensor, and with stamps in order. If too many readings are
+// faulty, all readings are marked, so that the recording is refused.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;

@@ -15,8 +15,9 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
-/// Converts the records of `sim` to the messages of the estimator. This file contains every conversion between the two
-/// libraries. Each library states its conventions separately. The libraries compare as follows:
+/// Converts the records of `sim` to the messages of the estimator. bridge.hpp contains every conversion between the two
+/// libraries. Each of the two libraries states its conventions separately. The conventions of the libraries compare as
+/// follows:
 ///
 /// - Time: both libraries use the end of a sample's averaging window [ns].
 /// - Rate: both libraries use the rate of I relative to W in the axes of I [rad/s].
@@ -27,12 +28,12 @@
 /// - Lidar point: both libraries use metres in L and the offset from the sweep's start [ns].
 namespace tumble::scenarios::bridge {
 
-/// Longest accepted time between two IMU samples [s].
+/// kGapMaxS is the longest accepted time between two IMU samples [s].
 inline constexpr double kGapMaxS = 1.0;
 
-/// Readings up to this multiple of the stated range are accepted as measurements. Real saturation levels exceed the
-/// stated range (MTi-30: 1.4 times the range). A tilted saturation plane allows even larger readings. Readings above
-/// the multiple cannot be measurements.
+/// Readings up to kStatedRangesMax times the stated range are accepted as measurements. Real saturation levels exceed
+/// the stated range (MTi-30: 1.4 times the range). A tilted saturation plane allows even larger readings. Larger
+/// readings cannot be measurements.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
 /// A recording is refused if a larger fraction of its readings is out of range, because then the unit or the device
@@ -49,13 +50,13 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
 /// Tests the samples of an IMU. Element k is false if sample k is not finite, exceeds the values of any sensor, or has
 /// a stamp that is not in order. Samples with one of these faults are only rejected if the faults are rare
 /// (may_leave_out). Element k is also false if the library's OutlierFilter rejects the sample. All samples pass if the
-/// record's arrays differ in length. O(N log N).
+/// record's arrays differ in length. Cost: O(N log N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
 /// Converts the samples of an IMU, in order, and drops the single faulty readings that find_inliers rejects. Returns
-/// `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS) or `out_of_range`. The reason for `out_of_range` is
-/// check_range, or a median step that differs 20-fold from the stated period. On error, `out` is empty. Throws BadInput
-/// if the record's arrays differ in length. O(N).
+/// `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS) or `out_of_range`. The error `out_of_range` comes
+/// from check_range, or from a median time step that differs 20-fold from the stated period. On error, `out` is empty.
+/// Throws BadInput if the record's arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
 /// Converts the primary IMU's samples. Returns `empty` if the recording has no IMU.
@@ -75,7 +76,7 @@ Eigen::Isometry3d T_IL(const sim::ImuRecord& imu, const sim::LidarRecord& lidar)
 /// sample period.
 double gyro_variance_rad2_s2(const sim::ImuRecord& record);
 
-/// One lidar sweep in the estimator's message format.
+/// Sweep is one lidar sweep in the message format of the estimator.
 struct Sweep {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
@@ -85,14 +86,14 @@ struct Sweep {
 /// Returns the number of sweeps. Throws BadInput if the record's arrays are inconsistent.
 std::size_t sweep_count(const sim::LidarRecord& record);
 
-/// Tolerance for rounded stamps [ns]. Stamps that are stored as seconds since 1970 in a double are rounded by up to a
-/// quarter of this tolerance.
+/// kRounding_ns is the tolerance for rounded time stamps [ns]. Time stamps stored as seconds since 1970 in a double are
+/// rounded by up to a quarter of this tolerance.
 inline constexpr std::int64_t kRounding_ns = 1000;
 
 /// Converts the sweep with number `index`, which must be less than sweep_count(record). The sweep ends after one
 /// period, or at the start of the next sweep if that is earlier. Points up to kRounding_ns after the sweep's end are
-/// moved to the end. Later points are dropped. Without a time per point, the sweep has zero length and is not deskewed.
-/// The cost is proportional to the number of points of the sweep.
+/// moved to the end. Points that are later than this are dropped. A sweep without a time per point has zero length and
+/// is not deskewed. The cost is proportional to the number of points of the sweep.
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

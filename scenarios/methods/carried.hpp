@@ -13,7 +13,8 @@
 #include "tumble/attitude/clipped_readings.hpp"
 #include "tumble/attitude/hand_held_smoother.hpp"
 
-/// Runs the hand-held smoother on the primary IMU after saturation detection. All hand-held methods use this function.
+/// carried.hpp runs the hand-held smoother on the primary IMU after saturation detection. All hand-held methods use
+/// this function.
 namespace tumble::scenarios {
 
 /// Returns the parameters of a hand-held method with the library's defaults.

@@ -8,7 +8,7 @@
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/processes/command.hpp"
 
-/// Helper functions to run external commands and Python functions.
+/// command_run.hpp contains helper functions to run external commands and Python functions.
 namespace tumble::scenarios {
 
 std::string without_trailing_folder(std::string text, const std::filesystem::path& folder);
@@ -16,8 +16,8 @@ std::string without_trailing_folder(std::string text, const std::filesystem::pat
 /// Returns the message `what` with the end of the program's output.
 std::string with_output_tail(const std::string& what, const CommandEnd& end);
 
-/// Calls `work` and removes the path of the scratch folder from messages of BadInput and NoAnswer. The scratch path
-/// differs in each run. After the removal, messages name files relative to the scratch folder.
+/// Calls `work` and removes the path of the scratch folder from messages of BadInput and NoAnswer. The path of the
+/// scratch folder differs in each run. After its removal, messages name files relative to the scratch folder.
 template <class Work>
 auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {

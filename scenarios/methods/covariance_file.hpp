@@ -8,12 +8,12 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// Reads and writes covariances of an estimate's poses or attitudes, one row per stamp. The covariances have their own
-/// file, because TUM files have no columns for covariances. ESTIMATE.md describes the columns.
+/// Reads and writes covariances of an estimate's poses or attitudes, one row per stamp. The covariances have a separate
+/// file, because TUM files have no columns for them. ESTIMATE.md describes the columns.
 namespace tumble::scenarios {
 
-/// Writes one covariance per stamp: the upper triangle, row by row. If all covariances are zero (not estimated), no
-/// file is written. Throws BadInput if writing fails.
+/// Writes one covariance per time stamp: the upper triangle, row by row. If all covariances are zero (not estimated),
+/// no file is written. Throws BadInput if writing fails.
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances);
 

@@ -47,8 +47,8 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Reads a quaternion x y z w. Throws BadInput if the norm differs from 1. NaN is accepted, because a diverged method
-// writes NaN.
+// Reads a quaternion x y z w. Throws BadInput if the norm of the quaternion differs from 1. The reader accepts NaN,
+// because a diverged method writes NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -303,7 +303,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.error_code = JsonMembers(path, status).named("trouble", ErrorCode::diverged);
-  // A Status refers to a static string, so it cannot name the actual field. The file names the field.
+  // A Status refers to a static string, so it cannot name the actual field. The file estimate.json names the field.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");

@@ -113,8 +113,8 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// Returns a digest of the description and of the files that the command names by {folder}. A recompiled program thus
-/// counts as another version.
+/// Returns a digest of the description and of the files that the command names by {folder}. A recompiled program
+/// therefore counts as another version.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
   for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))
@@ -169,8 +169,8 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// Returns the kind of the only method function in the text. If there is no function, returns the kind of a matching
-/// assignment.
+/// Returns the kind of the only method function in the text. Without a method function, the result is the kind of a
+/// matching assignment.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");

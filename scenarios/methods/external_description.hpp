@@ -10,12 +10,12 @@
 
 namespace tumble::scenarios {
 
-/// Wall time of one run of an external method if its description states no limit. An external method in a Python file
-/// has no description.
+/// kExternalTimeLimit_s is the wall time limit of an external method whose description states no limit. An external
+/// method in a Python file has no description.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
-/// An external method: a command described in a file NAME.yaml, or a Python function in NAME.py. EXTERNAL.md describes
-/// the keys and placeholders.
+/// ExternalDescription describes an external method: a command described in a file NAME.yaml, or a Python function in
+/// NAME.py. EXTERNAL.md describes the keys and placeholders.
 struct ExternalDescription {
   enum class Output { rates, tum, estimate };
 

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sensor data in one format. The sensor data are only written if the command names the format.
+/// Provision is the sensor data in one format. The sensor data are written only if the command names the format.
 struct Provision {
   const char* placeholder;
   const char* name;  ///< file or folder in the scratch folder

@@ -14,8 +14,8 @@
 
 namespace tumble::scenarios {
 
-/// Error if an external program gave no result. The program crashed, could not be started or timed out, or the machine
-/// lacked memory or disk space. The message contains the program's output so far.
+/// NoAnswer is the error if an external program gave no result. The program crashed, could not be started or timed out,
+/// or the machine lacked memory or disk space. The message contains the program's output so far.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, timed_out, machine };
@@ -29,7 +29,8 @@ class NoAnswer : public std::runtime_error {
   std::string transcript_;
 };
 
-/// Error if the result of an external program is invalid. The message contains the program's output.
+/// RefusedAnswer is the error if the result of an external program is invalid. The message contains the program's
+/// output.
 class RefusedAnswer : public BadInput {
  public:
   RefusedAnswer(const std::string& what, std::string transcript) : BadInput(what), transcript_(std::move(transcript)) {}
@@ -40,13 +41,12 @@ class RefusedAnswer : public BadInput {
 };
 
 /// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). A command receives the sensor data in a separate
-/// folder in the requested formats. The command runs in its own process with its limits and writes its result to a
+/// folder in the requested formats. The command runs in a separate process with its limits and writes its result to a
 /// file. A Python function exchanges the sensor data and the result through shared memory. The external program never
 /// receives the truth.
 ///
-/// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
-/// invalid or if the version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is
-/// invalid.
+/// The time limit is that of the description, but at most `time_limit_s`. Throws BadInput if the description is invalid
+/// or if the version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is invalid.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 

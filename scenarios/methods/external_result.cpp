@@ -74,7 +74,8 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// Returns the first number of each line of a TUM file. Stops at the first invalid line, which the TUM reader reports.
+/// Returns the first number of each line of a TUM file. The function stops at the first invalid line, which the TUM
+/// reader reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -87,7 +88,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // The stamps are bag stamps in seconds.
+  // The time stamps are bag stamps in seconds.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
@@ -129,7 +130,7 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Returns a function that locates row k in the file. The file is only scanned when an error message needs the line.
+/// Returns a function that locates row k in the file. The file is scanned only when an error message needs the line.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -154,7 +155,7 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
-/// Reads any PLY file with x, y and z. Normals and standard deviations are optional.
+/// Reads any PLY file with x, y and z. Normals and standard deviations of the points are optional.
 std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const Cloud cloud = read_cloud(file);
   const auto column = [&](const char* name) { return cloud.find(name); };
@@ -188,8 +189,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit is checked before parsing. Stamps in a wrong unit may overflow the time type, and the message about
-      // the overflow would be unhelpful.
+      // The unit of the stamps is checked before parsing. Stamps in a wrong unit may overflow the time type, and the
+      // message about the overflow would be unhelpful.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

@@ -12,7 +12,7 @@ static_assert(kAllFindings.size() == static_cast<std::size_t>(HealthFinding::Abo
 
 namespace {
 
-/// Returns the health key of a check. For a check of an IMU, returns the suffix of the key.
+/// Returns the health key of a check. For a check of an IMU, the function returns the suffix of the key.
 const char* row_name(HealthFinding::About about) {
   switch (about) {
     case HealthFinding::About::readings:
@@ -49,8 +49,8 @@ const char* row_name(HealthFinding::About about) {
   return "_silent_since_s";
 }
 
-/// Returns true if a health entry with this value reports a failed check; another value reports a passed check. For a
-/// check of an IMU, 0 is a valid start time.
+/// Returns whether a health entry with this value reports a failed check. For a check of an IMU, 0 is a valid start
+/// time.
 bool is_said(HealthFinding::About about, double value) {
   if (row_name(about)[0] == '_') return true;
   return (value == 0.0) == (about == HealthFinding::About::place);

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-/// Stores results of an estimate's health checks: possible faults of the estimate or of the sensor readings.
+/// findings.hpp stores results of an estimate's health checks: possible faults of the estimate or of the sensor
+/// readings.
 namespace tumble::scenarios {
 
 struct Estimate;
 
-/// A failed health check, in a form that later processing steps and programs use. For people, the failed check is also
-/// written as an entry of `health`.
+/// HealthFinding is a failed health check, in a form for later processing steps and programs. For people, the failed
+/// check is also written as an entry of `health`.
 struct HealthFinding {
   enum class About {
     readings,        ///< IMU readings contradict each other or gravity
@@ -45,12 +46,12 @@ inline constexpr std::array kAllFindings = {
     HealthFinding::About::beyond_range, HealthFinding::About::digest,         HealthFinding::About::learnt_rig,
     HealthFinding::About::unit_frozen,  HealthFinding::About::unit_disagrees, HealthFinding::About::unit_silent};
 
-/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. No other
-/// function defines keys of failed checks.
+/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. Only
+/// row_of() defines keys of failed checks.
 std::string row_of(const HealthFinding& finding);
 
-/// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. A failed check with an
-/// equal key is replaced.
+/// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. The new failed check
+/// replaces one with an equal key.
 void add_finding(const HealthFinding& finding, Estimate& estimate);
 
 /// Returns true if the estimate already has a failed check with the same key as `finding`.

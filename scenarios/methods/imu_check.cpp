@@ -15,9 +15,10 @@ namespace {
 using FindingKind = ImuFinding::Kind;
 
 constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: flipped sign
-// Largest deviation of ImuMerge::lever_arm_agreement() from 1. A larger deviation indicates a scale error of all IMUs.
-// Centripetal force grows with the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data
-// sheet's scale error. In runs of `slip` without faults, lever_arm_agreement() was 0.999 to 1.002.
+// kArmShareOff is the largest accepted deviation of ImuMerge::lever_arm_agreement() from 1. A larger deviation
+// indicates a scale error of all IMUs. Centripetal force grows with the squared rate, so the limit corresponds to 3 %
+// of gyro scale, three times the data sheet's scale error. In runs of the scenario `slip` without faults,
+// lever_arm_agreement() was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
 
 void report_readings(const ImuFindings::Readings& readings, Estimate& estimate) {

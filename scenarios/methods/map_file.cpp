@@ -35,7 +35,7 @@ std::vector<std::string> header(std::size_t points) {
   return lines;
 }
 
-// Returns the number of points stated in the header.
+// Returns the number of points that the header states.
 std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
   const std::vector<std::string> expected = header(0);
   std::size_t points = 0;

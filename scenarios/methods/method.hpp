@@ -30,7 +30,8 @@ std::string full_name(Kind kind, const std::string& method);
 enum class Frame { imu, lidar, body, centre };
 const char* to_string(Frame frame);
 
-/// Result of a method. Each kind of method fills the members for its kind and leaves the other members empty.
+/// Estimate is the result of a method. Each kind of method fills in the members for its kind and leaves the others
+/// empty.
 struct Estimate {
   Status status;                         ///< error of the whole run, or `ok`
   Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`
@@ -40,15 +41,14 @@ struct Estimate {
   /// Estimated contact mode at each pose, parallel to `poses`; empty if not estimated. `air` means that there is no
   /// contact, or a contact with unknown motion (a bump).
   std::vector<sim::ContactLabel> contacts;
-  /// True for a pose in a slip event whose displacement is uncertain. The list is parallel to `poses`, and empty if not
-  /// estimated.
+  /// True for a pose in a slip event whose displacement is uncertain; parallel to `poses`, and empty if not estimated.
   std::vector<bool> uncertain;
   /// Estimated position of the sphere's centre relative to the centre of mass, in body axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam
-  /// Distance of the estimated pose and clock of the lidar from the stated ones, in standard deviations. Empty if not
+  /// Distance of the estimated pose and clock of the lidar from the stated ones, in standard deviations; empty if not
   /// estimated.
   std::optional<double> lidar_calibration_sigmas;
   std::vector<HealthFinding> findings;  ///< failed health checks (add_finding)
@@ -59,24 +59,24 @@ struct Estimate {
   std::string transcript;                    ///< output of an external program; not scored
 };
 
-/// Extra input of an oracle method: unclipped readings and the true state. The program creates this input from the
-/// truth, and only for methods that declare `needs_truth`.
+/// OracleInput is the additional input of an oracle method: unclipped readings and the true state. The program creates
+/// this input from the truth, and only for methods that declare `needs_truth`.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
-  /// For display: the slam methods of the rig call this function after each lidar sweep, with the number of processed
-  /// sweeps and of all sweeps. A method with several passes starts again at 1. May be empty.
+  /// The slam methods of the rig call this function after each lidar sweep, with the number of processed sweeps and of
+  /// all sweeps, for display. A method with several passes starts again at 1. May be empty.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
 class SettingsTable;
 
-/// Properties of a recording that determine which methods can run on it.
+/// Subject contains the properties of a recording that determine which methods can run on it.
 struct Subject {
   std::string robot;  ///< "" if unknown
   bool has_lidar = true;
 };
 
-/// Description of a method. The pair of `kind` and `name` is unique.
+/// MethodInfo is the description of a method. The pair of `kind` and `name` is unique.
 struct MethodInfo {
   std::string name;
   Kind kind = Kind::rate;
@@ -88,8 +88,8 @@ struct MethodInfo {
   std::size_t parameters_first = 0;  ///< number of leading parameters that users set most often
   bool needs_truth = false;
   std::vector<std::string> robots;  ///< "rig", "sphere"; empty: all
-  /// Returns why the method does not apply, for example "needs a lidar, and there is none". Returns an empty text if
-  /// the method applies. All slam methods need a lidar.
+  /// Returns why the method cannot run on the recording, for example because the recording lacks a lidar; empty if it
+  /// can run. All slam methods need a lidar.
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
   /// True for the baseline of a kind: the method without a treatment of saturation or slip. All other methods of the
@@ -112,7 +112,7 @@ struct Method {
   RunMethod run;
 };
 
-/// Points to a static method of this build, or to a shared method that was read from a file.
+/// MethodPointer points to a static method of this build, or to a shared method that was read from a file.
 using MethodPointer = std::shared_ptr<const Method>;
 
 /// Returns all methods of this build, sorted by kind. Methods of one kind are in order of registration.

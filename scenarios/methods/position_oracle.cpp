@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kEdgeNs = 400'000'000;
 constexpr double kLevelTiltRad = 0.005;  // smaller tilts of the floor count as level
 
-/// The merged IMUs of a sphere and the parameters that the recording states.
+/// Prepared contains the merged IMUs of a sphere and the parameters that the recording states.
 struct Prepared {
   std::vector<ImuSample> samples;
   RollingSmoother::Params params;
@@ -85,7 +85,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// Omits parameters that are not needed because the attitude is exact.
+/// The oracle omits parameters of the attitude estimate, because its attitude is exact.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",

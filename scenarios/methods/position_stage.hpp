@@ -10,8 +10,8 @@
 /// position method under equal names.
 namespace tumble::scenarios {
 
-/// Returns the settings of the slam method: its own settings, then the settings of `position`. The two sets of settings
-/// have no common name.
+/// Returns the settings of the slam method, followed by the settings of `position`. The two groups of settings have no
+/// common name.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 
 /// Returns the values in `parameters` that belong to the position method.

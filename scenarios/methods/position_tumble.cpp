@@ -33,7 +33,7 @@ Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<st
                 "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2",
-                          // the following parameters depend on whether the device is known
+                          // the prior parameters below depend on whether the device is known
                           "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s", "rolling_accel_bias_sigma_m_s2",
                           "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma", "rolling_gyro_scale_sigma",
                           "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},
@@ -55,7 +55,7 @@ const Settings<RollingOdometry::Params>& live_settings() {
   return all;
 }
 
-/// Returns true if the sphere rotates faster than it travels. A hop during which the sphere rotates too fast belongs to
+/// Returns whether the sphere rotates faster than it travels. A hop during which the sphere rotates too fast belongs to
 /// a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
@@ -69,7 +69,7 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Reports what the whole recording shows about the IMUs. Returns an error if the recording cannot be used.
+/// Reports what the whole recording reveals about the IMUs. Returns an error if the recording is unusable.
 Estimate check(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
   Estimate estimate;
   MergedImus imus;

@@ -5,7 +5,7 @@
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 
-/// Functions that our position methods and their oracles share.
+/// position_tumble.hpp contains functions that the position methods of tumble and their oracles share.
 namespace tumble::scenarios {
 
 /// Returns the parameters of RollingOdometry that the recording states. IMUs without a data sheet get wider priors.

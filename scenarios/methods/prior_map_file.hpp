@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// File in the folder of an estimate with the map for later runs (save_map).
+/// kPriorMapName is the file in the folder of an estimate with the map for later runs (save_map).
 inline constexpr const char* kPriorMapName = "map.tumblemap";
 
 /// Writes a map for later runs. Throws BadInput if writing fails.

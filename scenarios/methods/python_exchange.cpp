@@ -31,7 +31,7 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Collects arrays that are written one after the other. The arrays must outlive this object.
+/// Arrays collects arrays that are written one after the other. The arrays must outlive this object.
 class Arrays {
  public:
   template <typename Value>
@@ -142,11 +142,11 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// Reads a result in memory: the JSON text, and the arrays that the text describes.
+/// Answer reads a result in memory: the JSON text, and the arrays that it describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The Python function can enlarge the shared memory that it received.
+    // The size must be checked, because the Python function can enlarge the shared memory that it received.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
@@ -167,7 +167,8 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Returns an array with `columns` values per row. `rows` is the required number of rows; empty accepts any number.
+  /// Returns an array with `columns` values per row. `rows` is the required number of rows; if it is empty, any number
+  /// is accepted.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {

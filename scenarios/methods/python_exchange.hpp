@@ -13,9 +13,10 @@ namespace tumble::scenarios {
 /// Writes all sensor data. The names are those of the Python package (python/src/tumble/recordings.py).
 void write_sensors(const sim::Sensors& sensors, SharedMemory& memory);
 
-/// Reads the function's result as an estimate of `kind`. Rates belong to the samples of the first IMU. Throws NoAnswer
-/// with the traceback if the function raised an exception. Throws BadInput with the reason for an invalid result: wrong
-/// shape, non-finite number, times that do not increase, corrupted memory, or values outside AnswerBounds.
+/// Reads the function's result as an estimate of `kind`. The rates belong to the samples of the first IMU. Throws
+/// NoAnswer with the traceback if the function raised an exception. Throws BadInput with the reason for an invalid
+/// result: wrong shape, non-finite number, times that do not increase, corrupted memory, or values outside
+/// AnswerBounds.
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

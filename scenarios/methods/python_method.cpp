@@ -29,7 +29,7 @@ print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";
 
 /// Returns the command that starts the interpreter with the arguments `words`. The description or the user selects the
-/// interpreter.
+/// Python interpreter.
 Command interpreter(const ExternalDescription& description, const ScratchFolder& scratch,
                     const std::vector<std::string>& words) {
   Command command{.words = description.interpreter,

@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 /// Throws the exceptions that external_method.hpp states.
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
-/// Returns the versions of the interpreter and of numpy, and a digest of the Python file. The digest does not include
-/// imported modules. Throws BadInput if there is no interpreter with numpy.
+/// Returns the versions of the interpreter and of numpy, and a digest of the Python file. The digest excludes imported
+/// modules. Throws BadInput if there is no interpreter with numpy.
 std::string python_version(const ExternalDescription& description);
 
 }  // namespace tumble::scenarios

@@ -19,9 +19,9 @@ import numpy as np
 
 ALIGNMENT = 64
 TOLD_MAX = 1500  # reported characters at the end of a traceback
-UNIT_TOLERANCE = 1e-2  # as for a TUM file
+UNIT_TOLERANCE = 1e-2  # tolerance of a quaternion's norm, as for a TUM file
 ROUNDING_NS = 1000  # points at most this much after their sweep's end are moved to the end
-SYMMETRY_TOLERANCE = 1e-3  # of a covariance, relative to the diagonal; accepts single precision
+SYMMETRY_TOLERANCE = 1e-3  # tolerance of a covariance, relative to the diagonal; accepts single precision
 
 
 class Refused(Exception):
@@ -83,7 +83,7 @@ def unmasked(name, given):
 
 
 def numbers(name, given, *shape):
-    """Converts to finite float64 of that shape; a size of None may be any. Rejects types that lose information, such as complex numbers."""
+    """Converts to finite float64 of the given shape; a size of None may be any number. Rejects types that lose information, such as complex numbers."""
     try:
         found = unmasked(name, given)
         real = found.dtype.kind in "iuf" or (
@@ -216,7 +216,7 @@ def main(file, function, kind, source, sink):
         answer(int(sink), {}, arrays)
     except Refused as error:
         answer(int(sink), {"refused": f"{function}: {error}"}, {})
-    except BaseException as error:  # also sys.exit() in the function
+    except BaseException as error:  # the function may also call sys.exit()
         print(told(error), file=sys.stderr)
         answer(int(sink), {"raised": told(error)}, {})
 

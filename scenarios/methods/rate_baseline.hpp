@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// Returns the saturation levels stated in the record. A range of 0 means unknown.
+/// Returns the saturation levels stated in the record. A range of 0 means that the range is unknown.
 RailDetector::Params stated_rails(const sim::ImuRecord& record);
 
 /// Runs one of the baselines on the primary IMU, with the noise and ranges of the IMU's data sheet.

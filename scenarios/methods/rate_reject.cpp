@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The parameters of the other baseline models are fixed.
+// rate/reject fixes the parameters that only other kinds of ClippedBaseline use.
 const Settings<baselines::ClippedBaseline::Params>& rate_reject_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::reject},

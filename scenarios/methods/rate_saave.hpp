@@ -11,7 +11,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// Estimates rates by the published method of Saave. The rate method and the slam chains of Saave use these functions.
+/// Estimates rates by the published method of Saave. The rate method and the slam chains of Saave use rate_saave.hpp.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();

@@ -36,8 +36,8 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Setting
 /// Returns the parameters of RegimeSmoother with the gravity of the recording.
 RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoother::Params& rate);
 
-/// Converts the auxiliary IMUs: the first ones except `imu_reference`, at most kAuxiliaryImusMax. Returns the first
-/// error of the conversion of a record.
+/// Converts the auxiliary IMUs: the first IMUs except `imu_reference`, at most kAuxiliaryImusMax. Returns the first
+/// error that the conversion of a record reports.
 Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRecording>& out);
 
 /// Runs rate/tumble from the saved calibration `given` (null: none) and writes the new calibration to `found` (may be
@@ -52,16 +52,17 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
                              std::optional<CalibratedRig>* found);
 
-/// Calibration from which several runs on one rig start, and which each run updates.
+/// RigCalibrationUse is the calibration from which several runs on one rig start, and which each run updates.
 struct RigCalibrationUse {
   std::optional<CalibratedRig> given;  ///< empty: start without calibration
   std::optional<CalibratedRig> of_batch, of_stream;
-  /// Returns the calibration to save; null if none. Prefers the result of the smoother over the whole recording. If the
-  /// smoother only found saturation levels and the stream found more, returns the streaming result.
+  /// Returns the calibration to save, or null if no calibration was learnt. The function prefers the result of the
+  /// smoother over the whole recording. If the smoother found only saturation levels and the stream found more, the
+  /// function returns the streaming result.
   const CalibratedRig* found() const;
 };
 
-/// Returns `method` with a calibration that starts from and updates `learning`. `learning` must outlive the returned
+/// Returns `method` with a calibration that starts from `learning` and updates it. `learning` must outlive the returned
 /// method. If `learning` has a start calibration, the method also runs without this calibration. If the results of the
 /// two runs differ (distance_of_rigs), the estimate gets a failed health check and no calibration is saved. Throws
 /// BadInput unless the method is rate/tumble or rate/tumble_lag.

@@ -106,7 +106,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    // reported only, because the results are already final
+    // the findings are only reported, because the results are already final
     const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
     report_findings(findings, sensors, samples, estimate);
     report_stamps(sensors, estimate);

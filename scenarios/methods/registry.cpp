@@ -68,7 +68,7 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// Rejects an external method with the name of a built-in method, which would be ambiguous in the results.
+/// The registry rejects an external method with the name of a built-in method, which would be ambiguous in the results.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {

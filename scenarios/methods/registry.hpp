@@ -13,17 +13,17 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 
-/// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in
-/// this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
+/// registry.hpp registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a
+/// declaration in this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
 namespace tumble::scenarios {
 
-/// Computes an estimate. `parameters` is complete and within limits. `oracle.truth` is set if the method needs the
-/// truth.
+/// Computes the estimate of a method. `parameters` is complete and within limits. `oracle.truth` is set if the method
+/// needs the truth.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Creates a method from `run`. Collects `info.parameters` from the settings of the stages, resolves parameter values,
-/// and passes the truth only to oracles. Running the method throws BadInput for an unknown parameter, a value out of
-/// range, or a missing truth.
+/// Creates a method from `run`. The function collects `info.parameters` from the settings of the stages, resolves
+/// parameter values, and passes the truth only to oracles. Running the method throws BadInput for an unknown parameter,
+/// a value out of range, or a missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
@@ -65,26 +65,26 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// The rate methods and the slam chains share the following rate stages. Each stage returns one RateState per sample.
-/// On error, `out` is empty.
+/// The rate methods and the slam chains share the following rate stages. Each rate stage returns one RateState per
+/// sample. On error, `out` is empty.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
 /// Counts the rates in `health` by their source, for example measured or estimated.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// Motion that an odometer measures in addition to the IMU.
+/// KnownMotion is the motion that an odometer measures in addition to the IMU.
 struct KnownMotion {
-  /// Returns the motion of the IMU between two times. Empty unless the odometer covers both times.
+  /// Returns the motion of the IMU between two times, or nothing unless the odometer covers both times.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> between;
   double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
   double correction_max_rad = 1.0;
 };
 
-/// Options of the lidar-inertial chain.
+/// SlamChain contains the options of the lidar-inertial chain.
 struct SlamChain {
-  /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. The recording is then processed
-  /// twice. The second pass starts from the calibration of the first pass.
+  /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. With calibration, the chain processes
+  /// the recording twice. The second pass over the recording starts from the calibration of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   /// OracleInput::on_sweep
@@ -94,7 +94,7 @@ struct SlamChain {
 struct SlamStage;
 
 /// Runs the lidar-inertial chain of all registration methods: deskewing with the rates in the estimate, registration,
-/// mapping. slam_settings.hpp describes the parameters. Returns true if the run ends with a known pose in its map.
+/// mapping. slam_settings.hpp describes the parameters. Returns whether the run ends with a known pose in its map.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

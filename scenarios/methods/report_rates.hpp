@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 /// Adds the report of the rate estimation to the health and the failed checks of `result`.
 void report_rates(const RegimeSmoother::Report& report, Estimate& result);
 
-/// Returns the fraction of hand-held samples; empty if not estimated.
+/// Returns the fraction of hand-held samples, or nothing if it was not estimated.
 std::optional<double> carried_share(const RegimeSmoother::Report& report);
 
 }  // namespace tumble::scenarios

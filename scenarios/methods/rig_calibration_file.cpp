@@ -53,7 +53,7 @@ json rails(const CalibratedRig& rig, std::size_t first) {
   return out;
 }
 
-// Reads arrays of a calibration file. Error messages state the fault and its location.
+// CalibrationReader reads arrays of a calibration file. Error messages state the fault and its location.
 class CalibrationReader {
  public:
   CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}

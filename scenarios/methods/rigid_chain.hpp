@@ -10,11 +10,11 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Declares building blocks of the rigid registration methods. A trajectory model predicts the motion within a sweep,
-/// and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
+/// rigid_chain.hpp declares building blocks of the rigid registration methods. A trajectory model predicts the motion
+/// within a sweep, and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
 namespace tumble::scenarios {
 
-/// Predicts the motion of each sweep. The registration result updates the model.
+/// TrajectoryModel predicts the motion of each sweep. The registration result updates the trajectory model.
 class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
@@ -25,7 +25,8 @@ class TrajectoryModel {
   virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
 };
 
-/// Initial values from the rest at the start: the attitude from the specific force with yaw 0, and the gyro bias.
+/// StartAtRest contains the initial values from the rest at the start: the attitude from the specific force with yaw 0,
+/// and the gyro bias.
 struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
@@ -47,7 +48,7 @@ Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
-/// These functions return the parameters of the rigid methods and convert them to the library's parameters. The
+/// These functions return the parameters of the rigid methods and convert them to the library's parameters. The lidar
 /// mounting T_IL comes from the calibration.
 const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);

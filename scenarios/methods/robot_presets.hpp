@@ -3,22 +3,22 @@
 
 #include <Eigen/Geometry>
 
-/// Defines parameters that have no default in the library: numbers of the robots in `models/`. The values in a
-/// recording override these defaults.
+/// robot_presets.hpp defines parameters that have no default in the library: numbers of the robots in `models/`. The
+/// values in a recording override these defaults.
 namespace tumble::scenarios::presets {
 
 /// Returns the vector from the rig's centre of mass to the MTi-30, in IMU axes, from `models/rig.xml`.
 Eigen::Vector3d rig_lever_arm_m();
 
-/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres. Returns inside the box are
-/// hits on the rig.
+/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres. Lidar returns inside the box
+/// are hits on the rig.
 Eigen::AlignedBox3d rig_body_L();
 
-/// Threshold slightly below the saturation level of the gyro in `models/sensors/mti30.yaml`. The method of Saave treats
-/// larger readings as saturated.
+/// kRigSaturationPoint_rad_s is slightly below the saturation level of the gyro in `models/sensors/mti30.yaml`. The
+/// method of Saave treats larger readings as saturated.
 inline constexpr double kRigSaturationPoint_rad_s = 10.45;
 
-/// Radius of the sphere's shell, from `models/sphere.xml`.
+/// kSphereRadius_m is the radius of the sphere's shell, from `models/sphere.xml`.
 inline constexpr double kSphereRadius_m = 0.145;
 
 }  // namespace tumble::scenarios::presets

@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are unchanged, so that the
-/// bridge rejects them.
+/// SampleTimes contains the sample times of a record, and the jitter removed from the time stamps [s]. Decreasing time
+/// stamps are unchanged, so that the bridge rejects them.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double corrected_jitter_s = 0.0;

@@ -17,8 +17,8 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Converts the `Params` struct of a library class to the parameters of a method. Tables, parsing and tests use only
-/// the descriptions of the struct's fields (common/parameters.hpp).
+/// settings.hpp converts the `Params` struct of a library class to the parameters of a method. Tables, parsing and
+/// tests use only the descriptions of the struct's fields (common/parameters.hpp).
 namespace tumble::scenarios {
 
 namespace detail {
@@ -42,21 +42,21 @@ void visit_numbers(Params& params, Each each) {
 
 }  // namespace detail
 
-/// Fields of a `Params` that a method treats specially.
+/// SettingsOptions names the fields of a `Params` struct that a method treats specially.
 struct SettingsOptions {
-  /// Names of fields whose values the recording states, unless the user sets them. A name may end in `*`.
+  /// Names of fields whose values the recording states, unless the user sets them; a name may end in `*`.
   std::vector<std::string> stated = {};
-  /// Names of fields that follow from other parameters and cannot be set. A name may end in `*`.
+  /// Names of fields that follow from other parameters and cannot be set; a name may end in `*`.
   std::vector<std::string> fixed = {};
   /// Names of fields that are listed first for users of this method.
   std::vector<std::string> first = {};
-  /// Parameters of another stage. If a field has the name of one of these parameters, the name gets `prefix`.
+  /// Parameters of another stage. A field with the name of one of these parameters gets `prefix` before its name.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };
 
-/// Names, table rows and values of parameters. SettingsTable is the base class of all Settings and does not depend on
-/// the `Params` type.
+/// SettingsTable contains names, table rows and values of parameters. SettingsTable is the base class of all Settings
+/// and does not depend on the `Params` type.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;
@@ -68,7 +68,8 @@ class SettingsTable {
   std::size_t first_rows() const { return first_rows_; }
   /// Returns true for integer parameters: counts, switches and choices.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Returns true if the recording states the parameter's value. Only a user's value overrides the recording.
+  /// Returns whether the recording states the parameter's value. Only a value that the user sets overrides the
+  /// recording.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
   /// Returns every number of the `Params` struct, taken from `values`, by the library's names.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
@@ -77,7 +78,7 @@ class SettingsTable {
   explicit SettingsTable(SettingsOptions options);
   void add(const std::string& field_name, double value, const Field& field, bool whole);
   void sort_rows();
-  /// Returns true if `values` sets the field, and writes the parameter's name to `name`.
+  /// Returns whether `values` sets the field, and writes the parameter's name to `name`.
   bool applies(const std::string& field_name, const sim::Values& values, std::string& name) const;
 
  private:
@@ -100,8 +101,8 @@ sim::Values resolve_settings(const std::string& place, const sim::Values& given,
 /// number of frequently used rows.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
-/// Parameters of one stage of a method. A Settings object must be static, because methods keep references to its table
-/// rows.
+/// Settings contains the parameters of one stage of a method. A Settings object must be static, because methods keep
+/// references to its table rows.
 template <class Params>
 class Settings : public SettingsTable {
  public:
@@ -128,7 +129,7 @@ class Settings : public SettingsTable {
     });
   }
 
-  /// Returns the defaults, overridden by `values`.
+  /// Returns the default parameters, overridden by `values`.
   Params read(const sim::Values& values) const {
     Params params = defaults_;
     apply(values, params);

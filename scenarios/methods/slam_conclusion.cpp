@@ -26,8 +26,8 @@ void report_innovations(Estimate& estimate) {
   estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
-/// Returns true if the rig is stationary during the sweep. At rest the lidar only sees rings; their degeneracy is
-/// harmless.
+/// Returns true if the rig is stationary during the sweep. At rest, a lidar only sees rings; the degeneracy of the
+/// rings is harmless.
 bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();

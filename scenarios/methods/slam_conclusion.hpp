@@ -11,7 +11,7 @@
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/mapping_passes.hpp"
 
-/// Computes the final results of a run over sweeps.
+/// slam_conclusion.hpp computes the final results of a run over sweeps.
 namespace tumble::scenarios {
 
 /// Replaces the trajectory of a sweep by the smoothed trajectory, unless `smoothed` is empty.
@@ -20,7 +20,7 @@ void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::Swee
 /// Writes the final poses, map and status of a run; the estimate already contains the sweeps. All slam chains use this
 /// function to decide whether the run is localised. The status is `too_few` if no sweep was registered.
 /// `calibration_is_off` states that the lidar's calibration moved by more than its stated uncertainty allows. `scale`
-/// is null if the scale was not checked. Returns true if the run is localised and completed.
+/// is null if the scale was not checked. Returns whether the run is localised and completed.
 bool conclude(const LidarInertialOdometry& odometry, bool calibration_is_off, const Localisation& localisation,
               const SweepScale* scale, Estimate& estimate);
 

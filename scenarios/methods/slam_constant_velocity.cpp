@@ -16,8 +16,9 @@ constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IM
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// Predicts that the last change of pose repeats, in translation and rotation. The IMU only supplies the times of the
-/// poses and the initial vertical, which the scores need. Without IMU the body is assumed upright at the start.
+/// ConstantVelocity predicts that the last change of pose repeats, in translation and rotation. ConstantVelocity uses
+/// the IMU only for the times of the poses and the initial vertical, which the scores need. Without an IMU,
+/// ConstantVelocity assumes that the body is upright at the start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {

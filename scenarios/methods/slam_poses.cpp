@@ -5,12 +5,13 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// Builds maps of the rolling sphere from the poses of a position method, without registration, as published.
+/// slam_poses.cpp builds maps of the rolling sphere from the poses of a position method, without registration, as
+/// published.
 namespace tumble::scenarios {
 
 namespace {
 
-/// Parameters of the map, with the names that the registration methods use.
+/// MapParams contains the parameters of the map, with the names that the registration methods use.
 struct MapParams {
   VoxelMap::Params map;
   double nearest_m = 0.3;
@@ -41,7 +42,7 @@ const Method& tumble() {
   return method;
 }
 
-/// Interpolates poses of the body at query times that must increase.
+/// Track interpolates poses of the body at query times that must increase.
 class Track {
  public:
   Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
@@ -49,7 +50,7 @@ class Track {
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
-  /// The cost is O(1) for times close to the previous query.
+  /// Cost: O(1) for times close to the previous query.
   Eigen::Isometry3d at(std::int64_t time_ns) {
     while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;

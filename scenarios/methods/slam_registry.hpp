@@ -13,7 +13,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/prior_map.hpp"
 
-/// Declares slam methods in addition to registry.hpp, and functions that these methods share.
+/// slam_registry.hpp declares slam methods in addition to registry.hpp, and functions that these methods share.
 namespace tumble::scenarios {
 
 Method slam_published();
@@ -27,7 +27,7 @@ Method slam_tumble_live();
 /// was localised, or 0. Poses of earlier sweeps are in a local frame.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
-/// Options that distinguish the slam methods of the rig.
+/// RigSlam contains the options that distinguish the slam methods of the rig.
 struct RigSlam {
   std::string name, doc;
   bool ours = false;

@@ -11,18 +11,20 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// Builds maps of a rolling sphere with the rig's registration and with rolling as an odometer (add_reading).
+/// slam_rolling_prior.cpp builds maps of a rolling sphere with the rig's registration and with rolling as an odometer
+/// (add_reading).
 namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the chain's parameters. The odometer sets the limits of a correction, and the position method has gravity.
+/// Returns the parameters of the chain. The odometer sets the limits of a correction, and the position method sets
+/// gravity.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = slam_settings({}, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   return all;
 }
 
-/// Parameters of the odometer that rolling provides.
+/// AlongParams contains the parameters of the odometer that rolling provides.
 struct AlongParams {
   double grip_sigma_share = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
   double rotation_sigma_rad = 2e-4;
@@ -74,7 +76,7 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Position method whose poses the rolling odometer uses.
+/// Returns the position method whose poses the rolling odometer uses.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
@@ -85,7 +87,7 @@ struct Radius {
 };
 
 /// Estimates the radius at which the rolled distance equals the distance of the registered sweeps, over segments with
-/// continuous contact. Returns empty if there are too few segments.
+/// continuous contact. Returns nothing if there are too few segments of continuous contact.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
@@ -138,8 +140,8 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// Uses rolling as an odometer of the primary IMU. `loosely` increases the uncertainty to allow for an uncertain
-/// radius.
+/// RolledMotion uses rolling as an odometer of the primary IMU. `loosely` increases the uncertainty to allow for an
+/// uncertain radius.
 class RolledMotion {
  public:
   RolledMotion(const Estimate& rolled, const sim::Sensors& sensors, const AlongParams& params, bool loosely)
@@ -168,7 +170,7 @@ class RolledMotion {
     return static_cast<std::size_t>(found - rolled_.poses.begin());
   }
 
-  /// Interpolates the pose between two samples.
+  /// Interpolates the pose of the IMU between two samples.
   Eigen::Isometry3d pose_of_imu(TimeNs time_ns) const {
     const std::size_t k = index_at(time_ns);
     const PoseState& after = rolled_.poses[k];

@@ -29,7 +29,7 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
   TumblingOdometry::Params params;
   params.lever_arm_I_m.setZero();  // The recording states the lever arm.
   params.lag_s = lag_s;
-  // TumblingOdometry has its own parameters for these quantities.
+  // TumblingOdometry has separate parameters for these quantities.
   fixed.insert(fixed.end(),
                {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                 "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
@@ -66,7 +66,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   return params;
 }
 
-/// Selects which output of TumblingOdometry becomes the estimate.
+/// Output selects which output of TumblingOdometry becomes the estimate.
 enum class Output {
   live,   ///< pose at each IMU sample, as soon as the sample is processed
   lag,    ///< final trajectory of each sweep
@@ -75,7 +75,7 @@ enum class Output {
 
 using SweepProgress = TumblingOdometry::SweepProgress;
 
-/// Collects the output of TumblingOdometry in an estimate.
+/// Collector collects the output of TumblingOdometry in an estimate.
 class Collector {
  public:
   Collector(Output output, const TumblingOdometry::Params& params, Estimate& estimate)
@@ -147,7 +147,7 @@ class Collector {
 };
 
 /// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
-/// its last point. Sweeps that end after the last sample are used with the whole recording, and counted otherwise.
+/// its last point. Sweeps that end after the last sample are used with the whole recording, and only counted otherwise.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();

@@ -13,13 +13,14 @@
 /// Computes the attitude for position methods of the sphere that do not estimate attitude.
 namespace tumble::scenarios {
 
-/// Samples of the primary IMU without the gyro bias at rest, and the attitude at the end of each sample's window.
+/// SphereAttitude contains the samples of the primary IMU without the gyro bias at rest, and the attitude at the end of
+/// each sample's window.
 struct SphereAttitude {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`; yaw starts at 0
 };
 
-/// Assumed duration of the rest at the start.
+/// RestParams contains the assumed duration of the rest at the start.
 struct RestParams {
   double rest_s = 1.0;
 

@@ -8,13 +8,13 @@
 #include "sim/recording.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
-/// All IMUs of a sphere, for the estimator.
+/// sphere_imus.hpp prepares all IMUs of a sphere for the estimator.
 namespace tumble::scenarios {
 
 /// Returns the sensor and axis for a health key, for example "gyro_z".
 std::string to_string(const FrozenAxis& frozen);
 
-/// Usable readings of the units of a sphere.
+/// SphereImus contains the usable readings of the IMUs (units) of a sphere.
 struct SphereImus {
   std::vector<std::string> names;
   std::vector<UnitRecording> recordings;
@@ -25,7 +25,7 @@ struct SphereImus {
 /// beyond the device's range are left out. Returns the error of the primary IMU if no IMU is valid.
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 
-/// The units of a sphere, merged with knowledge of the whole recording.
+/// MergedImus contains the IMUs of a sphere, merged with knowledge of the whole recording.
 struct MergedImus {
   MergedRecordings merged;
   std::vector<HealthFinding> faults;  ///< units not used, or not all the time: frozen, silent, or inconsistent

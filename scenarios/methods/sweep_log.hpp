@@ -7,12 +7,12 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// Counts, reports and results per sweep, which all slam chains share.
+/// sweep_log.hpp contains counts, reports and results per sweep, which all slam chains share.
 namespace tumble::scenarios {
 
 using SweepReport = LidarInertialOdometry::SweepReport;
 
-/// Counts the error of a sweep, if there is an error, as `sweeps_NAME` in the estimate's health.
+/// Counts the error of a sweep, if any, as `sweeps_NAME` in the estimate's health.
 void count_trouble(const Status& status, Estimate& estimate);
 
 /// Counts the error and verdict of the sweep that ends at `end_ns`, and appends the sweep to the estimate. Returns
@@ -31,9 +31,9 @@ void leave_out_unfinished(Estimate& estimate);
 /// map. Returns false for any other sweep.
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
 
-/// Interface of a mapper for the loop over sweeps.
+/// SweepMapper is the interface of a mapper for the loop over sweeps.
 struct SweepMapper {
-  /// `covers` returns true if the IMU covers the sweep. `add` adds the sweep; an error becomes the estimate's status
+  /// `covers` returns whether the IMU covers the sweep. `add` adds the sweep; an error becomes the estimate's status
   /// and ends the run.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;

@@ -13,7 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// Largest accepted rotation difference after the correction of a delay, equal to the limit in reference_check.cpp.
+/// kTurnsOnceCorrected is the largest accepted rotation difference after the correction of a delay, equal to the limit
+/// in reference_check.cpp.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -25,7 +26,7 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   return out;
 }
 
-/// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns empty if the recording has no
+/// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns nothing if the recording has no
 /// sensor with the frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
@@ -49,7 +50,7 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frames that the attitudes may describe. Empty without an IMU or without the stated sensor. The stated
+/// Returns the frames that the attitudes may describe; empty without an IMU or without the stated sensor. The stated
 /// frame comes first, so that it is chosen if two frames have equal mountings.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;

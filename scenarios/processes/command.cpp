@@ -70,7 +70,8 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// Returns the start and the end of a long transcript. The start usually contains the cause of an error.
+/// Returns the start and the end of a long transcript. The start of a transcript usually contains the cause of an
+/// error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

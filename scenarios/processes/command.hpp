@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// An external program with its arguments and limits.
+/// Command is an external program with its arguments and limits.
 struct Command {
   std::vector<std::string> words;                  ///< the program, searched in PATH, and its arguments; no shell
   std::filesystem::path folder;                    ///< working folder
@@ -19,7 +19,7 @@ struct Command {
   double memory_limit_mib = 8192.0;                ///< data of each of its processes (RLIMIT_DATA)
 };
 
-/// Describes how a command ended.
+/// CommandEnd describes how a command ended.
 struct CommandEnd {
   enum class How { done, failed, timed_out, not_started };
   How how = How::done;
@@ -29,8 +29,8 @@ struct CommandEnd {
   double cpu_s = 0.0;       ///< of the command without its children
 };
 
-/// Runs the command in a separate process group. At the time limit, the whole process group is killed. The group is
-/// also killed when this process ends. Throws std::system_error if no process can be started.
+/// Runs the command in a separate process group. At the time limit, the whole process group is killed. The process
+/// group is also killed when this process ends. Throws std::system_error if no process can be started.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// A child process that writes to a pipe. The child ends when its parent ends, leaves no core file, and never returns
-/// to the caller's code. The class works on Linux only.
+/// Process is a child process that writes to a pipe. The child process ends when its parent ends, leaves no core file,
+/// and never returns to the caller's code. Process works on Linux only.
 class Process {
  public:
   struct End {
@@ -35,12 +35,12 @@ class Process {
   Process& operator=(Process&&) = delete;
 
   int read_end() const { return fd_; }
-  /// Writes all of `text` to the child's input. Returns false if the child has closed its input.
+  /// Writes all of `text` to the input of the child process. Returns false if the child process has closed its input.
   bool write_text(const std::string& text);
   /// Appends the available content of the pipe to `buffer`. Returns false at the end of the pipe.
   bool read_available(std::string& buffer);
-  /// Waits until the child has ended. Returns false at the deadline, which is a time of now_s(). The caller obtains the
-  /// exit status with wait().
+  /// Waits until the child process has ended. Returns false at the deadline, which is a time of now_s(). The caller
+  /// obtains the exit status with wait().
   bool ends_before(double deadline_s);
   void kill();
   End wait();
@@ -57,10 +57,10 @@ class Process {
 inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes
 
 /// Limits the data memory (RLIMIT_DATA) of this process and of each future child, within the inherited limit. Beyond
-/// the limit, allocations fail with std::bad_alloc, and new processes cannot be started.
+/// the memory limit, allocations fail with std::bad_alloc, and new processes cannot be started.
 void limit_memory(double mib);
 
-/// Writes all of `text`. Returns false if the reader is closed.
+/// Writes all of `text`; returns false if the reader has closed the pipe.
 bool write_all(int fd, const std::string& text);
 
 /// Returns monotonic time [s].

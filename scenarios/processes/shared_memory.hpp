@@ -7,12 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// Anonymous shared memory that a program inherits as a file descriptor (Command::descriptors). The memory is freed
-/// when the last process that uses it ends. The class works on Linux only. The constructor throws std::system_error if
-/// there is not enough memory.
+/// SharedMemory is anonymous shared memory that a program inherits as a file descriptor (Command::descriptors). The
+/// memory is freed when the last process that uses it ends. SharedMemory works on Linux only. The constructor throws
+/// std::system_error if there is not enough memory.
 class SharedMemory {
  public:
-  /// Creates empty memory. `name` is visible in /proc.
+  /// Creates empty shared memory; its `name` is visible in /proc.
   explicit SharedMemory(const char* name);
   ~SharedMemory();
   SharedMemory(const SharedMemory&) = delete;
@@ -20,7 +20,7 @@ class SharedMemory {
 
   int descriptor() const { return descriptor_; }
   void append(std::span<const std::byte> bytes);
-  /// Makes the memory immutable for all processes.
+  /// Makes the shared memory immutable for all processes.
   void seal();
   std::size_t size() const;
   /// Returns the whole content.

@@ -6,7 +6,7 @@
 namespace tumble::scenarios {
 
 /// Returns the identity of the code: version, compiler, build type, and a digest of the sources at build time. The
-/// digest covers estimator, sim and scenarios. Equal sources with an equal compiler and build type have equal
+/// source digest covers estimator, sim and scenarios. Equal sources with an equal compiler and build type have equal
 /// identities on any machine.
 const std::string& build_id();
 

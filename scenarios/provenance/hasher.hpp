@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 // The hash covers the bytes of numbers in memory order, so the machine must be little-endian.
 static_assert(std::endian::native == std::endian::little);
 
-/// Streaming XXH3 hash (128 bit).
+/// Hasher is a streaming XXH3 hash (128 bit).
 class Hasher {
  public:
   Hasher() : state_(XXH3_createState(), &XXH3_freeState) {

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Archive that hashes every field: its name, length and bytes.
+/// FieldHasher is an archive that hashes every field: its name, length and bytes.
 class FieldHasher : public Hasher {
  public:
   void value(const char* name, const std::string& value) {

@@ -15,22 +15,22 @@ namespace tumble::scenarios {
 /// Returns the names of the export formats: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
 std::vector<std::string> export_formats();
 
-/// Returns true for a bag format: mcap rosbag1 rosbag2 rosbag2_mcap.
+/// Returns whether the format is a bag format: mcap rosbag1 rosbag2 rosbag2_mcap.
 bool is_bag_format(const std::string& format);
 
-/// Returns the format for a file extension (.mcap, .bag, .tum). The text is empty for other extensions.
+/// Returns the export format for a file extension (.mcap, .bag, .tum), or an empty text for other extensions.
 std::string format_of_ending(const std::filesystem::path& out);
 
 /// Throws BadInput if `out` is an existing file whose extension belongs to another format than `format`. The export
 /// would replace this file. Formats that write a folder are not checked.
 void require_own_kind(const std::string& format, const std::filesystem::path& out);
 
-/// Options of an export format: extra content and sweep layout for bags, frame for trajectories.
+/// ExportChoices contains options of an export format: extra content and sweep layout for bags, frame for trajectories.
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Function that adds estimates to a bag (scenarios/exchange). The first argument of the function is the sensors;
-  /// their points and truth are on disk. May be empty.
+  /// Function that adds estimates to a bag (scenarios/exchange); may be empty. The sensors that the function receives
+  /// have their points and truth on disk.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`: frame of the written true poses, as in true_mounting
 };
@@ -41,15 +41,15 @@ struct ExportChoices {
 /// (topics: bag.hpp). Existing files are replaced atomically. All formats use one clock, with time 0 of the recording
 /// at export_origin_ns.
 ///
-/// Returns notes on sensors that were renamed (export_names.hpp) and on sensors without a message type in a bag. Throws
-/// BadInput for an unknown format; the message suggests the nearest name. Throws BadInput also if the recording does
-/// not contain data that the format needs, or if the output path cannot be written. Bags are written sweep by sweep.
-/// Memory holds the IMU samples, 32 bytes per message, and the poses from `choices`.
+/// Returns notes about sensors that were renamed (export_names.hpp) and sensors without a message type in a bag. Throws
+/// BadInput for an unknown format; the message suggests the nearest name. Throws BadInput also if the recording lacks
+/// data that the format needs, or if the output path cannot be written. Bags are written sweep by sweep. Memory holds
+/// the IMU samples, 32 bytes per message, and the poses from `choices`.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
 /// Returns T_BA of a frame A without calibration errors. The frame is `body`, `centre` (of the sphere's shell), or a
-/// sensor by its exported or original name. Throws BadInput for another name; the message lists the known names.
+/// sensor by its exported or original name. For another name, throws BadInput with a list of the known names.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
 /// Writes one line "t x y z qx qy qz qw" per physics sample: T_WA of the frame A, and seconds with nine decimals.
@@ -72,8 +72,8 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
                 std::int64_t origin_ns = 0);
 
-/// Writes NAME_000000.ply (or .pcd) for each sweep. The file is binary, not deskewed, in lidar axes, with x y z
-/// intensity ring, and offset_ns if points have times. NAME_times.txt contains the sweep starts in seconds, which
+/// Writes NAME_000000.ply (or .pcd) for each sweep. The exported file is binary, not deskewed, in lidar axes, with x y
+/// z intensity ring, and offset_ns if points have times. NAME_times.txt contains the sweep starts in seconds, which
 /// import_sweeps restores bit-exactly. `origin_ns` is added to the sweep starts.
 void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns = 0);
 void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns = 0);

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Names that bags (bag.hpp) and the truth of a CSV export use.
+/// The bags (bag.hpp) and the truth of a CSV export use these names.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
@@ -22,7 +22,7 @@ const std::set<std::string>& frames_of_no_sensor() {
   return names;
 }
 
-/// Preferred name of a sensor.
+/// Claim is the preferred name of a sensor.
 struct Claim {
   std::string sensor, name;
   bool own;  ///< the recording's own name, not a number that replaces an invalid name
@@ -48,7 +48,7 @@ std::string why_another(const Claim& claim) {
       claim.sensor, claim.given);
 }
 
-/// Applies to sensors and to their truth.
+/// Assigns names to sensors or to the sensors of a truth.
 template <class Recorded>
 ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;

@@ -8,7 +8,7 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// The limit is far above any valid text; without a limit, a corrupted length could request all memory.
+/// kLongestText is far above any valid text; without a limit, a corrupted length could request all memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
 /// Returns the type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.
@@ -101,7 +101,7 @@ std::int64_t Group::int_attribute(const std::string& name) const {
   if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "the attribute must be an integer");
   std::int64_t value = 0;
   if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) fail(name, "the attribute cannot be read" + last_error());
-  // HDF5 limits values that do not fit to the range of the type
+  // HDF5 limits values that exceed the range of the type
   if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max())
     fail(name, "the attribute is too large for a signed 64-bit integer");
   return value;

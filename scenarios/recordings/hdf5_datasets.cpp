@@ -10,8 +10,8 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Deflate reaches at most 1032 to 1. A dataset that states a higher ratio is not completely written; HDF5 would return
-/// zeros for the missing part.
+/// Deflate compresses by at most a factor of 1032. A dataset that states a higher ratio is incompletely written; HDF5
+/// would return zeros for the missing part.
 constexpr std::uint64_t kBestDeflation = 1100;
 
 const char* name_of(Scalar scalar) {
@@ -24,7 +24,7 @@ std::size_t size_of(Scalar scalar) {
   return H5Tget_size(memory_type(scalar));
 }
 
-/// Compares kind, width and sign of a number type; HDF5 converts the byte order.
+/// Returns whether a number type has the same kind, width and sign; HDF5 converts the byte order.
 bool matches(hid_t type, Scalar scalar) {
   const hid_t wanted = memory_type(scalar);
   const H5T_class_t kind = H5Tget_class(wanted);
@@ -93,7 +93,7 @@ Handle Group::create_rows(const std::string& name, std::size_t rows, std::size_t
 
 void Group::describe_rows(Handle dataset, const std::string& name, const std::string& unit,
                           const std::string& column_names) const {
-  // The attributes of a dataset are written like the attributes of a group.
+  // The attributes of a dataset are written like those of a group.
   const Group object(std::move(dataset), file_, place_ + "/" + name);
   object.write_attribute("unit", unit);
   if (!column_names.empty()) object.write_attribute("columns", column_names);

@@ -31,8 +31,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(path.string() + ": the file is truncated, damaged or not an HDF5 file" + reason);
 }
 
-/// Takes ownership of the HDF5 driver's memory at close, instead of freeing the memory. The superblock is complete only
-/// at close, because H5Fget_file_image of HDF5 1.10 leaves a stale checksum.
+/// At close, the callback takes ownership of the HDF5 driver's memory, instead of freeing it. The superblock is
+/// complete only at close, because H5Fget_file_image of HDF5 1.10 leaves a stale checksum.
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -56,8 +56,8 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Returns the length stated in the superblock (format specification, superblock version 3: byte 28); the memory of the
-/// driver is longer.
+/// Returns the length stated in the superblock (format specification, superblock version 3: byte 28), because the
+/// memory of the driver is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
@@ -66,7 +66,7 @@ std::uint64_t stated_length(const void* image) {
 
 /// Creates a file under `label` with the driver in `access`.
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // Format 1.10 has a checksum on all metadata, so that HDF5 detects flipped bits.
+  // File format 1.10 has a checksum on all metadata, so that HDF5 detects flipped bits.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
@@ -85,7 +85,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
   }
-  // The name must differ from the names of existing files, because HDF5 would first read such a file into memory.
+  // The name must differ from those of existing files, because HDF5 would first read such a file into memory.
   return create_file(name, name + " in memory", access);
 }
 
@@ -94,7 +94,7 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
   if (H5Pset_fapl_sec2(access.get()) < 0)
     throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
   Handle file = create_file(name, path.string(), access);
-  // Space is reserved after the creation, because the creation truncates the file.
+  // Disk space is reserved after the creation, because the creation truncates the file.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
     throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
@@ -136,8 +136,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After some damaged files, the exit cleanup of HDF5 fails and prints messages. The handles here close all files, so
-  // the cleanup is not needed.
+  // After some damaged files, the exit cleanup of HDF5 fails and prints messages. The handles of this project close all
+  // files, so the cleanup is unnecessary.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

@@ -10,11 +10,11 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// Opens and writes HDF5 files. Every error is a BadInput with the message "FILE: PLACE: what". Used only within
-/// scenarios/recordings.
+/// hdf5_file.hpp opens and writes HDF5 files. Every error is a BadInput with the message "FILE: PLACE: what". Used only
+/// within scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// A file opened for reading.
+/// InputFile is an HDF5 file opened for reading.
 class InputFile {
  public:
   /// Throws BadInput if the file is missing, truncated, or not HDF5.
@@ -27,8 +27,8 @@ class InputFile {
   Group root_;
 };
 
-/// A file composed in memory. The HDF5 library cannot recover from a failed close, so it must never write to a full
-/// disk.
+/// MemoryFile is an HDF5 file composed in memory. The HDF5 library cannot recover from a failed close, so it must never
+/// write to a full disk.
 class MemoryFile {
  public:
   /// Error messages start with `name`.
@@ -50,8 +50,8 @@ class MemoryFile {
   Group root_;
 };
 
-/// An HDF5 file that is written directly to disk and replaces an empty file. The maximum disk space is reserved first,
-/// so that the HDF5 library never writes to a full disk.
+/// DiskFile is an HDF5 file that is written directly to disk and replaces an empty file. The maximum disk space is
+/// reserved first, so that the HDF5 library never writes to a full disk.
 class DiskFile {
  public:
   /// Error messages start with `name`. Throws BadInput if there is not enough space.

@@ -12,11 +12,11 @@
 #include "scenarios/recordings/hdf5_layout.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 
-/// Reads and writes the content of an HDF5 file. Every error is a BadInput with the message "FILE: PLACE: what". The
-/// HDF5 library never prints its error stack. Used only within scenarios/recordings.
+/// hdf5_group.hpp reads and writes the content of an HDF5 file. Every error is a BadInput with the message "FILE:
+/// PLACE: what". The HDF5 library never prints its error stack. Used only within scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// A group of an open file with its attributes and datasets.
+/// Group is a group of an open HDF5 file with its attributes and datasets.
 class Group {
  public:
   Group() = default;

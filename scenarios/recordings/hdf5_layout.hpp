@@ -11,10 +11,12 @@
 #include <string>
 #include <utility>
 
-/// RAII handles of the HDF5 C library, and the memory layout of rows. Used only within scenarios/recordings.
+/// hdf5_layout.hpp contains RAII handles of the HDF5 C library, and the memory layout of rows. Used only within
+/// scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// An identifier of the HDF5 library. The destructor closes it with the matching function.
+/// Handle is an identifier of the HDF5 library. The destructor of Handle closes the identifier with the matching
+/// function.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -31,7 +33,7 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Suppresses the messages of the HDF5 library in this thread during the object's lifetime.
+/// Silence suppresses the messages of the HDF5 library in this thread during the object's lifetime.
 class Silence {
  public:
   Silence();
@@ -46,7 +48,7 @@ class Silence {
 
 enum class Scalar : std::uint8_t { float64, float32, int64, int32, uint64, uint32, uint16, uint8 };
 
-/// Memory layout of a row of a std::vector: `columns` scalars without padding.
+/// RowLayout is the memory layout of a row of a std::vector: `columns` scalars without padding.
 template <class Row>
 struct RowLayout;
 template <Scalar kScalarOfRow, std::size_t kColumns>
@@ -80,7 +82,7 @@ template <>
 struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
-/// Size of a chunk of a deflated dataset in bytes.
+/// kChunkBytes is the chunk size of a deflated dataset in bytes.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
@@ -89,7 +91,7 @@ constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
 /// Returns the HDF5 type of a scalar in memory.
 hid_t memory_type(Scalar scalar);
 
-/// Returns " (reason)" for the last error of the HDF5 library. Empty if the reason is unknown.
+/// Returns " (reason)" for the last error of the HDF5 library, or an empty text if the reason is unknown.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -10,13 +10,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kNoIndex = ~std::size_t{0};
-/// Fewer stamps do not show how long a recording lasts.
+/// Fewer than kLeastForEnds stamps do not show how long a recording lasts.
 constexpr std::size_t kLeastForEnds = 10;
-/// Several stamps before or after a shorter gap are a part of the recording. A longer gap is a clock that was set.
+/// Several stamps before or after a gap shorter than kClockSet_ns are a part of the recording. A longer gap means that
+/// the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
 /// Returns the indices of a longest increasing subsequence, by the largest first stamps of each length (Fredman 1975).
-/// The search runs from the end, so that of several such subsequences, one with early stamps is found.
+/// The search runs from the end, so it prefers a subsequence with early stamps.
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
   for (std::size_t k = stamps_ns.size(); k-- > 0;) {
@@ -39,7 +40,7 @@ std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps
 void drop_far_ends(std::span<const std::int64_t> stamps_ns, std::vector<std::size_t>& indices) {
   const std::size_t all = indices.size();
   if (all < kLeastForEnds) return;
-  // unsigned: the difference of two stamps may exceed int64
+  // the time difference is unsigned, because the difference of two stamps may exceed int64
   const auto duration = [&](std::size_t from, std::size_t to) {
     return static_cast<std::uint64_t>(stamps_ns[indices[to]]) - static_cast<std::uint64_t>(stamps_ns[indices[from]]);
   };

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Removes blanks around a number and a plus sign in front of the number.
+/// Removes blanks around a number and a plus sign in front of it.
 std::string_view bare_number(std::string_view text) {
   while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
   while (text.ends_with(' ') || text.ends_with('\t') || text.ends_with('\r')) text.remove_suffix(1);
@@ -24,7 +24,8 @@ bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Splits "1.5e3" into the digits "15" and the power of ten of the last digit, 2. Returns false for another text.
+/// Splits "1.5e3" into the digits "15" and the power of ten of the last digit, 2. Returns false if the text is no
+/// decimal number.
 bool split_decimal(std::string_view text, std::string& digits, int& power) {
   constexpr int kPowerMax = 400;
   power = 0;

@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// The points of one lidar on disk. Each column of a sim::LidarRecord is one file. The record itself then has no
-/// points.
+/// PointStore contains the points of one lidar on disk. Each column of a sim::LidarRecord is one file. The record
+/// itself then has no points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)
@@ -27,7 +27,8 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a record with a single sweep. The points come from `lidar`, or from `aside` if `aside` is not null.
+/// Returns a record with a single sweep of the lidar. The points come from `lidar`, or from `aside` if `aside` is not
+/// null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Archive that reads every field from a group.
+/// RecordingReader is an archive that reads every field from an HDF5 group.
 class RecordingReader {
  public:
   /// `scratch` is the folder for columns that are not kept in memory.
@@ -85,7 +85,7 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// the digest is missing in files of other programs
+  /// files of other programs lack the digest
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:

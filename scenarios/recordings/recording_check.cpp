@@ -17,7 +17,7 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// Accepts rotations and quaternions written with few digits, but not a wrong component order.
+/// The tolerance accepts rotations and quaternions written with few digits, but not a wrong component order.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -25,7 +25,7 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// Returns a problem unless all lengths equal the first length.
+/// Returns a description of the problem unless all lengths equal the first.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
@@ -64,7 +64,7 @@ std::string optional_length_problem(const char* name, std::size_t length, std::s
   return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
 }
 
-/// Names must be UTF-8 without control characters, for tables.
+/// Names must be UTF-8 without control characters, because tables show them.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -77,8 +77,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : std::string(name) + " must be UTF-8 text without control characters";
 }
 
-/// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and
-/// differences of such times may overflow.
+/// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and their
+/// differences may overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -189,7 +189,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   return problem;
 }
 
-/// Checks readings or their truth.
+/// Checks readings or the truth of readings.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
   std::string problem = names_problem("quantities", quantities);
@@ -239,7 +239,7 @@ template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
-       // a reference may have poses only, or also rates
+       // a reference may contain only poses, or also rates
        optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
        length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
                        {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
@@ -254,7 +254,7 @@ std::string imu_truth_problem(const Imu& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  // -1: unknown, -2: the robot's own cage
+  // id -1 means unknown, and -2 means the robot's own cage
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }
@@ -267,7 +267,7 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
        first_wrong(lidar.surface_id, [&](std::int32_t id, std::size_t) { return surface_problem(id, surfaces); })});
 }
 
-/// Checks that times do not decrease.
+/// RisingTimes checks that times do not decrease.
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {

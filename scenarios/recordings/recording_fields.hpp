@@ -9,9 +9,9 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// Lists all fields of a recording except the truth (truth_fields.hpp), with the names, units and columns of FORMAT.md.
-/// Writer, reader and digest are archives that visit this list, so no archive can omit a field. Used only within
-/// scenarios/recordings.
+/// recording_fields.hpp lists all fields of a recording except the truth (truth_fields.hpp), with the names, units and
+/// columns of FORMAT.md. Writer, reader and digest are archives that visit this list, so no archive can omit a field.
+/// Used only within scenarios/recordings.
 ///
 /// An archive has the members value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
@@ -20,11 +20,12 @@
 /// that older files keep their digests. The rows of a field are a std::vector, or a ColumnFile if points are on disk.
 namespace tumble::scenarios {
 
-/// Storage of rows in the file. Rows are deflated if measurements showed a smaller file. The noise-like floats of a
-/// lidar are plain (FORMAT.md).
+/// Storage selects how rows are stored in the file. Rows are deflated if measurements showed a smaller file. The
+/// noise-like floats of a lidar are plain (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// A lidar with its points on disk, for the lists of fields. A StoredLidarView contains const references.
+/// StoredLidar is a lidar with its points on disk, for the lists of fields. A StoredLidarView contains const
+/// references.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;
@@ -38,7 +39,7 @@ std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::ve
 
 inline constexpr const char* kXyz = "x y z";
 
-/// Values of the attribute `point_times`, in the order of the enumeration.
+/// kPointTimes contains the values of the attribute `point_times`, in the order of the enumeration.
 inline constexpr std::array<const char*, 3> kPointTimes = {"measured", "not_skewed", "unknown"};
 
 template <class Archive, class Imu>
@@ -111,7 +112,7 @@ void series_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Visits the fields of all sensors. `lidars` are sensors.lidars or views of these lidars.
+/// Visits the fields of all sensors. `lidars` is either sensors.lidars or views of these lidars.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);

@@ -12,11 +12,12 @@
 
 namespace tumble::scenarios {
 
-/// Name of the file format in the attribute `format`. The version is in the attribute `format_version`.
+/// kRecordingFormat is the name of the file format in the attribute `format`. The attribute `format_version` contains
+/// the version.
 inline constexpr const char* kRecordingFormat = "tumble recording";
 inline constexpr int kRecordingVersion = 1;
 
-/// Metadata of a recording file.
+/// RecordingInfo contains the metadata of a recording file.
 struct RecordingInfo {
   int format_version = kRecordingVersion;
   std::string scenario;  ///< "" for a real recording
@@ -30,12 +31,12 @@ struct RecordingInfo {
   bool has_truth = false;
 };
 
-/// Stamp of time 0 in every export of a recording without `origin_ns`, such as a simulated recording. The stamp is 1
-/// 000 000 000 s after 1970, because ROS treats a stamp of 0 as unset.
+/// kExportOrigin_ns is the stamp of time 0 in every export of a recording without `origin_ns`, such as a simulated
+/// recording. kExportOrigin_ns is 1 000 000 000 s after 1970, because ROS treats a stamp of 0 as unset.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
-/// Returns the stamp of time 0 in every export of a recording. The stamp is `origin_ns`, or kExportOrigin_ns if
-/// `origin_ns` is unknown or before 1970, because bags cannot store such stamps.
+/// Returns the stamp of time 0 in every export of a recording. The export stamp is `origin_ns`, or kExportOrigin_ns if
+/// `origin_ns` is unknown or before 1970, because bags cannot store earlier stamps.
 inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
   return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
 }
@@ -56,15 +57,16 @@ std::string digest(const StoredTruth& truth);
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk. The file is bit-identical to the file for points in memory. The file is
-/// written directly to disk after the maximum size is reserved. Memory holds the sensors without points, the truth, and
-/// some MiB.
+/// Writes a recording whose points are on disk. The file is bit-identical to that for points in memory. The writer
+/// reserves the maximum size, then writes the file directly to disk. Memory holds the sensors without points, the
+/// truth, and some MiB.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// Reads the metadata. Each reader function opens only the group that it needs. All reader functions throw BadInput
-/// with path and reason if the file is missing, truncated or not HDF5. The reader functions throw BadInput also if a
-/// dataset is missing or has a wrong shape, or if format version, lengths or digest do not match.
+/// Reads the metadata of a recording file. Each reader function opens only the group that it needs. All reader
+/// functions throw BadInput with path and reason if the file is missing, truncated or not HDF5. The reader functions
+/// throw BadInput also if a dataset is missing or has a wrong shape, or if format version, lengths or digest do not
+/// match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
 /// Reads the sensors and stores the points on disk in `scratch`, one store per lidar. The records then have no points.

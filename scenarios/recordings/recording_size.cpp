@@ -8,10 +8,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Overhead of an object or attribute without its text, and of the file.
+/// kHead_bytes is the overhead of an object or attribute without its text; kFile_bytes is that of the file.
 constexpr std::uint64_t kHead_bytes = 4096, kFile_bytes = std::uint64_t{1} << 20;
 
-/// Archive that sums the maximum size of each field.
+/// SizeBound is an archive that sums the maximum size of each field.
 class SizeBound {
  public:
   std::uint64_t bytes = kFile_bytes;

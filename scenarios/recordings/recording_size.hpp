@@ -9,8 +9,8 @@
 /// Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// Returns an upper bound of a recording's file size [bytes]. The bound assumes uncompressed numbers, full chunks and
-/// large headers.
+/// Returns an upper bound of a recording's file size [bytes]. The size bound assumes uncompressed numbers, full chunks
+/// and large headers.
 std::uint64_t size_bound(const RecordingInfo& info, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                          const sim::Truth* truth);
 

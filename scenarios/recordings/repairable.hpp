@@ -8,12 +8,14 @@
 
 namespace tumble::scenarios {
 
-/// Option of `tumble import` that changes how a recording is read, for example {"--gyro-unit", "deg/s"}.
+/// ImportOption is an option of `tumble import` that changes how a recording is read, for example {"--gyro-unit",
+/// "deg/s"}.
 struct ImportOption {
   std::string name, value;
 };
 
-/// Error for a recording that can be read with another value of one option. The message also names the option.
+/// RepairableInput is the error for a recording that can be read with another value of one option. The error message
+/// also names this option.
 class RepairableInput : public BadInput {
  public:
   RepairableInput(const std::string& message, ImportOption repair) : BadInput(message), repair_(std::move(repair)) {}

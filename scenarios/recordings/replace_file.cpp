@@ -102,8 +102,8 @@ std::string process_mark(const std::string& pid) {
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes the temporary files of processes on this computer that no longer exist, as after SIGKILL. Looks into each
-/// folder once per process.
+/// Removes the temporary files of processes on this computer that no longer exist, as after SIGKILL. The function looks
+/// into each folder once per process.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;
@@ -162,7 +162,7 @@ void OutputFile::move_into_place() {
   Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(given_, errno);
   if (const std::optional<struct stat> old = status_of(place_)) {
-    // the path may have changed in the meantime
+    // the target may have changed in the meantime
     require_replaceable(given_, place_);
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
@@ -172,7 +172,7 @@ void OutputFile::move_into_place() {
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
-  // a full disk may be reported only here
+  // the file system may report a full disk only here
   if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
   if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
   moved_ = true;

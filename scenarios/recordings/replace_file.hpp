@@ -9,15 +9,15 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// Writes output atomically: to a temporary file next to the final path, which is then renamed. Only regular files are
-/// replaced.
+/// replace_file.hpp writes output atomically: to a temporary file next to the final path, which is then renamed. Only
+/// regular files are replaced.
 namespace tumble::scenarios {
 
-/// A file under construction next to its final path. The file is removed unless it is moved to its final path, even if
-/// a signal ends the program (unfinished.hpp). After SIGKILL, a temporary file remains; the next process that writes to
-/// the folder removes it. Symbolic links are followed. An existing target must be a writable regular file; its mode and
-/// owner are kept. Throws BadInput with the path and the system's reason (missing folder, no permission, disk full, a
-/// device, a pipe).
+/// OutputFile is a file under construction next to its final path. OutputFile is removed unless it is moved to its
+/// final path, even if a signal ends the program (unfinished.hpp). After SIGKILL, a temporary file remains; the next
+/// process that writes to the folder removes it. OutputFile follows symbolic links. An existing target must be a
+/// writable regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason (missing
+/// folder, no permission, disk full, a device, a pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -37,9 +37,10 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// An output folder. The folder must be missing or empty, so that old files are not mistaken for new files. Throws
-/// BadInput if the folder is not empty. Unless kept, the content is removed, even if a signal ends the program. If the
-/// object created the folder, the folder is also removed.
+/// OutputFolder is the folder for the files of one output. The output folder must be missing or empty, so that old
+/// files are not mistaken for new files. Throws BadInput if the output folder is not empty. Unless kept, the content of
+/// the folder is removed, even if a signal ends the program. If OutputFolder created the folder, the folder is also
+/// removed.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);

@@ -16,7 +16,8 @@ constexpr std::size_t kLeast = 100;  // minimum number of stamps
 constexpr double kReach_s = 0.5;
 constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any regular step
 
-/// Prefix sums of a segment: n, i, v, i i, i v, where v is the deviation from a constant period.
+/// StampLine contains prefix sums of a segment of stamps: n, i, v, i i, i v, where v is the deviation from a constant
+/// period.
 class StampLine {
  public:
   explicit StampLine(std::span<const std::int64_t> piece) : piece_(piece) {
@@ -80,7 +81,7 @@ bool are_rounded(std::span<const std::int64_t> stamps_ns) {
   const auto least = static_cast<std::size_t>(kLeastShare * static_cast<double>(all)) + 1;
   for (std::size_t n = 1; n + 1 < counts.size(); ++n) {
     if (counts[n] < least || counts[n + 1] < least) continue;
-    // Longer steps are gaps; a clock with more jitter also has other step lengths.
+    // Longer steps are gaps; a clock with more jitter would also have other step lengths.
     return static_cast<double>(counts[n] + counts[n + 1]) >= (1.0 - kLeastShare) * static_cast<double>(all);
   }
   return false;

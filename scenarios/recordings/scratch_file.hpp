@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-/// Stores data temporarily on disk if the data exceed the memory.
+/// scratch_file.hpp stores data temporarily on disk if they exceed the memory.
 namespace tumble::scenarios {
 
 /// Returns the nearest existing folder of an output path, so that temporary data are on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// An unnamed file that disappears with the object or the process, and that grows at its end. Throws BadInput with the
-/// folder and the system's reason (missing folder, no permission, disk full).
+/// ScratchFile is an unnamed file that grows at its end and disappears with the object or the process. Throws BadInput
+/// with the folder and the system's reason (missing folder, no permission, disk full).
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -43,8 +43,8 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// A column of a recording in a ScratchFile, read and written by segments like a std::vector<Row>. Without a folder,
-/// the column stays empty.
+/// A ColumnFile is a column of a recording in a ScratchFile, read and written in segments like a std::vector<Row>. The
+/// column stays empty if there is no folder.
 template <class Row>
 class ColumnFile {
  public:

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// A temporary folder that is removed with the object, even if a signal ends the program.
+/// ScratchFolder is a temporary folder that is removed with the object, even if a signal ends the program.
 class ScratchFolder {
  public:
   /// `use` becomes part of the folder's name. Throws std::filesystem::filesystem_error on failure.

@@ -21,7 +21,7 @@ struct StoredContacts {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// A sim::ImuTruth on disk.
+/// StoredImuTruth is a sim::ImuTruth on disk.
 struct StoredImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
@@ -34,7 +34,7 @@ struct StoredImuTruth {
   ColumnFile<Eigen::Vector3d> magnetic_field_t;
 };
 
-/// A sim::LidarTruth on disk.
+/// StoredLidarTruth is a sim::LidarTruth on disk.
 struct StoredLidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
@@ -42,10 +42,11 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// A sim::Truth on disk. Lists of rows are columns of scratch files. All other members are those of sim::Truth.
+/// StoredTruth is a sim::Truth on disk. The lists of rows are columns of scratch files. All other members are those of
+/// sim::Truth.
 struct StoredTruth {
-  /// Returns the body states from row `first` to row `last` - 1. The result contains the mountings and `p_BG_m`, but
-  /// neither sensors nor contacts.
+  /// Returns the body states from row `first` to row `last` - 1. The returned truth contains the mountings and
+  /// `p_BG_m`, but neither sensors nor contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 

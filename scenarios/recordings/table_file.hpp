@@ -11,18 +11,18 @@
 
 namespace tumble::scenarios {
 
-/// Writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header line). Doubles
-/// are restored exactly when read. Stamps are integers or seconds with nine decimals.
+/// TableWriter writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header
+/// line). Doubles are restored exactly when read. Time stamps are integers or seconds with nine decimals.
 class TableWriter {
  public:
-  /// An empty `header` is not written. Throws BadInput if the file cannot be opened. `close` replaces an existing file.
-  /// A table that is not closed is discarded.
+  /// An empty `header` is not written. Throws BadInput if the file cannot be opened. The function `close` replaces an
+  /// existing file. A table that is not closed is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
   void time_s(std::int64_t time_ns);  ///< exact: "12.000000345"
   void end_row();
-  /// Completes the file. Throws BadInput if any write failed.
+  /// Completes the table file. Throws BadInput if any write failed.
   void close();
 
  private:
@@ -34,9 +34,9 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Rows of text cells. Every row has the expected number of cells. Empty lines and lines that start with '#' are
-/// skipped. If the separator is a blank, tabs, commas and semicolons also separate cells. Throws BadInput with path and
-/// line number for a wrong number of cells or an invalid value.
+/// Table contains rows of text cells. Every row has the expected number of cells. Empty lines and lines that start with
+/// '#' are skipped. If the separator is a blank, tabs, commas and semicolons also separate cells. Throws BadInput with
+/// path and line number for a wrong number of cells or an invalid value.
 struct Table {
   struct Row {
     int line;

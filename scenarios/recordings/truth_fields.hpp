@@ -8,7 +8,7 @@
 #include "scenarios/recordings/recording_fields.hpp"
 #include "sim/recording.hpp"
 
-/// Lists all truth fields of a recording, for the archives of recording_fields.hpp. Used only within
+/// truth_fields.hpp lists all truth fields of a recording, for the archives of recording_fields.hpp. Used only within
 /// scenarios/recordings.
 namespace tumble::scenarios {
 

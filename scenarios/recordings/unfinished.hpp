@@ -3,12 +3,12 @@
 
 #include <filesystem>
 
-/// Removes incomplete outputs when a signal ends the process.
+/// unfinished.hpp removes incomplete outputs when a signal ends the process.
 namespace tumble::scenarios {
 
-/// An incomplete file or folder. During the object's lifetime, a signal of `remove_unfinished_on_signals` removes the
-/// file, or the folder with its content. Only the process that created the object removes the path; its child processes
-/// do not.
+/// Unfinished is an incomplete file or folder. During the object's lifetime, a signal of `remove_unfinished_on_signals`
+/// removes the file, or the folder with its content. Only the process that created the object removes the path, not its
+/// child processes.
 class Unfinished {
  public:
   enum class Kind { file, folder, contents };  ///< contents: an existing folder that itself remains
@@ -25,8 +25,8 @@ class Unfinished {
   int place_ = -1;
 };
 
-/// Blocks the signals of `remove_unfinished_on_signals` during the object's lifetime. The object protects a new path
-/// that has no Unfinished object yet.
+/// SignalsWait blocks the signals of `remove_unfinished_on_signals` during the object's lifetime. SignalsWait protects
+/// a new path that has no Unfinished object yet.
 class SignalsWait {
  public:
   SignalsWait();
@@ -35,8 +35,8 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// Installs signal handlers. SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have their
-/// usual effect. The handlers are async-signal-safe: they only make system calls on static storage.
+/// Installs the signal handlers. SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have
+/// their usual effect. The handlers are async-signal-safe: they only make system calls on static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

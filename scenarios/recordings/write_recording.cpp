@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Archive that writes every field to a group.
+/// Writer is an archive that writes every field to an HDF5 group.
 class Writer {
  public:
   explicit Writer(hdf5::Group group) : group_(std::move(group)) {}

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Attitude error by the definition of BROAD (Laidig et al., Data 2021): e = q_est (x) q_true*, in W. The heading is
-// aligned at the first sample.
+// AttitudeError is defined as in BROAD (Laidig et al., Data 2021): e = q_est (x) q_true*, in W. The heading of the
+// estimate is aligned at the first sample.
 struct AttitudeError {
   double inclination_rad;
   double heading_rad;

@@ -6,7 +6,7 @@
 
 namespace tumble::scenarios {
 
-/// Metric over the samples whose measure `axis` is in [low, high), with a name such as
+/// BinnedMetric is a metric over the samples whose measure `axis` is in [low, high), with a name such as
 /// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Binned metrics are plotted as a curve over
 /// the measure and appear in no table.
 struct BinnedMetric {
@@ -16,7 +16,7 @@ struct BinnedMetric {
   std::string name() const;
 };
 
-/// Parses the name of a binned metric. Returns empty for any other text.
+/// Parses the name of a binned metric. Returns nothing if the text is no binned metric.
 std::optional<BinnedMetric> parse_binned(const std::string& metric);
 
 }  // namespace tumble::scenarios

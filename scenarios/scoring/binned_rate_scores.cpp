@@ -12,7 +12,8 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// Computes rate errors over clipped samples with similar clipping depth, clipping duration or number of clipped axes.
+/// binned_rate_scores.cpp computes rate errors over clipped samples with similar clipping depth, clipping duration or
+/// number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {
@@ -32,7 +33,7 @@ constexpr const auto& edges() {
 }
 
 /// Returns, for each sample, the duration of the segment of clipped samples that contains the sample. The duration is 0
-/// if the sample is not clipped.
+/// for an unclipped sample.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);

@@ -10,25 +10,25 @@
 
 namespace tumble::scenarios {
 
-/// Bits of the gyro axes in the clip flags of a device.
+/// kGyroClipFlags contains the bits of the gyro axes in the clip flags of a device.
 inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 
-/// Determines the true rates of the primary gyro, and which of its samples are clipped.
+/// ClippingTruth determines the true rates of the primary gyro, and which of its samples are clipped.
 ///
-/// All scores use one definition: axis j of a sample is clipped if the sensing element of this axis is beyond its rail.
+/// All scores use one definition: axis j of a sample is clipped if its sensing element is beyond its saturation level.
 /// The saturation deficit of element j is row j of the misalignment matrix M times the unclipped minus the delivered
 /// reading. The unclipped reading has the errors of the delivered reading but no saturation. Element j is beyond its
-/// rail if the deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white noise per
-/// sample, sqrt(density^2 / period), but at least 1e-6 rad/s. Smaller deficits do not matter.
+/// saturation level if the deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white
+/// noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s. The scores ignore smaller saturation deficits.
 ///
-/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes. The
-/// change is the deficit times entries of the inverse of M. An axis has a cross-axis error if another element changes
-/// its reading by more than the tolerance while its own element is not beyond its rail. An axis with a cross-axis error
-/// does not count as clipped.
+/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes. A
+/// saturated element changes the other readings by the deficit times entries of the inverse of M. An axis has a
+/// cross-axis error if another element changes its reading by more than the tolerance while its own element is
+/// unsaturated. An axis with a cross-axis error does not count as clipped.
 ///
 /// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
-/// In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Cross-axis errors
-/// are then unknown. Samples without a reference rate are not scored.
+/// With a reference, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Cross-axis
+/// errors are unknown with a reference. Samples without a reference rate are not scored.
 class ClippingTruth {
  public:
   struct Sample {
@@ -40,13 +40,13 @@ class ClippingTruth {
   /// Throws BadInput if the sensors and the truth do not belong together.
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
-  /// Returns the true rate and the clipped axes at an instant. Between two samples the rate is interpolated, and the
-  /// clipped axes belong to the sample whose averaging window contains the instant. Returns empty outside the recording
-  /// and where the rate is unknown. O(log N).
+  /// Returns the true rate and the clipped axes at a given time. Between two samples, the rate is interpolated; the
+  /// clipped axes are those of the sample whose averaging window contains the time. Returns nothing outside the
+  /// recording and where the rate is unknown. Cost: O(log N).
   std::optional<Sample> at(std::int64_t time_ns) const;
 
-  /// Returns the index of the sample whose averaging window contains the instant. Empty outside the recording. O(log
-  /// N).
+  /// Returns the index of the sample whose averaging window contains `time_ns`, or nothing outside the recording. Cost:
+  /// O(log N).
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
 
   std::size_t size() const { return record_->time_ns.size(); }
@@ -58,7 +58,7 @@ class ClippingTruth {
   std::size_t known_samples() const;
   /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// Returns the axes of a sample with a cross-axis error. A clipped axis never has a cross-axis error.
+  /// Returns the axes of a sample that have a cross-axis error. A clipped axis never has a cross-axis error.
   std::uint8_t cross_axes(std::size_t index) const;
   /// Returns the largest difference over the axes between the reading and the unclipped reading or reference.
   double depth_rad_s(std::size_t index) const;

@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// Returns the description of an estimate's CPU time. Sweeps store the CPU time like a metric.
+/// Returns the description of an estimate's CPU time. Sweeps over scenarios store the CPU time like a metric.
 const MetricInfo& estimate_cost();
 
 /// Returns true if a score is a computing cost. Computing costs vary between identical runs.

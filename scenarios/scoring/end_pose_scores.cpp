@@ -14,14 +14,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the time up to which sweeps enter the comparison. The time is a quarter of a period after the end of the last
-// sweep that the primary IMU covers completely. If the IMU covers a sweep in part, some methods drop the sweep and
-// other methods shorten it.
+// Returns the time up to which sweeps enter the comparison. The comparison ends a quarter of a period after the end of
+// the last sweep that the primary IMU covers completely. If the IMU covers a sweep in part, some methods drop the sweep
+// and others shorten it.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  // The points of a deskewed sweep belong to one instant.
+  // All points of a deskewed sweep belong to one instant.
   const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
   const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
   const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
@@ -42,7 +42,7 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
-// Computes the start and end poses of the end error. Returns false if there are no such poses.
+// Computes the start and end poses of the end error. Returns false if the estimate has no start or end pose.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // external trajectory

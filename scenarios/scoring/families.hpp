@@ -5,9 +5,9 @@
 
 #include "scenarios/scoring/score.hpp"
 
-/// Declares the metrics. Each group of metrics has one source file. A new metric needs a function in the source file of
-/// its group and an entry in the list of that file. A new group of metrics is declared in this file and added in
-/// score.cpp.
+/// families.hpp declares the metrics. Each group of metrics has one source file. A new metric needs a function in the
+/// source file of its group and an entry in the list of that file. A new group of metrics is declared in families.hpp
+/// and added in score.cpp.
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
@@ -22,16 +22,16 @@ std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
 
-/// These functions return quantities that are no metrics: costs and motion values that sweeps store, and the quantities
-/// from which binned metrics are computed.
+/// These functions return quantities that are no metrics: costs, motion values, and the quantities from which binned
+/// metrics are computed.
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();
 
-/// Probability that a normal variable is within three standard deviations.
+/// kNormal3Sigma is the probability that a normal variable is within three standard deviations.
 inline constexpr double kNormal3Sigma = 0.9973;
 
-/// Returns the root mean square. NaN for an empty list.
+/// Returns the root mean square of the values, or NaN for an empty list.
 double rms(std::span<const double> values);
 
 }  // namespace tumble::scenarios

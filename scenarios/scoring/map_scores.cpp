@@ -34,7 +34,7 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// Returns the true hits of all sweeps on the static world. The robot's own cage has no surface id.
+// Returns the true hits of all sweeps on the static world. Hits on the robot's own cage have no surface id.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -90,7 +90,7 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Returns the fraction of the seen surface that the map covers. Empty without a map or without the true hits.
+// Returns the fraction of the seen surface that the map covers. Returns nothing without a map or without the true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
@@ -107,8 +107,8 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// Computes 1 for a failed map, else 0. A method without a map counts as failed. A trajectory without sweeps comes from
-// an external program that builds no map.
+// Computes 1 for a failed map, otherwise 0. A method without a map counts as failed. A trajectory without sweeps comes
+// from an external program that builds no map.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

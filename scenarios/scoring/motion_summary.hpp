@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Statistics of a simulated motion, for comparing a scenario with a published campaign. The statistics are computed
-/// from the truth only.
+/// MotionSummary contains statistics of a simulated motion, for comparing a scenario with a published campaign. The
+/// statistics are computed only from the truth.
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last instant above 0.1 m/s or 0.3 rad/s
   double rest_at_end_s = 0.0;       ///< from the last moving instant to the end of the recording

@@ -11,8 +11,9 @@
 
 namespace tumble::scenarios {
 
-/// Tests whether any point of a set is within a fixed distance of a query point. The test is exact. The test uses a
-/// hash of cells as wide as the distance and checks 27 cells. Points that are not finite are ignored.
+/// Nearness tests whether any point of a set is within a fixed distance of a query point. The distance test is exact.
+/// Nearness uses a hash of cells as wide as the distance and checks 27 cells per query. Nearness ignores non-finite
+/// points.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);
@@ -25,8 +26,7 @@ class Nearness {
   SpatialHash cells_;                                            ///< key -> index in ranges_
 };
 
-/// Returns the first point in each cell of size `cell_m`, in the original order. Points that are not finite are
-/// dropped.
+/// Returns the first point in each cell of size `cell_m`, in the original order. Non-finite points are dropped.
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m);
 
 }  // namespace tumble::scenarios

@@ -7,9 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// Describes how a method's run on a recording ended. The method is responsible for `ok`, `diverged` (score.hpp,
-/// `verdict`), `failed` (the method returned an error), `crashed` and `timeout`. `killed` is a fault of the machine
-/// (signal from outside, no memory, no process). `rejected` means that the scenario cannot be simulated with this seed.
+/// OutcomeStatus describes how a method's run on a recording ended. The method is responsible for `ok`, `diverged`
+/// (score.hpp, `verdict`), `failed` (the method returned an error), `crashed` and `timeout`. `killed` is a fault of the
+/// machine (signal from outside, no memory, no process). `rejected` means that the scenario cannot be simulated with
+/// this seed.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();

@@ -4,7 +4,7 @@
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// Describes quantities that are stored in addition to the metrics and displayed like metrics.
+/// quantities.cpp describes quantities that are stored and displayed like metrics.
 namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Errors of the estimate at samples with a clipped axis, and at samples without a clipped axis.
+// ErrorNorms contains errors of the estimate at samples with a clipped axis, and at samples without one.
 struct ErrorNorms {
   std::vector<double> clipped_rad_s, free_rad_s;
 };
@@ -80,8 +80,9 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// Squared errors divided by their reported variances. `all`, `flight` and `impact` contain errors of clipped axes for
-// all samples, in flight and in contact. `cross_axis` contains errors of axes with a cross-axis error.
+// NormalisedErrors contains squared errors divided by their reported variances. `all`, `flight` and `impact` contain
+// errors of clipped axes: for all samples, in flight and in contact. `cross_axis` contains errors of axes with a
+// cross-axis error.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

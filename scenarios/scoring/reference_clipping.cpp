@@ -16,7 +16,7 @@ constexpr double kBeyondShare = 0.02, kBeyondErrors = 4.0;
 constexpr std::size_t kLeastSamples = 5;
 constexpr double kSlopePrior = 0.03, kSpread_rad_s = 0.02;
 
-/// One axis and sign of the gyro, and the two other axes.
+/// Side is one axis and sign of the gyro, with the two other axes.
 struct Side {
   int axis, first, second;
   double sign;
@@ -31,8 +31,8 @@ double plane_at(const ReferenceRail& rail, const Side& side, const Eigen::Vector
   return rail.rail_rad_s + rail.slopes[0] * y[side.first] + rail.slopes[1] * y[side.second];
 }
 
-/// Fits s y_j = r + c . y with the sign s and reading y_j of the axis. The cross-axis sensitivities c are regularised
-/// to zero.
+/// Fits the equation s y_j = r + c . y with the sign s and reading y_j of the axis. The cross-axis sensitivities c are
+/// regularised to zero.
 ReferenceRail fit(const Side& side, std::span<const Eigen::Vector3d> readings) {
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();

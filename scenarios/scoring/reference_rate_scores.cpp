@@ -13,14 +13,14 @@ namespace tumble::scenarios {
 namespace {
 
 /// A sample is certainly unclipped if every axis is below the fraction kFarShare of its extreme reading. The body
-/// rotates if the rate exceeds kRotating_rad_s.
+/// counts as rotating if the rate exceeds kRotating_rad_s.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return (estimate - reference).norm();
 }
 
-/// Returns the error of the rate's norm, which does not depend on a frame rotation.
+/// Returns the error of the rate's norm, which is independent of frame rotations.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -62,8 +62,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variances of the reference's axes. The variances follow from the interquartile range of the difference
-/// between reference and unclipped gyro. The difference is assumed normal.
+/// Returns the variances of the reference rate per axis. The variances follow from the interquartile range of the
+/// difference between reference and unclipped gyro. The difference is assumed normal.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -139,7 +139,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics of the reference are properties of the reference instead of a method, and are not ranked.
+/// Metrics about the reference describe the reference instead of a method, and are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -26,11 +26,11 @@ double value_of(std::span<const Score> scores, const std::string& metric) {
 
 namespace {
 
-// Longest accepted gap of an estimate, as a fraction of the recording.
+// kHoleMaxShare is the longest accepted gap of an estimate, as a fraction of the recording.
 constexpr double kHoleMaxShare = 0.2;
-// Minimum fraction of gyro samples with an estimated rate.
+// kAnsweredMin is the minimum fraction of gyro samples with an estimated rate.
 constexpr double kAnsweredMin = 0.9;
-// An end error below this value is never a divergence, even for a short path.
+// An end error below kEndErrorFloorM is never a divergence, even for a short path.
 constexpr double kEndErrorFloorM = 1.0;
 
 std::vector<Metric> all_metrics() {
@@ -74,8 +74,8 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().attitudes, truth.last_ns());
 }
 
-/// Largest plausible distance from the origin. No rolling or tumbling robot travels this far, so a farther pose is
-/// wrong.
+/// kFarthest_m is the largest plausible distance from the origin. No rolling or tumbling robot travels this far, so a
+/// farther pose is wrong.
 constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {
@@ -94,8 +94,8 @@ bool poses_reach_and_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().poses, truth_track(scored).last_ns()) && poses_hold(scored);
 }
 
-// Returns false if a run that is long enough for the end error has too few registered sweeps. Always true for an
-// external trajectory without sweeps, which is judged by its poses.
+// Returns false if a run that is long enough for the end error has too few registered sweeps. The function returns true
+// for an external trajectory without sweeps, which is judged by its poses.
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {

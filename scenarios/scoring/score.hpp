@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// One score of an outcome; the metric's name ends in its unit (docs/design.md, "Scores").
+/// Score is one score of an outcome; the metric's name ends in its unit (docs/design.md, "Scores").
 struct Score {
   std::string metric;
   double value;
@@ -23,11 +23,11 @@ const Score* find_score(std::span<const Score> scores, const std::string& metric
 /// Returns the value of the metric's score, or NaN.
 double value_of(std::span<const Score> scores, const std::string& metric);
 
-/// A metric with its description. Each metric is registered by one line in the source file of its group.
+/// Metric is a metric with its description. Each metric is registered by one line in the source file of its group.
 struct Metric {
   MetricInfo info;
   Kind kind;
-  /// Computes `value`. Returns false if there is nothing to score (no clipped sample, no map).
+  /// Computes `value`; returns false if there is nothing to score (no clipped sample, no map).
   bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 
@@ -38,7 +38,7 @@ std::span<const Metric> metrics();
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns `ok` or `diverged`. An estimate diverged in any of the following cases.
+/// Returns `ok` or `diverged`. An estimate counts as diverged in any of the following cases.
 /// - The estimate is not finite.
 /// - The estimate has a gap longer than a fifth of the recording, or rates for less than nine tenths of the samples.
 /// - The end error exceeds the path length (at least 1 m).

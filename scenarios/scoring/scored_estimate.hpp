@@ -10,15 +10,16 @@
 
 namespace tumble::scenarios {
 
-/// The parts of a recording that scoring needs. `surface` may be null; map scores are then omitted.
+/// ScoringInput contains the parts of a recording that scoring needs. `surface` may be null; map scores are then
+/// omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
   const sim::Surface* surface = nullptr;
 };
 
-/// An estimate paired with its recording, with a cache of results that several metrics share, such as paired poses and
-/// map distances. The class keeps references to its inputs. It is not thread-safe.
+/// ScoredEstimate is an estimate paired with its recording, with a cache of results that several metrics share, such as
+/// paired poses and map distances. ScoredEstimate keeps references to its inputs. ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
   /// Throws BadInput if sensors or truth are missing.

@@ -10,21 +10,20 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// Compares the slip and slide events of a position method's contact modes with the events in the truth's contact
-/// labels.
+/// slip_scores.cpp compares the slip and slide events of a position method's contact modes with those of the truth.
 ///
-/// An event is an interval of the labels slip and slide. An event includes gaps of up to kBridge_ns of grip, and up to
-/// kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event counts if the event lasts
-/// kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower events cannot be distinguished from
-/// grip and cause no position error. Slip and slide are not distinguished.
+/// A slip event is an interval of the labels slip and slide. A slip event includes gaps of up to kBridge_ns of grip,
+/// and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event counts if it lasts
+/// at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower events cannot be
+/// distinguished from grip and cause no position error. The scores do not distinguish slip and slide.
 ///
-/// An estimated event is correct if at least half of the event overlaps true events. The overlap test also includes
-/// weak and short true events, and widens each true event by kMargin_ns. A true event is detected if correct estimated
-/// events cover at least half of the true event.
+/// An estimated slip event is correct if at least half of it overlaps true events. The overlap test also includes weak
+/// and short true events, and widens each true event by kMargin_ns. A true slip event is detected if correct estimated
+/// events cover at least half of it.
 ///
-/// The position is lost in a true event if the horizontal error grows by more than kLost_m from the start to the end of
-/// the event. The event is flagged if the reported horizontal sigma grows by more than kFlagged_m. For the loss and the
-/// flag, the event is widened by kMargin_ns on either side.
+/// The position is lost in a true slip event if the horizontal error grows by more than kLost_m from its start to its
+/// end. A true slip event is flagged if the reported horizontal sigma grows by more than kFlagged_m. For position loss
+/// and flag, the slip event is widened by kMargin_ns on either side.
 namespace tumble::scenarios {
 
 namespace {
@@ -45,7 +44,7 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-/// Joins intervals of slip and slide to events. The labels must be in time order.
+/// Events joins intervals of slip and slide to slip events. The contact labels must be in time order.
 class Events {
  public:
   void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
@@ -86,7 +85,7 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// Returns the slip intervals of the estimate. A label applies from its own instant to the instant of the next label.
+/// Returns the slip intervals of the estimate. A contact label applies from its own time to the time of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
@@ -124,7 +123,7 @@ struct MatchedEvents {
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // The truth of a reference has poses only, without contact labels.
+  // The truth of a reference contains only poses, without contact labels.
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -171,13 +170,13 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Position loss and flag of one true event.
+/// Passed contains position loss and flag of one true slip event.
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// Returns the true events that count and for which the estimate has poses. Returns no events if the estimate has no
-/// covariance.
+/// Returns the true slip events that count and for which the estimate has poses. Returns no events if the estimate has
+/// no covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;

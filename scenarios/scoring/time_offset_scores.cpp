@@ -9,18 +9,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Least-squares fit of `behind = offset * change`. The inputs are errors of the estimate and rates of change of the
-/// truth.
+/// OffsetFit is a least-squares fit of `behind = offset * change`. The inputs are errors of the estimate and rates of
+/// change of the truth.
 class OffsetFit {
  public:
-  /// Adds a pair of values. Unknown values are ignored.
+  /// Adds a pair of values to the fit, unless a value is unknown.
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
     if (!change_per_s.allFinite()) return;
     product_ += change_per_s.dot(behind);
     square_ += change_per_s.squaredNorm();
   }
 
-  /// Computes the offset. Returns false if the truth did not change.
+  /// Computes the time offset; returns false if the truth did not change.
   bool offset_s(double& value) const {
     if (!(square_ > std::numeric_limits<double>::min())) return false;
     value = product_ / square_;
@@ -31,8 +31,8 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Computes the offset from unclipped samples only. In unclipped samples the gyro measures the rate, so the remaining
-// error is a time offset.
+// Computes the time offset from unclipped samples only. In unclipped samples the gyro measures the rate, so the
+// remaining error is a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;

@@ -9,7 +9,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// Path length between the starts of two segments. Equal steps ensure that poses at rest do not count many times.
+// kSegmentStepM is the path length between the starts of two segments. Equal steps ensure that poses at rest do not
+// count many times.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {

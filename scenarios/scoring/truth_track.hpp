@@ -10,34 +10,34 @@
 
 namespace tumble::scenarios {
 
-/// The true motion of one frame of the robot at any instant of the recording.
+/// TruthTrack is the true motion of one frame of the robot at any time of the recording.
 ///
 /// Position is interpolated linearly, and attitude by slerp, between physics samples (0.5 ms apart). At 400 m/s^2 and
 /// 25 rad/s, the interpolation error is below 13 um and 1 urad. The frame has its true mounting, so calibration errors
 /// of the estimator count as errors.
 class TruthTrack {
  public:
-  /// The body is at rest if its speed and rate are below their limits within this time around the instant. If no
+  /// The body is at rest if its speed and rate are below their limits within kRestWindowS around the time. If no
   /// position is known, only the rate counts.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
 
   /// Throws BadInput if the truth's arrays differ in length or are empty, or if the truth lacks the frame's sensor.
-  /// O(number of physics samples).
+  /// Cost: O(number of physics samples).
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
   /// Returns true if the pose is known at this time. The poses of a reference can have gaps.
   bool covers(std::int64_t time_ns) const;
-  /// Returns true if the attitude is known at this time. The position may be unknown.
+  /// Returns true if the attitude is known at this time. The position may be unknown although the attitude is known.
   bool covers_attitude(std::int64_t time_ns) const;
 
   /// Returns the pose of the frame in W and the velocity of its origin, with NaN where the position is unknown. The
-  /// attitude must be known at `time_ns`. O(1).
+  /// attitude must be known at `time_ns`. Cost: O(1).
   PoseState pose(std::int64_t time_ns) const;
   /// Returns the angular rate of the frame in its own axes [rad/s], with NaN where the rate is unknown. `time_ns` must
-  /// be covered. O(1).
+  /// be covered. Cost: O(1).
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
   /// Returns the path length of the frame's origin since time 0 [m]. `time_ns` must be covered.
   double path_m(std::int64_t time_ns) const;
@@ -45,7 +45,7 @@ class TruthTrack {
   bool at_rest(std::int64_t time_ns) const;
 
  private:
-  /// The samples before and after an instant, with the interpolation fraction.
+  /// Between contains the samples before and after a given time, with the interpolation fraction.
   struct Between {
     std::size_t index = 0, next = 0;
     double share = 0.0;
@@ -63,7 +63,8 @@ class TruthTrack {
   std::vector<bool> rest_;
 };
 
-/// Estimated and true pose at one instant. The two poses are in W, after alignment of the estimate with the truth.
+/// PairedPose contains the estimated and the true pose at one time. The estimated and the true pose are in W, after
+/// alignment of the estimate with the truth.
 struct PairedPose {
   std::int64_t time_ns = 0;
   PoseState estimate;
@@ -72,8 +73,8 @@ struct PairedPose {
   bool rest = false;
 };
 
-/// Alignment of the estimator's world with W in four degrees of freedom. Gravity fixes roll and pitch, so initial tilt
-/// errors count as errors.
+/// Alignment aligns the estimator's world with W in four degrees of freedom. Gravity fixes roll and pitch, so initial
+/// tilt errors count as errors.
 struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
@@ -90,12 +91,12 @@ double twist_about_z_rad(const Eigen::Quaterniond& q);
 /// Returns the angle of a rotation in [0, pi], accurate for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
-/// Returns the horizontal part of the attitude error phi in the estimate's world. The error is defined by q_true =
-/// Exp(phi) q, up to heading.
+/// Returns the horizontal part of the attitude error phi in the estimate's world. The attitude error is defined by
+/// q_true = Exp(phi) q, up to heading.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
-/// Poses of an estimate paired with the truth, aligned at the first pose for which the truth is known. The list is
-/// empty if the truth is unknown at all poses.
+/// PairedTrack contains poses of an estimate paired with the truth, aligned at the first pose for which the truth is
+/// known. The list of pairs is empty if the truth is unknown at all poses.
 struct PairedTrack {
   Alignment alignment;
   std::vector<PairedPose> poses;

@@ -35,8 +35,8 @@ double sorted_median(std::span<const double> sorted) {
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Returns the acceleration from the jackknife, statistics.md (S3). The acceleration is zero for an even
-/// sample size, because removing a value leaves two possible medians equally often.
+/// Returns the acceleration from the jackknife, statistics.md (S3). The acceleration is zero for an even sample size,
+/// because removing a value leaves two possible medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
@@ -98,7 +98,7 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   const auto [first, last] = std::equal_range(medians.begin(), medians.end(), median);
   const auto count = static_cast<double>(medians.size());
   const double below = static_cast<double>(first - medians.begin()) + 0.5 * static_cast<double>(last - first);
-  // Bias correction and interval ends, statistics.md (S2) and (S4).
+  // Bias correction and interval ends follow statistics.md (S2) and (S4).
   const boost::math::normal normal;
   const double z0 = quantile(normal, std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const double a = acceleration(sorted);

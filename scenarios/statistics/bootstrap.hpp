@@ -9,9 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// Computes bootstrap intervals for the median of samples of one size, statistics.md (S1) to (S4). The
+/// MedianBootstrap computes bootstrap intervals for the median of samples of one size, statistics.md (S1) to (S4). The
 /// intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks of a resample's middle
-/// values do not depend on the values. The ranks are therefore drawn once, without resampling n values. For a given
+/// values do not depend on the values. The ranks are therefore drawn once, instead of resampling n values. For a given
 /// sample size, the resamples are equal on every machine. The constructor evaluates `resamples` inverse beta functions;
 /// an interval costs O(resamples log resamples).
 class MedianBootstrap {

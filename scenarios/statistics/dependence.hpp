@@ -7,11 +7,11 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// Computes the statistical dependence between two numbers over a set of simulated runs.
+/// dependence.hpp computes the statistical dependence between two numbers over a set of simulated runs.
 namespace tumble::scenarios {
 
-/// Returns ranks from 1. Equal values get their mean rank. Infinite values are ranked like finite values. The rank of
-/// NaN is NaN.
+/// Returns the ranks of the values, starting from 1. Equal values get their mean rank. Infinite values are ranked like
+/// finite values. The rank of NaN is NaN.
 std::vector<double> mean_ranks(std::span<const double> values);
 
 struct Correlation {
@@ -20,8 +20,8 @@ struct Correlation {
   double chance = 1.0;            ///< p-value of the hypothesis rho = 0; 1 below ten pairs
 };
 
-/// Returns Spearman's rank correlation with interval and p-value. The interval is that of Bonett and Wright
-/// (Psychometrika 65:23, 2000), statistics.md (S16). The p-value follows from Student's distribution,
+/// Returns Spearman's rank correlation with confidence interval and p-value. The confidence interval is that of Bonett
+/// and Wright (Psychometrika 65:23, 2000), statistics.md (S16). The p-value follows from Student's distribution,
 /// equation (S17). Pairs with NaN are ignored. For fewer than four pairs or a constant variable, the interval is [-1,
 /// 1]. Throws BadInput if the lengths differ.
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
@@ -33,8 +33,8 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y by x from existing data; y may depend on other numbers. The index is
-/// the variance of class means over equally large classes of x, statistics.md (S18), minus a correction.
-/// The correction is the expected variance of class means without dependence, equation (S19). Source: Plischke,
+/// the variance of class means over equally large classes of x, statistics.md (S18), minus a correction. The correction
+/// is the expected variance of class means without dependence, equation (S19). The estimator is that of Plischke,
 /// Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each value is a class. If y contains ranks, the p-value
 /// of equation (S20) is that of the Kruskal-Wallis test.
 ///
@@ -42,12 +42,12 @@ struct FirstOrder {
 /// the lengths differ.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// Statistic of a class, with a 95 % interval. The interval of the mean is Student's, for finite values. The interval
-/// of the median follows from order statistics, which also rank infinite values. The interval of the fraction of ones
-/// is that of Clopper and Pearson.
+/// Centre selects the statistic of a class, with a 95 % interval. The interval of the mean is Student's, for finite
+/// values. The interval of the median follows from order statistics, which also rank infinite values. The interval of
+/// the fraction of ones is that of Clopper and Pearson.
 enum class Centre { mean, median, share };
 
-/// The simulated runs whose x is from `low` to `high`, both included.
+/// DependenceClass contains the simulated runs whose x is from `low` to `high`, both included.
 struct DependenceClass {
   double low = 0.0, high = 0.0;
   std::size_t draws = 0;

@@ -16,8 +16,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ranks of the non-zero differences by absolute value. Ranks are doubled, because twice the mean rank of equal values
-/// is an integer.
+/// SignedRanks contains the ranks of the non-zero differences by absolute value. Ranks are doubled, because twice the
+/// mean rank of equal values is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <span>
 
-/// Tests paired results of two methods on the same simulated runs. Each p-value is the probability of a result at least
-/// as extreme as the observed result if the methods do not differ. Differences that are NaN or zero are ignored.
-/// Infinite differences (one method failed) rank highest.
+/// paired.hpp tests paired results of two methods on the same simulated runs. Each p-value is the probability of a
+/// result at least as extreme as the observed result if the methods do not differ. Differences that are NaN or zero are
+/// ignored. Infinite differences (one method failed) rank highest.
 namespace tumble::scenarios {
 
-/// Above this number of differences, the signed-rank test uses the normal approximation.
+/// Above kExactPairsMax differences, the signed-rank test uses the normal approximation.
 inline constexpr std::size_t kExactPairsMax = 100;
 
 /// Returns the one-sided p-value of the signed-rank test (Wilcoxon, Biometrics Bulletin 1, 1945), equation (S5) of

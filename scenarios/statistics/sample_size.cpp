@@ -33,8 +33,7 @@ double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Returns the fraction of pairs of differences with a positive sum, statistics.md (S10). Zero sums count
-/// half.
+/// Returns the fraction of pairs of differences with a positive sum, statistics.md (S10). A sum of zero counts half.
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
@@ -61,7 +60,7 @@ double pairs_for_signed_rank(std::span<const double> differences, const Plan& pl
   const double share = static_cast<double>(counted.size()) / static_cast<double>(pairs);
   const double effect = positive_sums(std::move(counted)) - 0.5;
   if (effect == 0.0) return kInfinity;
-  // Number of pairs for the signed-rank test, statistics.md (S11).
+  // The number of pairs for the signed-rank test is statistics.md (S11).
   const double z = normal_quantile(1.0 - 0.5 * plan.risk) + normal_quantile(plan.power);
   return std::ceil(std::max(z * z / (3.0 * effect * effect), fewest(plan.risk)) / share);
 }
@@ -77,7 +76,7 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   const auto n = static_cast<double>(pairs);
   const double either = static_cast<double>(only_first + only_second) / n;
   const double difference = static_cast<double>(only_first - only_second) / n;
-  // Number of pairs for the test of failures, statistics.md (S12).
+  // The number of pairs for the test of failures is statistics.md (S12).
   const double root = normal_quantile(1.0 - 0.5 * plan.risk) * std::sqrt(either) +
                       normal_quantile(plan.power) * std::sqrt(either - difference * difference);
   return std::ceil(std::max(root * root / (difference * difference), fewest(plan.risk) / either));

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 double spent_by(double risk, double share) {
   if (!(share > 0.0)) return 0.0;
   const boost::math::normal normal;
-  // Spent part of the risk, statistics.md (S13).
+  // The part of the risk that is spent so far is statistics.md (S13).
   return 2.0 * cdf(complement(normal, quantile(complement(normal, 0.25 * risk)) / std::sqrt(share)));
 }
 
@@ -40,8 +40,7 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// Updates the distribution of the sign count, statistics.md (S14). Each pair adds one positive sign or no
-/// sign.
+/// Updates the distribution of the sign count, statistics.md (S14). Each pair adds one positive sign or no sign.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);

@@ -25,7 +25,7 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// Position of a quantile in a sorted sample: between two neighbouring values, or at one value.
+/// RankPlace is the position of a quantile in a sorted sample: between two neighbouring values, or at one value.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -71,7 +71,7 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 namespace {
 
 /// Returns the largest rank r, counted from 1, for which P(fewer than r of n values are below the median) <= kTail.
-/// Returns 0 if there is no such rank.
+/// Returns 0 if no rank satisfies this condition.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {
@@ -134,7 +134,7 @@ Interval share_interval(std::int64_t count, std::int64_t total) {
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);
-  // Clopper-Pearson interval, statistics.md (S24).
+  // The Clopper-Pearson interval is statistics.md (S24).
   return {k / n, count == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, kTail),
           count == total ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, kTail)};
 }

@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// A statistic and its 95 % interval.
+/// Interval is a statistic with its 95 % confidence interval.
 struct Interval {
   double value, low, high;
 };
@@ -17,7 +17,7 @@ struct Interval {
 /// Infinite values are ranked like finite values, so that failures count as worst and a quantile may be infinite.
 /// `share` is the probability of the quantile, in [0, 1].
 double quantile(std::span<const double> values, double share);
-/// Returns the quantile of all values. Any value that is not finite gives NaN. Returns empty if there are no values.
+/// Returns the quantile of all values, NaN if any value is not finite, or nothing if there are no values.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
 /// Writes the quantile to `value`. If there are no values, returns false and leaves `value` unchanged.
 bool quantile_of(std::span<const double> values, double share, double& value);
@@ -30,14 +30,14 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
   return quantile(values, 0.5);
 }
 
-/// Returns the median with its distribution-free interval from order statistics (binomial). The ends are infinite if
-/// there are too few values.
+/// Returns the median with its distribution-free confidence interval from order statistics (binomial). The ends of the
+/// interval are infinite if there are too few values.
 Interval median_interval(std::span<const double> values);
 
-/// Returns the fraction of successes with its exact interval (Clopper and Pearson).
+/// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Returns the values plus one `worst` for each failed run. All statistics of a metric use the extended list. If
+/// Returns the values plus one `worst` for each failed run. All statistics of a metric use this extended list. If
 /// `worst` is NaN, nothing is added (scenarios/scoring/metric.hpp, `worst_value`).
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 

@@ -21,7 +21,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Values of the two methods on one simulated run.
+/// ValuePair contains the values of two methods on one simulated run.
 struct ValuePair {
   double own, other;
 };
@@ -42,8 +42,8 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// Returns the simulated runs on which each method has a value or failed. If there is no worst value, failed runs are
-/// omitted.
+/// Returns the simulated runs on which each method has a value or failed. Failed runs are omitted if the metric has no
+/// worst value.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -139,7 +139,7 @@ class Comparing {
   }
 
   /// Compares failures on the simulated runs of both methods. `seeds` contains all seeds, and `failed` the seeds of
-  /// failed runs. Both lists are ascending.
+  /// failed runs. The lists `seeds` and `failed` are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -185,8 +185,8 @@ class Comparing {
     return found->second;
   }
 
-  /// Returns the plan of one test in a table. The risk is divided by the number of tests (Holm's bound for the smallest
-  /// p-value).
+  /// Returns the sample size plan of one test in a table. The risk is divided by the number of tests (Holm's bound for
+  /// the smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

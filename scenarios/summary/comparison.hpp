@@ -9,19 +9,20 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// Compares two methods on the same simulated runs: size and significance of the difference (docs/maths/statistics.md).
+/// comparison.hpp compares two methods on the same simulated runs: size and significance of the difference
+/// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Largest accepted deficit of a method (non-inferiority margin). The margin is in the metric's unit, or a fraction of
-/// the reference method's value on the same simulated run.
+/// Margin is the largest accepted deficit of a method (non-inferiority margin). The margin is in the metric's unit, or
+/// a fraction of the reference method's value on the same simulated run.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is negative if `own`
-/// is worse by less than the margin. A negative margin requires an improvement. The result is infinite if only `own`
-/// belongs to a failed run, and 0 if both runs failed.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The difference is negative if
+/// `own` is worse by less than the margin. A negative margin requires an improvement. The difference is infinite if
+/// only `own` belongs to a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
@@ -36,7 +37,7 @@ struct ComparisonOptions {
 enum class Finding { undecided, better, worse };
 const char* to_string(Finding finding);
 
-/// The scenario, the kind and the two methods of a comparison.
+/// Contest names the scenario, the kind and the two methods of a comparison.
 struct Contest {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -48,8 +49,8 @@ inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-/// Comparison of one metric over the simulated runs on which both methods have a value. Failed runs get the worst value
-/// (`worst_value`). If both runs failed or are equal, neither method is better.
+/// MetricComparison compares one metric over the simulated runs on which both methods have a value. Failed runs get the
+/// worst value (`worst_value`). If both runs failed or are equal, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
@@ -67,8 +68,8 @@ struct MetricComparison {
   double pairs_needed = 0.0;  ///< number of pairs for the risk divided by the number of tests; may be infinite
 };
 
-/// Comparison of failures. A simulated run fails if its status is not ok or a verdict fails. A failed run counts as a
-/// failed verdict.
+/// FailureComparison compares the failures of two methods. A simulated run fails if its status is not ok or a verdict
+/// fails. A failed run counts as a failed verdict.
 struct FailureComparison {
   Contest contest;
   std::string what;  ///< "not ok", "map_failed"

@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// Measures by which whole simulated runs are sorted into bins (scenarios/sweep/motion_values.hpp).
+/// The measures in kDrawMeasures sort whole simulated runs into bins (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// One outcome with its scores for curves and a flag for failure.
+/// Run is one outcome with its scores for curves and a flag for failure.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
@@ -35,8 +35,8 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds a score. Index `place` is tried first, because the method's previous run had the score at this index.
-  /// Updates `place`.
+  /// Finds a score by its metric. The function tries index `place` first, because the method's previous run had the
+  /// score at this index, and updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -46,13 +46,13 @@ struct Run {
   }
 };
 
-/// Runs of one kind and scenario at one setting, by method, sorted by seed.
+/// Runs contains the runs of one kind and scenario at one setting, by method, sorted by seed.
 using Runs = std::map<std::string, std::vector<Run>, std::less<>>;
 using RunsBySetting = std::map<std::tuple<std::string, std::string, Kind>, std::map<double, Runs>>;
-/// A selection of runs, by method.
+/// PickedRuns is a selection of runs, by method.
 using PickedRuns = std::map<std::string, std::vector<const Run*>>;
 
-/// Cached properties of a metric.
+/// Use contains cached properties of a metric.
 struct Use {
   bool shown, verdict;
 };
@@ -112,7 +112,7 @@ PickedRuns all_of(const Runs& runs) {
 }
 
 /// Returns true if any method has a value of the metric on the simulated run `seed`. If no method has a value, failures
-/// on the run are ignored.
+/// on this run are ignored.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -165,7 +165,7 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the stored copy of a metric name. Adds the name if no score has it.
+/// Returns the stored copy of a metric name. The function adds the name if no score has it.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -193,7 +193,7 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins by axis and metric, ascending. Each bin has its full metric name.
+/// Bins contains bins by axis and metric, in ascending order. Each bin has its full metric name.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
@@ -237,8 +237,8 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Sorts simulated runs into bins of equal counts by a measure. Each bin has the median of the measure and ascending
-/// seeds.
+/// Sorts simulated runs into bins of equal counts by a measure. Each bin contains the median of the measure and
+/// ascending seeds.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {

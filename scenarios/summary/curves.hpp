@@ -10,11 +10,11 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Computes curves of a metric over a varied number or a measure of the simulated runs.
+/// curves.hpp computes curves of a metric over a varied number or a measure of the simulated runs.
 namespace tumble::scenarios {
 
-/// One method at one x value of a curve, summarised over the simulated runs. Failed outcomes rank worst, so quantiles
-/// may be infinite. Quantiles are NaN if no run has a value.
+/// CurvePoint is one method at one x value of a curve, summarised over the simulated runs. Failed outcomes rank worst,
+/// so quantiles may be infinite. Quantiles are NaN if no run has a value.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"; empty for a set number
@@ -30,7 +30,8 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// Meaning of x: a number that the suite varies, a measure of binned samples, or a measure of whole simulated runs.
+  /// Source is the meaning of x: a number that the suite varies, a measure of binned samples, or a measure of whole
+  /// simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
   std::string axis;  ///< varied key or name of the measure; ends in its unit
@@ -38,17 +39,18 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// For samples: the labels of all bins of the measure, including empty bins. The point x belongs to bins[x - 1].
+  /// For binned samples: the labels of all bins of the measure, including empty bins. The point x belongs to bins[x -
+  /// 1].
   std::vector<std::string> bins = {};
 };
 
 /// Returns every curve in the results. Each scenario and headline metric has a curve for each varied number. Each
 /// measure with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve. Each clipping measure of the
 /// simulated runs has a curve with at least three bins of equal counts. A run counts as failed if its status is not
-/// `ok` or its map failed. O(number of scores * log).
+/// `ok` or its map failed. Cost: O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
-/// Returns every curve from the results and the motion values `draws`. Also computes `summary`, in a single pass over
-/// the results.
+/// Returns every curve from the results and the motion values `draws`. The function also computes `summary`, in a
+/// single pass over the results.
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

@@ -9,10 +9,10 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// Chooses which simulated runs of a sweep are shown as examples, from the results only.
+/// example_choice.hpp chooses which simulated runs of a sweep are shown as examples, from the results only.
 namespace tumble::scenarios {
 
-/// A scenario of the sweep, in the suite's order.
+/// ExampleCandidate is a scenario of the sweep, in the suite's order.
 struct ExampleCandidate {
   std::string scenario, robot;
 };
@@ -24,8 +24,9 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the simulated run with the median headline score of the scenario's baseline. Uses the first kind of method
-/// except attitude, and the first headline metric with a value. Returns false if there is no headline score.
+/// Finds the simulated run with the median headline score of the scenario's baseline. The headline score is the first
+/// headline metric with a value, of the first kind of method except attitude. Returns false if there is no headline
+/// score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
 /// Returns at most `count` typical simulated runs, in the order of the candidates. The first scenario of each robot
@@ -33,7 +34,7 @@ bool typical_seed(const Summary& summary, const std::string& scenario, std::uint
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// A simulated run on which methods failed.
+/// FailedOn is a simulated run on which methods failed.
 struct FailedOn {
   ExampleDraw draw;
   std::size_t methods = 0;  ///< failed methods that need no truth
@@ -51,8 +52,7 @@ std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const
 /// Returns the scored outcomes of a simulated run, without points of curves.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// Returns a digest of the shown outcomes and their build. If an example has a different digest, it belongs to other
-/// results.
+/// Returns a digest of the shown outcomes and their build. An example with a different digest belongs to other results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 
 }  // namespace tumble::scenarios

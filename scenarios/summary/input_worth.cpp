@@ -68,7 +68,7 @@ bool matters_more(const InputWorth& a, const InputWorth& b) {
   return a.chance < b.chance;
 }
 
-/// Evaluates the inputs over the simulated runs of one scenario. An empty `scenario` selects all runs.
+/// Evaluates the true inputs over the simulated runs of one scenario. An empty `scenario` selects all runs.
 std::vector<InputWorth> worth_within(std::span<const DrawTriage> draws, const MetricInfo& info,
                                      const std::string& scenario) {
   std::map<std::string, InputPairs> inputs;

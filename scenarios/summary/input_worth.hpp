@@ -9,11 +9,11 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/suite_triage.hpp"
 
-/// Finds which true input improves a method most, over many simulated runs (docs/maths/statistics.md).
+/// input_worth.hpp finds which true input improves a method most, over many simulated runs (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Effect of replacing one input by its truth. Only simulated runs are counted in which the replacement changed the
-/// input.
+/// InputWorth is the effect of replacing one input by its truth. Only simulated runs count in which the replacement
+/// changed the input.
 struct InputWorth {
   std::string scenario;  ///< empty: all scenarios together
   std::string input, doc;
@@ -30,8 +30,8 @@ struct InputWorth {
   double corrected = 1.0;  ///< corrected by Holm, over all rows
 };
 
-/// Evaluates the inputs for each scenario, and for all scenarios together if there are several. The result is sorted by
-/// the fraction of removed failures, then by p-value. Simulated runs without triage results are omitted.
+/// Evaluates the true inputs for each scenario, and for all scenarios together if there are several. The list is sorted
+/// by the fraction of removed failures, then by p-value. Simulated runs without triage results are omitted.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

@@ -11,14 +11,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// Margin of the grid around the points of the simulated runs, in decades.
+/// kMargin is the margin of the grid around the points of the simulated runs, in decades.
 constexpr double kMargin = 0.25;
 
 struct Decades {
   double rate, force;
 };
 
-/// One axis of the grid. Its numbers are in decades.
+/// GridAxis is one axis of the grid, with numbers in decades.
 struct GridAxis {
   double low = 0.0, step = 1.0;
   double width = 0.0;  ///< kernel width in cells
@@ -86,8 +86,8 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   return out;
 }
 
-/// Returns the maxima from the two publications on the rig by Deschênes and others. The earlier publication reports
-/// rates and forces. The later publication reports forces in its abstract, and an angular acceleration.
+/// Returns the maxima from the two publications on the rig by Deschênes and others. The ICRA 2024 paper reports rates
+/// and forces. The CRV 2021 paper reports forces in its abstract, and an angular acceleration.
 std::vector<PublishedExtreme> published() {
   return {{"rig, 32 tumbles down a hill",
            "Deschênes and others, ICRA 2024: up to 18.6 rad/s and 157.8 m/s² (the accelerometer has a range of 16 g)",

@@ -8,28 +8,29 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// Computes the distribution of a sweep's simulated runs over maximum rate and maximum specific force.
+/// motion_map.hpp computes the distribution of a sweep's simulated runs over maximum rate and maximum specific force.
 namespace tumble::scenarios {
 
-/// Maximum true rate of the body, and maximum unclipped specific force of the primary IMU, in one simulated run.
+/// MotionPoint contains the maximum true rate of the body and the maximum unclipped specific force of the primary IMU
+/// in one simulated run.
 struct MotionPoint {
   double rate_rad_s = 0.0, force_m_s2 = 0.0;
 };
 
-/// The simulated runs of one scenario.
+/// MotionCloud contains the simulated runs of one scenario.
 struct MotionCloud {
   std::string scenario;
   std::size_t draws = 0;            ///< runs with both numbers above 0
   std::vector<MotionPoint> points;  ///< at most `kPointsMax` of them, evenly spaced in draw order
 };
 
-/// Maxima reported by a published campaign. NaN means not reported.
+/// PublishedExtreme contains maxima that a published campaign reports; NaN means not reported.
 struct PublishedExtreme {
   std::string campaign, source;
   double rate_rad_s, force_m_s2;
 };
 
-/// Density of all simulated runs over a grid with logarithmic axes, as a kernel density estimate.
+/// MotionMap is the density of all simulated runs over a grid with logarithmic axes, as a kernel density estimate.
 struct MotionMap {
   static constexpr std::size_t kCells = 48;  ///< per axis
   static constexpr std::size_t kPointsMax = 500;
@@ -43,7 +44,7 @@ struct MotionMap {
 /// Counts simulated runs in cells, then smooths the counts along both axes by a Gaussian of Scott's width in
 /// logarithms, with a width of at least half a cell. Scott's width is sigma n^(-1/6) (Multivariate Density Estimation,
 /// 1992, section 6.3). The part of a kernel beyond the grid is redistributed. The two maxima of a run need not occur at
-/// the same time. O(draws + cells^(3/2)).
+/// the same time. Cost: O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// States which values a quantity is computed from: one value per run, the fraction of runs with a property, or all
-/// clipped samples of all runs.
+/// Over states which values a quantity is computed from: one value per run, the fraction of runs with a property, or
+/// all clipped samples of all runs.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// A quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the
-/// project's target. The plot shades the range from `low` to `high`; equal values give a line.
+/// Quantity is a quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024)
+/// and the project's target. The plot shades the range from `low` to `high`; equal values give a line.
 struct Quantity {
   const char* metric;
   const char* name;

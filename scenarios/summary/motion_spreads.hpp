@@ -8,17 +8,17 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// Compares simulated motions with the published campaign of the tumbling rig.
+/// motion_spreads.hpp compares simulated motions with the published campaign of the tumbling rig.
 namespace tumble::scenarios {
 
-/// One quantity of one scenario over its simulated runs. Runs without a value are omitted.
+/// Spread is one quantity of one scenario over its simulated runs. Simulated runs without a value are omitted.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< text about the published value; empty if none
-  /// Limits of the published range in `unit`. Equal limits mean one number; NaN means no published value.
+  /// Limits of the published range in `unit`; equal limits mean one number, and NaN means no published value.
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< from SI to `unit`
@@ -27,7 +27,8 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// Source of the `published` values. In the report, this text follows the words "compared with".
+/// kPublishedMotion is the source of the `published` values. The report shows kPublishedMotion after the words
+/// "compared with".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 

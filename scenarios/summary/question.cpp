@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in a method's name, for example "rate" for "rate/tumble". Empty for a name without a kind.
+/// Returns the kind in a method's name, for example "rate" for "rate/tumble", or an empty text.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
@@ -40,11 +40,11 @@ void require_contest(const std::string& metric, const std::string& kind) {
                                to_string(own->kind), kind));
 }
 
-/// Values of the two methods on one simulated run. A failed run has the worst value.
+/// AnswerPair contains the values of the two methods on one simulated run. A failed run has the worst value.
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// Pairs of values by scenario, then by seed.
+/// AnswerPairs contains pairs of values by scenario, then by seed.
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {

@@ -9,14 +9,14 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Stops a sweep early. While simulated runs complete, the functions test whether one method is better than another
-/// (docs/maths/statistics.md, "Sequential test").
+/// question.hpp stops a sweep over scenarios early. While simulated runs complete, the functions test whether one
+/// method is better than another (docs/maths/statistics.md, "Sequential test").
 namespace tumble::scenarios {
 
-/// Key of the note that stores the question as text, written by `describe`.
+/// kQuestionNote is the key of the note that stores the question as text, written by `describe`.
 inline constexpr const char* kQuestionNote = "until";
 
-/// The question whether `method` is better than `against` in `metric` by more than the margin.
+/// Question asks whether `method` is better than `against` in `metric` by more than the margin.
 struct Question {
   std::string method, against;  ///< "rate/tumble"; both methods are of one kind
   std::string metric;
@@ -26,14 +26,14 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which the results are analysed, ascending. The last analysis is after the sweep's last
-  /// seed.
+  /// Returns the seeds after which the results are analysed, ascending. The last interim analysis is after the sweep's
+  /// last seed.
   std::vector<std::uint64_t> look_seeds() const;
   /// Returns the question as one line of text. Equal questions give equal lines.
   std::string describe() const;
 };
 
-/// Answer to the question for one scenario.
+/// Answer is the answer to the question for one scenario.
 struct Answer {
   std::string scenario;
   Finding finding = Finding::undecided;  ///< with a margin, `worse` means not better by the margin

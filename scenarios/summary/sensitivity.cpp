@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Scores of the simulated runs in one table row, as values and as badness.
+/// Scored contains the scores of the simulated runs in one table row, as values and as badness.
 struct Scored {
   std::vector<std::uint64_t> seeds;
   std::vector<double> values, badness;
@@ -26,7 +26,7 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
     out.seeds.push_back(each.seed);
     // For a verdict, a failed run counts as a failed verdict.
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
-    // For verdicts and costs, larger values count as worse.
+    // Larger values of verdicts and costs count as worse.
     const bool contested = info.sense != Sense::none;
     out.badness.push_back(contested ? how_bad(info, each.value) : each.value);
   }

@@ -13,13 +13,15 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
-/// Computes how a method's scores depend on each random number of its simulated runs (docs/maths/statistics.md).
+/// sensitivity.hpp computes how a method's scores depend on each random number of its simulated runs
+/// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Largest corrected p-value of a significant influence.
+/// kInfluenceRisk is the largest corrected p-value of a significant influence.
 inline constexpr double kInfluenceRisk = 0.05;
 
-/// Random numbers of a scenario's simulated runs by name. Each list is sorted by seed.
+/// NumbersOfDraws contains the random numbers of a scenario's simulated runs by name. Each list of numbers is sorted by
+/// seed.
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
 /// Returns the scenario's random numbers for the summary's seeds.
@@ -28,7 +30,7 @@ NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario
 /// share their causes.
 NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::string& scenario);
 
-/// Influence of one number on one score.
+/// Influence is the influence of one number on one score.
 struct Influence {
   std::string number;
   Correlation correlation;  ///< correlation with the badness; positive if larger numbers are worse
@@ -39,12 +41,12 @@ struct Influence {
   double median_low = 0.0, median_high = 0.0;
   /// Partial dependence: median of the score, or fraction of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};
-  /// Returns the larger of the first-order index and the square of the rank correlation. Influences are sorted by their
-  /// strength.
+  /// Returns the larger of the first-order index and the square of the rank correlation. The list of influences is
+  /// sorted by this strength.
   double strength() const;
 };
 
-/// Sensitivity of one metric of one method on one scenario. For failures, `metric` is "not ok".
+/// Sensitivity is the sensitivity of one metric of one method on one scenario. For failures, `metric` is "not ok".
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -58,8 +60,8 @@ struct SensitivityOptions {
   std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
 };
 
-/// kSensitivityDrawsMin is the minimum number of simulated runs for a row of the table. kSensitivityFailuresMin is the
-/// minimum number of failures, and of successes, for the row "not ok". Below 24 simulated runs, only the rank
+/// kSensitivityDrawsMin is the minimum number of simulated runs for a row of the table; kSensitivityFailuresMin is the
+/// minimum number of failures, and of successes, for the row "not ok". With fewer than 24 simulated runs, only the rank
 /// correlation is used.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 

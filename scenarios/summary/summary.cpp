@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the position of a metric in the registry. Unknown names come last.
+/// Returns the position of a metric in the registry. Unknown metrics come last.
 std::size_t metric_rank(const std::string& name) {
   const auto all = metrics();
   return static_cast<std::size_t>(
@@ -29,8 +29,8 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the registered baseline if the results contain it, else the first registered method that does not need the
-/// truth.
+/// Returns the registered baseline if the results contain it, otherwise the first registered method that does not need
+/// the truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
@@ -93,7 +93,7 @@ void place_failures(Section& section) {
   }
 }
 
-/// Sorts values by seed.
+/// Sorts the values of a metric by seed.
 void sort_by_seed(MetricSummary& metric) {
   if (std::is_sorted(metric.seeds.begin(), metric.seeds.end())) return;
   std::vector<RankedValue> sorted = ranked_values(metric, std::nan(""));
@@ -104,7 +104,7 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// Data of one method on one scenario. `places` finds each metric by the pointer to its name.
+/// Gathered contains the data of one method on one scenario. `places` finds each metric by the pointer to its name.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;
@@ -136,7 +136,7 @@ struct Gathered {
   }
 };
 
-/// Sections by scenario and kind, then by method.
+/// GatheredSections contains sections by scenario and kind, then by method.
 using GatheredSections = std::map<std::pair<std::string, Kind>, std::map<std::string, Gathered, std::less<>>>;
 
 GatheredSections gather(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside) {

@@ -19,18 +19,18 @@ inline MetricStyle metric_style(const std::string& metric) {
   return style_of(metric_info(metric).unit);
 }
 
-/// Returns the position of a method in the registry. Unknown names come last.
+/// Returns the position of a method in the registry. Unknown methods come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
-/// Number of simulated runs on which one method was better than the baseline, among the runs on which both methods have
-/// values.
+/// Wins counts the simulated runs on which one method was better than the baseline, among the runs on which both
+/// methods have values.
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// One metric of one method over all simulated runs of a scenario. Only `ok` outcomes have values. Failed outcomes rank
-/// worst in median, quantile and pairs, so the median is infinite if half of the runs fail. Simulated runs for which no
-/// method has a value do not count.
+/// MetricSummary summarises one metric of one method over all simulated runs of a scenario. Only outcomes with status
+/// `ok` have values. Failed outcomes rank worst in median, quantile and pairs, so the median is infinite if half of the
+/// runs fail. Simulated runs for which no method has a value do not count.
 struct MetricSummary {
   Interval centre{};  ///< median, or share for a verdict; with the 95 % interval
   double quantile_95 = 0.0;
@@ -51,7 +51,7 @@ struct MethodSummary {
   const MetricSummary* find(const std::string& metric) const;
 };
 
-/// All methods of one kind on one scenario.
+/// Section contains all methods of one kind on one scenario.
 struct Section {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -67,7 +67,7 @@ struct Summary {
   std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
 };
 
-/// The value of one simulated run. A failed run has the worst value.
+/// RankedValue is the value of one simulated run; a failed run has the worst value.
 struct RankedValue {
   std::uint64_t seed;
   double value;
@@ -78,8 +78,8 @@ std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst
 
 /// Summarises the results in O(number of scores * log).
 Summary summarize(const Results& results);
-/// Summarises the results. Also passes each unmodified outcome to `beside` while reading, which avoids a second pass
-/// over the results.
+/// Summarises the results. The function also passes each unmodified outcome to `beside` while reading, which avoids a
+/// second pass over the results.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Returns the path of the lock file. Symbolic links are resolved, so that each database has exactly one lock.
+/// Returns the path of the lock file. The path has symbolic links resolved, so that each database has exactly one lock.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);
@@ -52,7 +52,7 @@ std::string who_holds(int fd) {
   return line.empty() ? "another process" : line;
 }
 
-/// Returns true if the path still refers to the open file. The previous owner may have removed the path after this
+/// Returns whether the path still refers to the open lock file. The previous owner may have removed the path after this
 /// process opened the file.
 bool is_at(const fs::path& path, int fd) {
   struct stat open {

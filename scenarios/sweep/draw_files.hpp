@@ -11,13 +11,13 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// Writes the files that the process of a simulated run stores on disk.
+/// draw_files.hpp writes the files that the process of a simulated run stores on disk.
 namespace tumble::scenarios {
 
-/// Name of the file with the command that reproduces a kept run.
+/// kDrawCommand is the name of the file with the command that reproduces a kept run.
 inline constexpr const char* kDrawCommand = "command";
 
-/// States whether and where the files of a simulated run are kept.
+/// Keeping states whether and where the files of a simulated run are kept.
 struct Keeping {
   enum class When { never, if_failed, always };
   When when = When::never;
@@ -27,15 +27,16 @@ struct Keeping {
   bool lidars = false;           ///< any method of the run reads lidars, in this or another task
 };
 
-/// Writes the files of a simulated run that is kept. A write error does not change the outcomes of the run.
+/// DrawFiles writes the files of a simulated run that is kept. A write error leaves the outcomes of the run unchanged.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
 
   /// Returns the folder in which a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written,
-  /// removes all files instead. Existing estimates of other methods from equal sensor data remain.
+  /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written, the
+  /// function removes all files instead. Stored estimates of other methods remain if they were computed from equal
+  /// sensor data.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }

@@ -45,8 +45,8 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// Writes an estimate. A write failure does not change the outcome; KeptDraws::holds detects the missing file. Returns
-/// the error in one line, or an empty text if there is no error.
+/// Writes an estimate to the folder of a run. A write failure leaves the outcome unchanged; KeptDraws::holds detects
+/// the missing file. Returns the error in one line, or an empty text if there is no error.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -75,7 +75,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe. Returns false at the deadline.
+// Reads until the process closes its pipe, and returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -92,8 +92,8 @@ bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Returns whether the task simulates lidars. Methods of kind `rate` read no lidar. Kept recordings contain lidars if
-/// any method of the run reads lidars.
+/// Returns whether the task simulates lidars. Methods of kind `rate` never read a lidar. Kept recordings contain lidars
+/// if any method of the run reads lidars.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -104,7 +104,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// A simulated run with sensor data that a setting modified. Empty if there is no setting.
+/// Given is a simulated run with sensor data that a setting modified; empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -140,7 +140,7 @@ void give_up(const DrawTask& task, OutcomeStatus status, const std::string& mess
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// A simulated or recorded run. The true surface for map scores is included if a method builds maps.
+/// MadeDraw is a simulated or recorded run. The run includes the true surface for map scores if a method builds maps.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -165,7 +165,8 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Simulates or reads the run and reports its motion values. On failure, reports the reason and returns null.
+/// Simulates or reads the run and reports its motion values. On failure, the function reports the reason and returns
+/// null.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -259,8 +260,7 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Memory that the simulation freed is returned to the system. Otherwise, the freed memory would hide the method's
-  // memory use.
+  // Memory that the simulation freed is returned to the system. Unreturned memory would hide the method's memory use.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

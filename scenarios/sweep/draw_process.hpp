@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// One simulation or recording, and the methods to run on it.
+/// DrawTask is one simulation or recording, with the methods to run on it.
 struct DrawTask {
   std::string name;                         ///< name of the scenario or recording
   const Scenario* scenario = nullptr;       ///< set for a simulation
@@ -27,9 +27,9 @@ struct DrawTask {
   Keeping keeping;  ///< only for plain settings
 };
 
-/// Longest wait for messages from workers before deadlines are checked.
+/// kPollMs is the longest wait for messages from workers before deadlines are checked.
 inline constexpr int kPollMs = 200;
-/// Time limit of a simulation, in multiples of the time limit of one method.
+/// kSimulateTimeouts is the time limit of a simulation, in multiples of the time limit of one method.
 inline constexpr double kSimulateTimeouts = 2.0;
 
 /// Returns the status of a method whose process ended without a result.
@@ -39,7 +39,7 @@ OutcomeStatus ended_as(const Process::End& end);
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
 /// Simulates one scenario and seed, without lidars if no method reads them, and runs the methods. Writes results to
-/// `fd`, one message per line. The message is an outcome after each method, or a rejection if the simulation is
+/// `fd`, one message per line. A message is an outcome after each method, or a rejection if the simulation is
 /// impossible. The caller writes the final empty message. `recordings_unseen` has the meaning of
 /// SweepOptions::recordings_unseen. The function runs in a worker process.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the next line without its newline. Returns empty if the other end is closed.
+/// Returns the next line without its newline, or nothing if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -27,7 +27,7 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// Runs in the worker process. Reads one line per task until an empty line.
+/// Runs in the worker process, and reads one line per task until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   if (!terms.temporary.empty()) setenv("TMPDIR", terms.temporary.c_str(), 1);

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// Parameters of a worker.
+/// WorkerTerms contains the parameters of a worker process.
 struct WorkerTerms {
   const DataRoot& data;
   const SweepPlan& plan;
@@ -23,9 +23,9 @@ struct WorkerTerms {
   std::filesystem::path temporary = {};
 };
 
-/// A process that executes one simulated run after another. The process communicates in lines of text, so that no state
-/// of a run remains for the next run. The process ends after `kDrawsPerWorker` runs, or after a run with a child
-/// process that did not end normally.
+/// DrawWorker is a process that executes one simulated run after another. The worker process communicates in lines of
+/// text, so that no state of a run remains for the next run. The worker process ends after `kDrawsPerWorker` runs, or
+/// after a run with a child process that ended abnormally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;
@@ -44,10 +44,11 @@ class DrawWorker {
   /// Returns the current task without the methods that already have results.
   const DrawTask& draw() const { return draw_; }
 
-  /// Appends new messages. After the last message of a run, the worker is idle. Returns false if the process has ended.
+  /// Appends new messages of the worker to `said`. After the last message of a run, the worker is idle. Returns false
+  /// if the process has ended.
   bool hear(std::vector<Message>& said);
   void kill() { process_.kill(); }
-  /// Ends an idle worker and waits for the end of the process.
+  /// Ends an idle worker process and waits for its end.
   Process::End dismiss();
 
  private:

@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// One simulated run or recording. Its outcomes share this struct.
+/// SimulatedDraw is one simulated run or recording. All outcomes of the run share this struct.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -22,8 +22,8 @@ struct SimulatedDraw {
   bool has_truth = true;  ///< recordings without truth are estimated but not scored
 };
 
-/// States whether the lidars are simulated. The simulation of lidars is slow, and methods of kind `rate` do not read
-/// lidars.
+/// Lidars states whether the lidars are simulated. The simulation of lidars is slow, and methods of kind `rate` do not
+/// read lidars.
 enum class Lidars { simulated, left_out };
 
 /// Draws the random numbers, builds the situation and simulates it, each once. Without lidars, motion and IMUs are
@@ -43,8 +43,8 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 /// Throws BadInput with the reason if a method does not apply to a scenario.
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed. Otherwise,
-/// `outcome` stays ok and can be scored. The first score is the estimate's CPU time.
+/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed. Without an error,
+/// `outcome` stays ok and can be scored. The first score of a method is the estimate's CPU time.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
 /// Adds verdict and scores of a completed estimate. `surface` may be null.

@@ -35,7 +35,8 @@ double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change from `before` to `now`. The change is a log ratio or a difference, as the metric states.
+/// Returns the change from the accepted value `before` to the new value `now`. The change is a log ratio or a
+/// difference, as the metric states.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -56,8 +57,8 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// Pairs of accepted and new values of a metric. Runs without an accepted value are omitted. Runs that are ok in both
-/// results, but without a new value, are in `lost`.
+/// GatePairs contains pairs of accepted and new values of a metric. Runs without an accepted value are omitted. Runs
+/// that are ok in both results, but without a new value, are in `lost`.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -89,7 +90,8 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-/// Checks that no run is worse than the worst accepted run times `GatePolicy::worst`. The fault names the failing run.
+/// Checks that no run is worse than the worst accepted run times `GatePolicy::worst`. The fault message names the
+/// failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -107,8 +109,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests the median of a metric, and adds the shift and any fault to the result. Each metric counts as one test.
-/// Two-sided metrics use twice the smaller p-value.
+/// Tests the median of a metric, and adds the shift and any fault to the result. Each metric counts as one statistical
+/// test. Two-sided metrics use twice the smaller p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -198,7 +200,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// One metric of a method over all scenarios that have the metric.
+/// Pooled is one metric of a method over all scenarios that have the metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;

@@ -17,22 +17,22 @@
 /// A simulated run has equal sensor data in both results, so differences between seeds cancel in each pair. The gate
 /// makes the following checks for each scenario and method of the accepted results.
 ///
-/// Outcomes: a run that was ok must be ok again, and no verdict (`map_failed`) may change to 1. Presence: an ok outcome
-/// must still have every metric of the accepted outcome.
+/// Check of outcomes: a run that was ok must be ok again, and no verdict (`map_failed`) may change to 1. Check of
+/// presence: an ok outcome must still have every metric of the accepted outcome.
 ///
-/// Median of each gate metric (metric.hpp, `held_metrics`): the pairs must not shift for the worse by more than the
-/// margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
+/// Check of the median of each gate metric (metric.hpp, `held_metrics`): the pairs must not become worse by more than
+/// the margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
 /// (`Compared`). The exact signed-rank test (statistics/paired.hpp) is applied to the differences minus the margin.
 /// Metrics with a target are checked on both sides, so a covariance that becomes too small also fails. If the new
 /// results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni).
 ///
-/// Median of a metric over all scenarios of a method: this test detects shifts that are too small for one scenario.
+/// Check of the median over all scenarios of a method: this test detects shifts that are too small for one scenario.
 ///
-/// Worst run: its value may be at most `worst` times the accepted worst value. The tests of the median do not detect
-/// single bad runs.
+/// Check of the worst run: its value may be at most `worst` times the accepted worst value. The tests of the median
+/// cannot detect single bad runs.
 namespace tumble::scenarios {
 
-/// Results of one method, in the order of `GateRun::seeds`.
+/// MethodRun contains the results of one method, in the order of `GateRun::seeds`.
 struct MethodRun {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -59,8 +59,8 @@ struct GatePolicy {
   double worst = 2.0;           ///< allowed factor on the accepted worst draw; at least 1
 };
 
-/// The accepted results of a suite. The file scenarios/gates/SUITE.yaml states the policy, and SUITE.csv contains the
-/// results. The two files of a gate are kept in git.
+/// Gate contains the accepted results of a suite. The file scenarios/gates/SUITE.yaml states the policy, and SUITE.csv
+/// contains the results. The two files of a gate are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -74,13 +74,14 @@ std::vector<std::string> gate_names(const DataRoot& data);
 /// Throws BadInput also for an unknown key, kind, method, metric or status, a wrong row length, or a number out of
 /// bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
-/// These functions return policy and results as text that `load_gate` reads. Numbers are restored exactly.
+/// These functions return the policy and the results of a gate as text that `load_gate` reads. Numbers are restored
+/// exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// One result of the gate, for one scenario or all scenarios. The result is about one metric, or about the outcomes of
-/// a method (no metric).
+/// GateResult is one result of the gate, for one scenario or all scenarios. A GateResult is about one metric, or about
+/// the outcomes of a method (no metric).
 struct GateResult {
   std::string scenario;  ///< empty: all scenarios that have the metric
   Kind kind = Kind::rate;
@@ -99,8 +100,8 @@ struct GateResult {
 /// Compares new results with the gate. Throws BadInput if the seeds differ or the accepted results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Such results cannot be
-/// accepted.
+/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Results without an ok outcome
+/// must not become accepted results.
 void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

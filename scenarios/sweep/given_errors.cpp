@@ -51,7 +51,8 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU without changing its jitter. The shift replaces the time offset in the scenario.
+/// Shifts the clock of the primary IMU without changing its jitter. The shift of the clock replaces the time offset in
+/// the scenario.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
@@ -76,7 +77,7 @@ void state_no_rail(sim::ImuRecord& imu) {
 }
 
 /// Replaces clipped readings by unclipped readings with a constant error per clipped segment, and removes all clip
-/// flags. The result simulates the output of a rate method with this error.
+/// flags. The modified readings simulate the output of a rate method with this error.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -92,8 +93,8 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Changes the stated range relative to the true saturation level. Also removes the device's clip flags, which would
-/// reveal the true level.
+/// Changes the stated range relative to the true saturation level. The function also removes the device's clip flags,
+/// which would reveal the true level.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);

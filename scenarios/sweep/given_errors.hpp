@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// An error of stated size in the sensor data or calibration that methods receive. Motion and true measurements are
-/// unchanged, so one simulation serves all sizes of the error. Each error is registered by one line of
+/// GivenError is an error of stated size in the sensor data or calibration that methods receive. Motion and true
+/// measurements are unchanged, so one simulation serves all sizes of the error. Each error is registered by one line of
 /// given_errors.cpp.
 struct GivenError {
   sim::Parameter parameter;  ///< size of the error; the default is no error

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kCountMax = 1000;
 constexpr std::string_view kWorst = "worst:";
 
-/// Returns the first metric of a kind that ranks runs. Empty if no metric ranks runs.
+/// Returns the first metric of a kind that ranks runs, or an empty text.
 std::string ranking_metric(Kind kind) {
   for (const std::string& name : headline_metrics(kind)) {
     const MetricInfo& info = metric_info(name);
@@ -50,7 +50,7 @@ std::optional<double> badness(const OutcomeView& row, const std::string& metric)
   return std::nullopt;
 }
 
-/// The worst runs of one scenario and method, up to a requested number.
+/// Worst contains the worst runs of one scenario and method, up to a requested number.
 class Worst {
  public:
   void add(double badness, std::uint64_t seed, std::size_t count) {

@@ -14,11 +14,12 @@
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Keeps recordings and estimates of a sweep's simulated runs next to its database (README.md, "What is kept").
+/// keep.hpp keeps recordings and estimates of a sweep's simulated runs next to its database (README.md, "What is
+/// kept").
 namespace tumble::scenarios {
 
-/// Rule that selects which simulated runs are kept. The selection depends on the results only, regardless of processes,
-/// interruptions or shards.
+/// Keep is the rule that selects which simulated runs are kept. The selection depends on the results only, regardless
+/// of processes, interruptions or shards.
 struct Keep {
   enum class Which { none, failed, worst, all };
   Which which = Which::none;
@@ -26,14 +27,14 @@ struct Keep {
   bool operator==(const Keep&) const = default;
 };
 
-/// Key of the note that stores the keep rule, as `to_string` writes it.
+/// kKeepNote is the key of the note that stores the keep rule, as `to_string` writes it.
 inline constexpr const char* kKeepNote = "keep";
 
 /// Parses "none", "failed", "all", or "worst:N" with N from 1 to 1000. Throws BadInput for any other text.
 Keep parse_keep(const std::string& text);
 std::string to_string(const Keep& keep);
 
-/// Scenario and seed of a simulated run, without the setting of a curve.
+/// DrawName contains scenario and seed of a simulated run, without the setting of a curve.
 struct DrawName {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -41,15 +42,16 @@ struct DrawName {
   auto operator<=>(const DrawName&) const = default;
 };
 
-/// Returns the simulated runs to keep. `all` keeps every run that has a row in the results. `failed` keeps runs with a
-/// status that is not ok. `worst` keeps the worst runs of each scenario and each method that does not use the truth.
-/// The runs are ranked by the first headline metric of the method's kind. Runs that are not ok rank worst. Among
-/// equally bad runs, lower seeds are kept first. Rejected runs have no recording and are never kept.
+/// Returns the simulated runs that the rule keeps. The rule `all` keeps every run that has a row in the results. The
+/// rule `failed` keeps runs whose status is not ok. The rule `worst` keeps the worst runs of each scenario and each
+/// method that does not use the truth. The first headline metric of the method's kind ranks the runs. Runs that are not
+/// ok rank worst. Among equally bad runs, lower seeds are kept first. Rejected runs have no recording and are never
+/// kept.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
-/// The folder of kept runs next to a database, FILE.db.files/kept. Each run has a folder SCENARIO/SEED/ with
-/// recording.h5, estimates/KIND-METHOD/ and `command`. All functions throw BadInput with path and reason on file system
-/// errors.
+/// KeptDraws is the folder of kept runs next to a database, FILE.db.files/kept. Each run has a folder SCENARIO/SEED/
+/// with recording.h5, estimates/KIND-METHOD/ and `command`. All functions throw BadInput with path and reason on file
+/// system errors.
 class KeptDraws {
  public:
   explicit KeptDraws(const std::filesystem::path& database);
@@ -59,10 +61,11 @@ class KeptDraws {
   bool holds(const DrawName& draw, std::span<const Outcome> estimated) const;
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
-  /// Removes incomplete files of a killed process. During the call, no other process may write to the folder.
+  /// Removes incomplete files that a killed process left behind. During the call, no other process may write to the
+  /// folder.
   void discard_unfinished() const;
-  /// Copies the run, or its missing estimates, from another folder of kept runs. Uses hard links where possible.
-  /// Returns false if the folder `from` does not have the run.
+  /// Copies the run, or its missing estimates, from another folder of kept runs. The copy uses hard links where
+  /// possible. Returns false if the folder `from` does not have the run.
   bool take(const DrawName& draw, const KeptDraws& from) const;
 
  private:

@@ -29,8 +29,7 @@ std::string text_of(const Notes& notes, const std::string& key) {
   return found == notes.end() ? std::string() : found->second;
 }
 
-/// Throws BadInput if outcomes come from different programs, models or scenarios, because such outcomes are not
-/// comparable.
+/// Throws BadInput if outcomes come from different programs, models or scenarios, and are therefore not comparable.
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
   const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
                                                          {"data", "was made from models and scenarios"}};
@@ -43,7 +42,7 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// Joins the version notes of external methods with the methods' rows. Rejects two versions of one method.
+/// Joins the version notes of external methods with the methods' rows. The merge rejects two versions of one method.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -71,7 +70,7 @@ void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Reads the notes of all inputs before any merge. Only one input is open at a time.
+/// Reads the notes of all inputs before any merge. Only one input database is open at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {
@@ -81,14 +80,14 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
-/// Returns the keep rule that all inputs share. Empty if the rules differ.
+/// Returns the keep rule that all inputs share, or an empty text if the rules differ.
 std::string common_rule(const std::vector<Notes>& notes) {
   const std::string rule = text_of(notes.front(), kKeepNote);
   const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
   return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
 }
 
-/// Removes a newly created database if the merge fails.
+/// Made removes a newly created database if the merge fails.
 class Made {
  public:
   explicit Made(const fs::path& path) : path_(path), is_new_(!fs::exists(path)) {}

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// A message from a worker about its current simulated run, one JSON object per line. At most one field is set. If no
-/// field is set, the run is complete.
+/// Message is a message from a worker about its current simulated run, one JSON object per line. At most one field of a
+/// message is set. If no field is set, the simulated run is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
@@ -19,10 +19,10 @@ struct Message {
   bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 
-/// Returns the message with a newline. Numbers are restored bit-exactly. Non-finite numbers become NaN.
+/// Returns the message as one line with a newline. Numbers are restored bit-exactly. Non-finite numbers become NaN.
 std::string to_line(const Message& message);
 
-/// Parses a line without its newline. Returns empty if the line is not a message, because the process died while
+/// Parses a line without its newline. Returns nothing if the line is no message, because the process died while
 /// writing.
 std::optional<Message> from_line(const std::string& line);
 

@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 
 /// Returns the motion's summary (scenarios/scoring/motion_summary.hpp) as named numbers for the results database.
-/// Returns no values for a recording without an IMU. The names and meanings are as follows.
+/// Returns no values for a recording without an IMU. The motion values have the following names and meanings.
 ///
 /// - `motion_moving_s`: time between first and last movement. `motion_path_m`: path length of the centre of mass.
 /// - `motion_peak_rate_rad_s`: largest rate. `motion_peak_accel_m_s2`: largest specific force before saturation.

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Hashes each number separately, so that no struct padding enters the digest.
+/// NumberHasher hashes each number separately, so that no struct padding enters the digest.
 class NumberHasher : public Hasher {
  public:
   template <typename Number>

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// The point of a curve to which a row of the results belongs (variation.hpp): the varied key and its value. An empty
-/// key means an unmodified scenario and unmodified methods.
+/// Setting is the point of a curve to which a row of the results belongs (variation.hpp): the varied key and its value.
+/// An empty key means an unmodified scenario and unmodified methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -21,7 +21,7 @@ struct Setting {
   auto operator<=>(const Setting&) const = default;
 };
 
-/// One row of the results: one method on one simulated run.
+/// Outcome is one row of the results: one method on one simulated run.
 struct Outcome {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -35,7 +35,7 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// Motion values of one simulated run. Motion values do not depend on the methods
+/// DrawValues contains the motion values of one simulated run. Motion values are independent of the methods
 /// (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
@@ -54,8 +54,8 @@ bool outranks(OutcomeStatus status, OutcomeStatus other);
 /// Returns true if a sweep may repeat a method that ended with this status: crashed, timeout or killed.
 bool may_run_again(OutcomeStatus status);
 
-/// A scenario and seed that cannot be drawn or simulated on any machine. Kind and method are empty in the database. If
-/// a process dies instead, the status of its methods is crashed, timeout or killed.
+/// RejectedDraw is a scenario and seed that cannot be drawn or simulated on any machine. Kind and method of a rejected
+/// run are empty in the database. If a process dies instead, the status of its methods is crashed, timeout or killed.
 struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

@@ -40,7 +40,7 @@ std::vector<std::filesystem::path> matches(const std::string& pattern, const std
   return paths;
 }
 
-/// Returns the stored digest, or computes the digest if the file has none.
+/// Returns the stored digest, or computes it if the file has none.
 std::string digest_of(const RecordingInfo& info, const sim::Sensors& sensors, const std::filesystem::path& path) {
   if (!info.digest.empty()) return info.digest;
   if (!info.has_truth) return digest(sensors, nullptr);

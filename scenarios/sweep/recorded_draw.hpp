@@ -8,13 +8,13 @@
 
 #include "scenarios/sweep/evaluate.hpp"
 
-/// Handles recordings in a suite. Each recording counts as one simulated run, with the file's name as scenario and seed
-/// 1.
+/// recorded_draw.hpp handles recordings in a suite. Each recording counts as one simulated run, with the file's name as
+/// scenario and seed 1.
 namespace tumble::scenarios {
 
 inline constexpr std::uint64_t kRecordingSeed = 1;
 
-/// A recording file of a suite.
+/// RecordedDraw is a recording file of a suite.
 struct RecordedDraw {
   std::string name;  ///< file name without extension
   std::filesystem::path path;
@@ -33,7 +33,7 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
 /// sensors and, if known, its robot. Oracles need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
-/// Reads the recording in the form of a simulated run. Throws BadInput if the recording's digest has changed since the
+/// Reads a recording in the form of a simulated run. Throws BadInput if the recording's digest has changed since the
 /// call of find_recordings.
 SimulatedDraw read_draw(const RecordedDraw& recording);
 

@@ -28,13 +28,13 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// An open results database. results_reading.cpp and results.cpp (writing) share this struct.
+/// Impl is an open results database; results_reading.cpp and results.cpp (writing) share this struct.
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
   bool in_transaction = false;  ///< a transaction of the caller
 
-  /// Opens a transaction unless the caller already has an open transaction.
+  /// Transaction opens a transaction unless the caller already has one.
   class Transaction {
    public:
     explicit Transaction(Impl& impl) {
@@ -50,7 +50,7 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        // The connection is used by one thread only, so SQLite needs no lock for each value.
+        // Only one thread uses the connection, so SQLite needs no lock for each value.
         database(file.string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),

@@ -21,15 +21,16 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// A row of the table `outcomes` in the shard. The texts of a ShardRow are valid until the next row is read.
+/// ShardRow is a row of the table `outcomes` in the shard. The texts of a ShardRow are valid until the next row is
+/// read.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
   double setting;
 };
 
-/// Copies rows of a shard to another database with prepared statements. Reads outcomes and scores in parallel, sorted
-/// by outcome number. New outcome numbers increase with the old numbers, so that scores are appended.
+/// Joining copies rows of a shard to another database with prepared statements. Joining reads outcomes and scores in
+/// parallel, sorted by outcome number. New outcome numbers increase with the old numbers, so that scores are appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -110,7 +111,7 @@ class Joining {
     statement.bind(4, row.setting);
   }
 
-  /// Advances to the next row. Error messages include the path of the shard.
+  /// Advances to the next row of the statement. Error messages include the path of the shard.
   bool next(SQLite::Statement& select) const {
     try {
       return select.executeStep();
@@ -138,7 +139,7 @@ class Joining {
     throw BadInput(path_.string() + ": unknown kind '" + name + "'");
   }
 
-  /// Returns false if a row with an equal key exists.
+  /// Inserts a row; returns false if a row with an equal key exists.
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -153,7 +154,7 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Inserts or replaces the row. Returns true if the row was stored, with the number of the row in `id`.
+  /// Inserts or replaces a row. Returns true if the row was stored, with the number of the row in `id`.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);

@@ -45,7 +45,7 @@ const char* picked(Rows rows) {
   return "0";
 }
 
-// SQL text that needs a condition and an order at its end.
+// The SQL text kOutcomes needs a condition and an order at its end.
 constexpr const char* kOutcomes =
     "SELECT scenario, seed, kind, method, status, message, recording_digest, estimate_digest, varied, setting "
     "FROM outcomes WHERE kind <> '' AND ";

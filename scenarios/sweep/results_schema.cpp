@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 // Seeds are unsigned 64-bit numbers, stored as signed numbers with equal bits. A rejected run is an outcome with empty
 // kind and method and status 'rejected'. The view `scores` has a row for each score, and a row with a null metric for
 // an outcome without scores. A point of a curve has its keys in `varied` and their value in `setting`. `varied` is
-// empty for unmodified scenarios and methods. The view `scores` only contains rows with empty `varied`, and the view
+// empty for unmodified scenarios and methods. The view `scores` contains only rows with empty `varied`, and the view
 // `curves` contains points of curves.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (

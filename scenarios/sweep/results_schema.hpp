@@ -9,14 +9,15 @@ class Database;
 
 namespace tumble::scenarios {
 
-/// Application id in SQLite's header ("TMBL"), so that databases of other programs are never modified.
+/// kApplicationId is the application id in SQLite's header ("TMBL"), so that databases of other programs are never
+/// modified.
 inline constexpr int kApplicationId = 0x544d424c;
 inline constexpr int kSchemaVersion = 4;
-/// Older schema version that is still readable. The older version differs from the current version only in the allowed
-/// statuses.
+/// kReadableVersion is an older schema version that is still readable. The older version differs from the current
+/// version only in the allowed statuses.
 inline constexpr int kReadableVersion = 3;
 
-/// SQL that creates an empty results database.
+/// kSchema is the SQL text that creates an empty results database.
 extern const char* const kSchema;
 
 /// Returns the first missing table, column or view, for example "table score_values". Returns an empty text if the

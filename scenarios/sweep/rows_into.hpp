@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-/// Inserts many rows into a results database with little cost per row.
+/// rows_into.hpp inserts many rows into a results database with little cost per row.
 namespace tumble::scenarios {
 
 // Binds null for NaN, because SQLite has no NaN.
@@ -22,7 +22,7 @@ inline void bind_number(double value, SQLite::Statement& to, int index) {
     to.bind(index, value);
 }
 
-/// Stores each text once for all rows that share the text.
+/// Kept stores each text once for all rows that share it.
 class Kept {
  public:
   const std::string& operator()(std::string_view text) {
@@ -38,7 +38,7 @@ class Kept {
   std::array<const std::string*, 64> last_{};
 };
 
-/// A row of the table score_values.
+/// ScoreValue is a row of the table score_values.
 struct ScoreValue {
   std::int64_t outcome;
   const std::string* metric;
@@ -53,7 +53,7 @@ struct ScoreValue {
   }
 };
 
-/// A row of the table draw_values.
+/// DrawValue is a row of the table draw_values.
 struct DrawValue {
   const std::string* scenario;
   std::int64_t seed;
@@ -74,7 +74,8 @@ struct DrawValue {
   }
 };
 
-/// Inserts rows in order, with many rows per statement. The fixed cost of a statement is as large as the cost of a row.
+/// RowsInto inserts rows in order, with many rows per statement. The fixed cost of a statement is as large as the cost
+/// of a row.
 template <typename Row>
 class RowsInto {
  public:
@@ -84,7 +85,7 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// Writes waiting rows. The caller must call this function before reading the rows.
+  /// Writes the waiting rows. The caller must call flush() before reading the rows.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

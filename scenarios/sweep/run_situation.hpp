@@ -16,7 +16,7 @@
 
 namespace tumble::scenarios {
 
-/// Results of one situation: the recording, and the estimate and outcome of each method.
+/// RunResult contains the results of one situation: the recording, and the estimate and outcome of each method.
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;

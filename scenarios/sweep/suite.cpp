@@ -96,7 +96,7 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.scenarios.empty()) node.fail("the suite needs at least one scenario");
 }
 
-/// Reads `draws: {mild: {hill: [3, 8]}}`: classes of scenarios with their seeds.
+/// Reads the key `draws: {mild: {hill: [3, 8]}}`: classes of scenarios with their seeds.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;

@@ -41,7 +41,7 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// Stores absolute paths, so that each run can be repeated from any folder (run_again.hpp).
+/// The stored paths are absolute, so that each run can be repeated from any folder (run_again.hpp).
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -156,7 +156,7 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Passes the task to an idle or new worker. Returns false if no worker is available.
+  /// Passes the task to an idle or new worker; returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -188,7 +188,7 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores the messages of a worker. Returns true if the worker died during a task.
+  /// Stores the messages of a worker; returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -206,7 +206,7 @@ class Sweep {
     return true;
   }
 
-  /// Reads the messages of a worker. Returns false if the worker has ended.
+  /// Reads the messages of a worker; returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);

@@ -21,14 +21,14 @@
 
 namespace tumble::scenarios {
 
-/// A class of simulated runs ("mild"). Each run is a scenario and a seed.
+/// DrawClass is a class of simulated runs ("mild"). Each run of the class is a scenario and a seed.
 struct DrawClass {
   std::string name;
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
-/// A suite file, scenarios/suites/NAME.yaml. A suite contains scenarios x seeds x methods, repeated for each point of
-/// each curve, or recordings x methods (recorded_draw.hpp).
+/// Suite is a suite file, scenarios/suites/NAME.yaml. A suite contains scenarios x seeds x methods, repeated for each
+/// point of each curve, or recordings x methods (recorded_draw.hpp).
 struct Suite {
   std::string name;
   std::string doc;
@@ -67,7 +67,8 @@ struct SweepProgress {
   std::uint64_t not_ok() const;
 };
 
-/// Default memory limit of a worker, equal to the limit of an external command (processes/command.hpp).
+/// kWorkerMemoryMib is the default memory limit of a worker, equal to the limit of an external command
+/// (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
 /// Throws BadInput if a worker's memory limit is too small or too large.
 void require_worker_memory(double mib);
@@ -81,7 +82,7 @@ struct SweepOptions {
   Keep keep;                         ///< which runs are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
   /// Simulates without lidars if the built-in methods of the suite read no lidar. Estimates and scores are unchanged
-  /// without lidars, but the recording's digest differs. The option cannot be combined with `keep`.
+  /// without lidars, but the recording's digest differs. The option recordings_unseen cannot be combined with `keep`.
   bool recordings_unseen = false;
 };
 
@@ -92,14 +93,14 @@ void require_sound(const Suite& suite, const SweepOptions& options);
 /// to another suite, build, models or scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Executes the runs that the database does not contain yet. Workers (draw_worker.hpp) run each method in a separate
-/// process. A crash, time-out or memory failure becomes an outcome (crashed, timeout, killed) and never stops the
-/// sweep. Outcomes are stored as they complete. Simulated runs are planned one at a time, so memory does not grow with
-/// their number.
+/// Executes the runs of the sweep that the database does not contain yet. Workers (draw_worker.hpp) run each method in
+/// a separate process. A crash, time-out or memory failure becomes an outcome (crashed, timeout, killed) and never
+/// stops the sweep. Outcomes are stored as they complete. Simulated runs are planned one at a time, so memory does not
+/// grow with their number.
 ///
-/// At the end, the kept runs match the keep rule. Returns the final progress. If the sweep was stopped, draws_done is
-/// below draws_total. Throws BadInput if the results of a recording were computed from other data (another digest), or
-/// if no method applies to any scenario.
+/// At the end of the sweep, the kept runs match the keep rule. Returns the final progress of the sweep. If the sweep
+/// was stopped, draws_done is below draws_total. Throws BadInput if the results of a recording were computed from other
+/// data (another digest), or if no method applies to any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 /// Executes the sweep and owns the database during the sweep. Throws BadInput if another process owns the database.

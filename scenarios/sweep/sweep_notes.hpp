@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-/// Keys and values of notes that a sweep stores in its results (Results::set_note).
+/// sweep_notes.hpp lists keys and values of notes that a sweep stores in its results (Results::set_note).
 namespace tumble::scenarios {
 
-/// Value of the note `source` for results of recordings. Recordings cannot be simulated again.
+/// kRecordingsSource is the value of the note `source` for results of recordings. Recordings cannot be simulated again.
 inline constexpr const char* kRecordingsSource = "recordings";
 
-/// Value of the note `build` for results merged from several builds (report-only databases).
+/// kMixedBuilds is the value of the note `build` for results merged from several builds (report-only databases).
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// Key of the note with the commands that produced the results. The note has one line per sweep with suite, seeds and
-/// methods, quoted for a shell.
+/// kCommandNote is the key of the note with the commands that produced the results. The note has one line per sweep
+/// with suite, seeds and methods, quoted for a shell.
 inline constexpr const char* kCommandNote = "command";
 
 /// Returns the non-empty lines of `note`.

@@ -15,8 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// Fraction of a method's time limit that an external command receives. The process that started the command can then
-// end the command before its own time limit.
+// kOwnShare is the fraction of a method's time limit that an external command receives. The process that started the
+// command can then end it before its own time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -167,8 +167,8 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. The
-/// remaining and the completed methods must be considered.
+/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. The test
+/// must consider the remaining and the completed methods.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };
   return std::any_of(planned.methods.begin(), planned.methods.end(),

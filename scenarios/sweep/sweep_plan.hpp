@@ -14,8 +14,8 @@
 
 namespace tumble::scenarios {
 
-/// Iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory. The plan
-/// writes tasks as lines of text, which workers that are forked later can parse.
+/// SweepPlan iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory. The
+/// plan writes tasks as lines of text, which workers that are forked later can parse.
 class SweepPlan {
  public:
   /// Throws BadInput for an unknown method, scenario or recording, and for a catalogue from which no situation can be
@@ -33,7 +33,8 @@ class SweepPlan {
   /// Stores the paths of the recordings, so that runs can be repeated (run_again.hpp).
   void note_recordings(Results& results) const;
 
-  /// Recordings come first, then seeds as the outer loop. A stopped sweep thus covers all scenarios and curve points.
+  /// Recordings come first, then seeds as the outer loop. A stopped sweep therefore covers all scenarios and curve
+  /// points.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
   /// Returns the next task, with the methods that have no result yet or must be repeated.
@@ -49,7 +50,7 @@ class SweepPlan {
   DrawTask from_line(const std::string& line) const;
 
  private:
-  /// A scenario or recording of the suite with the methods that apply.
+  /// Planned is a scenario or recording of the suite with the methods that apply.
   struct Planned {
     std::string asked;  ///< name in the suite
     Scenario scenario;

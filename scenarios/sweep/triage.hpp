@@ -10,20 +10,21 @@
 
 namespace tumble::scenarios {
 
-/// One input of a method, and a function that replaces the input by its truth. Each input is registered by one line of
-/// true_inputs.cpp.
+/// TrueInput is one input of a method, with a function that replaces it by its truth. Each input is registered by one
+/// line of true_inputs.cpp.
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording has no such input or if
+  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording lacks this input or if
   /// the input is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
-/// Returns all inputs. The last entry replaces all inputs at once.
+/// Returns all inputs; the last entry replaces all inputs at once.
 std::span<const TrueInput> true_inputs();
 
-/// Criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric beyond a limit.
+/// Failure contains the criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric
+/// beyond a limit.
 struct Failure {
   std::string metric;  ///< empty: status and verdicts only
   double limit = 0.0;  ///< upper limit, or lower limit if higher is better
@@ -45,9 +46,9 @@ struct TriageOptions {
 };
 
 /// Runs a method on the unmodified sensor data, then with each input replaced by its truth, in separate processes. All
-/// runs are scored against one truth and the original sensor data. The first result belongs to the unmodified sensor
-/// data. Errors that no true input removes come from the method or the scenario. Throws the exceptions of simulate_draw
-/// for the simulation, and BadInput if the method does not apply to the scenario.
+/// runs are scored against one truth and the original sensor data. The first triage result is that of the unmodified
+/// sensor data. Errors that no true input removes come from the method or the scenario. Throws the exceptions of
+/// simulate_draw for the simulation, and BadInput if the method does not apply to the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

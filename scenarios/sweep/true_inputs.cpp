@@ -43,7 +43,7 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   return true;
 }
 
-/// Applies `replace(record, truth)` to each IMU. Returns true if any IMU changed.
+/// Applies `replace(record, truth)` to each IMU, and returns whether any IMU changed.
 template <typename Replace>
 bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
   bool changed = false;
@@ -93,7 +93,7 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Sets each stamp to the end of the sample's averaging window. Needs a complete recording.
+/// Sets each stamp to the end of the sample's averaging window. The function needs a complete recording.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -133,8 +133,8 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Removes motion distortion. Moves all points to the sensor pose at the last point, with stamps within a microsecond.
-/// Range errors remain in the points.
+/// Removes the motion distortion of the sweeps. All points move to the sensor pose at the last point, with stamps
+/// within a microsecond. Range errors remain in the points.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -171,8 +171,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first, because this correction needs the time of each point. Removing distortion deletes
-/// these times.
+/// Range errors are corrected first, because this correction needs the time of each point. Removing the motion
+/// distortion deletes these times.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

@@ -5,11 +5,11 @@
 
 namespace tumble::scenarios {
 
-/// Subfolder for incomplete folders, next to the complete folders.
+/// kUnfinished is the subfolder for incomplete folders, next to the complete folders.
 inline constexpr const char* kUnfinished = ".unfinished";
 
-/// A folder under construction, WITHIN/.unfinished/NAME. The destructor removes the folder unless it was moved to its
-/// final path. Only one process at a time may build a folder with the name NAME. Throws
+/// UnfinishedFolder is a folder under construction, WITHIN/.unfinished/NAME. The destructor removes the folder unless
+/// it was moved to its final path. Only one process at a time may build a folder with the name NAME. Throws
 /// std::filesystem::filesystem_error on failure.
 class UnfinishedFolder {
  public:

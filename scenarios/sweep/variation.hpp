@@ -12,13 +12,13 @@
 
 namespace tumble::scenarios {
 
-/// A curve of a suite: one number, or several numbers that change together, set to a list of values. There are three
-/// sorts of keys.
+/// Variation is a curve of a suite: one number, or several numbers that change together, set to a list of values. A
+/// Variation has one of three sorts of keys.
 ///
 /// - A key such as `world.rock_count` or `sensors.imu.output_rate_hz` is a number of the scenario (fixed_number.hpp).
-///   Each value needs a new simulation.
+///   Each value of a scenario number needs a new simulation.
 /// - A key such as `given.lever_arm_error_m` is an error in the methods' input (given_errors.hpp). One simulation
-///   serves all values.
+///   serves all values of an input error.
 /// - A key such as `rate/saave.jerk_psd_rad2_s5` is a parameter of one method. One simulation serves all values, and
 ///   only the method with the parameter is repeated.
 struct Variation {
@@ -29,7 +29,8 @@ struct Variation {
   std::vector<Setting> settings() const;
 };
 
-/// States which part of a run a setting affects. The affected part must be repeated for each value of the setting.
+/// Reach states which part of a run a setting affects. The affected part must be repeated for each value of the
+/// setting.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
@@ -53,7 +54,7 @@ SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 /// Returns the method with the setting's parameters.
 Method with_setting(const Method& method, const Setting& setting);
 
-/// Returns true unless the setting is a parameter of another method.
+/// Returns whether the setting may affect the method: true unless it is a parameter of another method.
 bool concerns(const Setting& setting, const MethodInfo& method);
 
 }  // namespace tumble::scenarios

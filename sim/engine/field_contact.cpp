@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One cell of a height field below a part of a strut's axis, in coordinates relative to the cell's first corner.
+/// Cell is a cell of a height field below a part of a strut's axis, in coordinates relative to the cell's first corner.
 /// MuJoCo divides a cell of a height field along the diagonal from the cell's first to its last corner.
 class Cell {
  public:
@@ -53,8 +53,8 @@ class Cell {
   double beside_diagonal_m(const Vector3d& p_m) const {
     return (p_m.x() * dy_ - p_m.y() * dx_) / std::sqrt(dx_ * dx_ + dy_ * dy_);
   }
-  /// Returns true if the strut's axis is out of reach above the plane that has the given slopes and contains the cell's
-  /// first corner.
+  /// Returns whether the strut's axis is out of reach above a plane through the cell's first corner with the given
+  /// slopes.
   bool above_plane(double slope_x, double slope_y) const {
     const auto above_m = [&](const Vector3d& p_m) {
       return p_m.z() - heights_m_[0] - slope_x * p_m.x() - slope_y * p_m.y();
@@ -67,13 +67,13 @@ class Cell {
   std::array<double, 4> heights_m_;  ///< heights of the corners, anticlockwise from the first
 };
 
-/// Collects the contacts of a strut with the ground, prism by prism.
+/// Touched collects the contacts of a strut with the ground, prism by prism.
 class Touched {
  public:
   Touched(const Strut& strut, const Vector3d& origin_W_m, mjPreContact* contacts)
       : radius_m_(strut.radius_m), origin_W_m_(origin_W_m), contacts_(contacts) {}
 
-  /// Adds the contact of the strut with a prism. Returns false if the strut's axis is inside the prism.
+  /// Adds the contact of the strut with one prism of ground. Returns false if the strut's axis is inside the prism.
   bool add(const Cell& cell, const Prism& prism) {
     Closest closest;
     const Meeting how = meet(cell.a_m, cell.b_m, prism, radius_m_, closest);
@@ -103,8 +103,8 @@ bool turned(const mjData& data, int geom) {
   return turn[0] != 1.0 || turn[4] != 1.0 || turn[8] != 1.0;
 }
 
-/// Returns MuJoCo's own collision function. The first call reads the function from MuJoCo's table, before the table
-/// entry is replaced.
+/// Returns MuJoCo's own collision function. The first call reads the function from MuJoCo's table, before
+/// field_contacts replaces the table entry.
 mjfCollision engines_own() {
   static const mjfCollision kOwn = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_CAPSULE];
   return kOwn;
@@ -132,7 +132,7 @@ std::optional<int> field_contacts(const mjModel& model, const mjData& data, int 
   for (int row = rows.first; row <= rows.last; ++row) {
     const Part in_row = Part{}.within(strut, 1, field.y_m(row), field.y_m(row + 1));
     if (in_row.none()) continue;
-    // most cells are entirely below the strut, so the cheap test of heights comes first
+    // most cells are entirely below the strut, so the cheap comparison of heights comes first
     const double lowest_m = std::min(strut.at_m(in_row.first).z(), strut.at_m(in_row.last).z()) - strut.reach_m;
     double left_m = field.higher_m(row, columns.first), right_m;
     for (int column = columns.first; column <= columns.last; ++column, left_m = right_m) {

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
-/// Geometry of a height field and of a strut above the field, in the axes of the field's geom, which are parallel to
-/// the world's axes.
+/// height_field.hpp describes a height field and a strut above it, in the axes of the field's geom, which are parallel
+/// to the world's axes.
 namespace tumble::sim::engine {
 
-/// Heights on a regular grid; columns are along x.
+/// Field contains heights on a regular grid; columns are along x.
 struct Field {
   const float* heights;
   int rows, columns;
@@ -33,14 +33,13 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
-  /// Returns the larger height of two grid nodes: the node (row, column) and the node in the next row of its column.
+  /// Returns the larger height of two grid nodes: (row, column) and (row + 1, column).
   double higher_m(int row, int column) const {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
 
-  /// Returns the depth of a point below the plane of the ground triangle at the point's position; the depth is negative
-  /// above the ground and 0 outside of the field. MuJoCo divides a cell of the field along the diagonal from the cell's
-  /// first to its last corner.
+  /// Returns the depth of a point below the ground triangle at its position; negative above the ground and 0 outside
+  /// the field. MuJoCo divides a cell of the height field along the diagonal from its first to its last corner.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
@@ -56,7 +55,7 @@ struct Field {
   }
 };
 
-/// A capsule with its axis, its radius, and the distance from the axis within which contacts are searched.
+/// Strut is a capsule with its axis, its radius, and the distance from the axis within which contacts are searched.
 struct Strut {
   Eigen::Vector3d from_m, along_m;
   double radius_m, reach_m;
@@ -78,13 +77,14 @@ struct Strut {
   double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
 };
 
-/// A part of a strut's axis, from `first` to `last` as fractions of the axis's length; empty if `first` exceeds `last`.
+/// Part is a section of a strut's axis, from `first` to `last` as fractions of the axis's length; empty if `first`
+/// exceeds `last`.
 struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }
 
-  /// Returns the part of the strut's axis whose coordinate is between the two limits, after both limits are widened by
-  /// the strut's reach.
+  /// Returns the part of the strut's axis whose coordinate is between the limits, after the limits are widened by the
+  /// strut's reach.
   Part within(const Strut& strut, int axis, double low_m, double high_m) const {
     const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
     low_m -= strut.reach_m;
@@ -95,7 +95,8 @@ struct Part {
   }
 };
 
-/// First and last cell in one direction that a strut's bounding box overlaps; empty if `first` exceeds `last`.
+/// Cells contains the first and last cell in one direction that a strut's bounding box overlaps; empty if `first`
+/// exceeds `last`.
 struct Cells {
   int first, last;
   Cells(double low_m, double high_m, double half_m, double cell_m, int count)

@@ -4,11 +4,12 @@
 #include "sim/body_state.hpp"
 #include "sim/engine/model.hpp"
 
-/// Functions for a robot whose sensor body is attached by joints, so that the body's state follows from the joints.
+/// jointed.hpp serves robots whose sensor body is attached by joints, so that the state of the body follows from the
+/// joints.
 namespace tumble::sim::engine {
 
 /// Updates poses and velocities of all bodies from the joints, after a step or a manual change. The update is needed
-/// because MuJoCo leaves the poses of the bodies at the last stage of the integration.
+/// because MuJoCo leaves the bodies at the poses of the last integration stage.
 void update_bodies(const mjModel& model, mjData& data);
 
 /// Returns the state of a body; the caller must call update_bodies first.
@@ -18,9 +19,9 @@ BodyState state_on_joints(const mjModel& model, const mjData& data, int body);
 BodyState state_at_rest(const World& world);
 
 /// Moves the joints so that the sensor body reaches `T_WB` as closely as possible (least squares of metres and
-/// radians), starting from the current joint angles. A search for the joint angles is needed because a recording
-/// contains only the pose of the sensor body. If two joint configurations reach the pose (an elbow left or right), the
-/// result is the configuration nearer to the start. After the call, the poses of all bodies are up to date.
+/// radians), from the current joint angles. A recording contains only the pose of the sensor body, so the joint angles
+/// must be searched. If two joint configurations reach the pose (an elbow left or right), the function finds the one
+/// nearer to the start. After the call, the poses of all bodies are up to date.
 void reach(const World& world, const Eigen::Isometry3d& T_WB, mjData& data);
 
 }  // namespace tumble::sim::engine

@@ -10,8 +10,7 @@
 
 #include "sim/situation.hpp"
 
-/// This header is used only within sim. mujoco.h is included only by headers in this folder and by headers next to the
-/// sources that need mujoco.h.
+/// model.hpp defines a compiled situation; only this folder and sources that need MuJoCo include mujoco.h.
 namespace tumble::sim::engine {
 
 struct ModelDeleter {
@@ -23,17 +22,17 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// A rectangle of floor with its own sliding friction, which applies while the robot touches the floor inside the
+/// FrictionPatch is a rectangle of floor whose sliding friction applies while the robot touches the floor inside the
 /// rectangle.
 struct FrictionPatch {
   double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
   bool contains(double x_m, double y_m) const;
 };
 
-/// A compiled situation: world and robot in one model.
+/// World is a compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  /// id of the body that carries the sensors; the inertial frame of this body is B
+  /// id of the body that carries the sensors; frame B is the inertial frame of this body
   int robot_body = -1;
   bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
@@ -48,7 +47,7 @@ struct World {
   double sphere_radius_m = 0;                              ///< 0 if the robot is not a sphere
 };
 
-/// Copies the world with its own model, for changes to the physics (friction of a floor), trials and pictures.
+/// Copies the world together with its model, for changes of the physics (friction of a floor), trials and pictures.
 World copy_of(const World& world);
 
 }  // namespace tumble::sim::engine

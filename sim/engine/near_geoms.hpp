@@ -8,11 +8,10 @@
 
 namespace tumble::sim::engine {
 
-/// Restricts MuJoCo's bounding-volume tree over the world's geoms to geoms that a floating robot may touch soon. The
-/// destructor restores the tree of MuJoCo's compiler. MuJoCo tests the remaining pairs in the same way and sorts
-/// contacts by geom, so the motion stays bit-identical. Planes and height fields are always in the tree, with unbounded
-/// boxes, because a test of their bounding boxes saves no time. A model with further moving bodies, or without a tree,
-/// is unchanged.
+/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a floating robot may touch soon. The
+/// destructor restores the original tree. MuJoCo tests the remaining pairs in the same way and sorts contacts by geom,
+/// so the motion stays bit-identical. Planes and height fields are always in the tree, with unbounded boxes, because a
+/// test of their bounding boxes saves no time. A model with further moving bodies, or without a tree, stays unchanged.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -21,7 +20,7 @@ class NearGeoms {
   NearGeoms(const NearGeoms&) = delete;
   NearGeoms& operator=(const NearGeoms&) = delete;
 
-  /// Returns true if the model's only moving body is a single floating body.
+  /// Returns whether the model's only moving body is a single floating body.
   static bool serves(const mjModel& model);
 
   /// Selects the geoms near the robot; must be called before each step with the position of the robot's body. The

@@ -139,7 +139,7 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
     const mjContact& contact = data_->contact[i];
     if (contact.efc_address < 0) continue;  // detected, but too far apart for a force
     const bool robot_second = model->geom_bodyid[contact.geom[1]] == world_.robot_body;
-    // contact of another segment
+    // the contact belongs to another segment of the robot
     if (!robot_second && model->geom_bodyid[contact.geom[0]] != world_.robot_body) continue;
     mjtNum force[6];
     mj_contactForce(model, data_.get(), i, force);

@@ -12,34 +12,35 @@
 
 namespace tumble::sim::engine {
 
-/// Simulates one robot in one world step by step (RK4). The state is the state of the body that carries the sensors.
-/// Any warning of MuJoCo ends the run, because lost contacts or invalid numbers would make the data worthless.
+/// Physics simulates one robot in one world step by step (RK4). The state of Physics is that of the body that carries
+/// the sensors. Any warning of MuJoCo ends the run, because lost contacts or invalid numbers would make the data
+/// worthless.
 class Physics {
  public:
-  /// Modifies the model of `world` until this Physics object is destroyed: the floor's friction follows the contact's
-  /// position, and the tree over the world's geoms follows the robot. `world` must outlive this object.
+  /// Modifies the model of `world` until destruction: the floor's friction follows the contact, and the tree of geoms
+  /// follows the robot. `world` must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// Sets the state of a free robot. For a robot on joints, sets only the time, and throws InvalidSituation if the pose
-  /// differs from the current pose.
+  /// Sets the state of a free robot. For a robot on joints, the function sets only the time, and throws
+  /// InvalidSituation if the pose differs from the current pose.
   void set_state(const BodyState& state);
 
-  /// Returns angle and angular velocity of a hinge by name. Throws InvalidSituation if the robot has no hinge of this
-  /// name.
+  /// Returns angle and angular velocity of a hinge, given its name. Throws InvalidSituation if the robot has no hinge
+  /// of this name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
   /// Advances the simulation by one step under gravity, contacts and `wrench`, which is constant over the step. Throws
-  /// SimulationFailure with reason and simulated time for a warning of MuJoCo, a state that is not finite, or a robot
-  /// that left its world.
+  /// SimulationFailure with reason and simulated time for a warning of MuJoCo, a non-finite state, or a robot that left
+  /// its world.
   void step(const Wrench& wrench);
 
-  /// Appends the robot's contacts with the world at the end of the last step, in arbitrary order. The contacts belong
-  /// to the last stage of RK4. The position at the last stage differs from the state by an error of second order in the
-  /// step. `time_ns` is stored with each contact.
+  /// Appends the contacts of the robot with the world at the end of the last step, in arbitrary order. The contacts are
+  /// those at the last stage of RK4. The position at the last stage of RK4 differs from the state by an error of second
+  /// order in the step. Each contact stores `time_ns`.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

@@ -22,8 +22,8 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// `sums` are the integrated samples in units of the sample period. The second difference of `sums` over `cluster`
-/// samples is `cluster` times the difference of two means.
+/// `sums` contains the integrated samples, in units of the sample period. The second difference of `sums` over
+/// `cluster` samples is `cluster` times the difference of two means.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;
@@ -121,7 +121,7 @@ double walk_deviation(double walk_sqrt_s, double tau_s) {
 
 double gauss_markov_deviation(double sigma, double time_s, double tau_s) {
   const double x = tau_s / time_s;
-  // for small x, the bracket suffers from cancellation, so the series x^2 / 3 - x^3 / 4 replaces the bracket
+  // for small x, the bracket suffers from cancellation, so the code uses its series x^2 / 3 - x^3 / 4
   const double bracket =
       x < 1e-3 ? x * x / 3.0 - x * x * x / 4.0 : 1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x);
   return sigma * std::sqrt(2.0 / x * bracket);

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-/// Overlapping Allan deviation of a stationary sensor, with confidence intervals. The functions of this header do not
-/// depend on the simulation. The sources are Riley, "Handbook of Frequency Stability Analysis", NIST Special
+/// allan.hpp computes the overlapping Allan deviation of a stationary sensor, with confidence intervals. The functions
+/// are independent of the simulation. The sources are Riley, "Handbook of Frequency Stability Analysis", NIST Special
 /// Publication 1065 (2008), sections 5.2.5 (overlapping Allan variance), 5.3.2 (confidence), table 5 (degrees of
 /// freedom), and IEEE Std 952-1997, annex C, for the names of the noises of a gyroscope.
 namespace tumble::sim {
 
-/// Allan deviation at one averaging time.
+/// AllanPoint is the Allan deviation at one averaging time.
 struct AllanPoint {
   double tau_s = 0.0;
   double deviation = 0.0;   ///< in the unit of the series
@@ -20,7 +20,8 @@ struct AllanPoint {
   std::size_t series = 1;   ///< number of independent series in the mean
 };
 
-/// Dominant noise at an averaging time. The dominant noise determines the degrees of freedom of the average.
+/// AllanNoise is the dominant noise at an averaging time. The dominant noise determines the degrees of freedom of the
+/// average.
 enum class AllanNoise {
   white,    ///< N / sqrt(tau): angle (velocity) random walk
   flicker,  ///< the floor: bias instability
@@ -28,37 +29,37 @@ enum class AllanNoise {
 };
 
 /// Computes the overlapping Allan deviation of `samples`, which are means over consecutive periods (rates, not angles).
-/// There are `per_decade` averaging times per decade, from one period to a ninth of the series. The mean of the series
-/// has no effect. The result is empty if the series has fewer than nine samples. The cost is O(samples) per averaging
-/// time. Throws std::invalid_argument for a period that is not positive and finite, `per_decade` outside [1, 100], or a
-/// sample that is not finite.
+/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade. The mean of
+/// the series has no effect on the Allan deviation. The function returns nothing if the series has fewer than nine
+/// samples. The cost is O(samples) per averaging time. Throws std::invalid_argument for a period that is not positive
+/// and finite, `per_decade` outside [1, 100], or a non-finite sample.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double period_s, int per_decade = 5);
 
-/// Returns the root of the mean variance of several independent series of equal length and period, for example the axes
-/// of a triad. Throws std::invalid_argument if there is no series or the averaging times differ.
+/// Returns the root of the mean Allan variance of several independent series of equal length and period, for example
+/// the axes of a triad. Throws std::invalid_argument if there is no series or the averaging times differ.
 std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> series);
 
-/// Returns the point whose averaging time has the smallest ratio to `tau_s`. Throws std::invalid_argument for an empty
+/// Returns the point whose averaging time is closest to `tau_s` as a ratio. Throws std::invalid_argument for an empty
 /// curve.
 const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s);
 
-/// Returns the equivalent degrees of freedom of the variance at one point, at least 1 (NIST SP 1065, table 5, Howe's
-/// approximations).
+/// Returns the equivalent degrees of freedom of the Allan variance at one point, at least 1 (NIST SP 1065, table 5,
+/// Howe's approximations).
 double degrees_of_freedom(const AllanPoint& point, AllanNoise noise);
 
 struct AllanInterval {
   double low = 0.0, high = 0.0;
 };
 
-/// Returns the confidence interval of the true deviation, with the probability of `sigmas` standard deviations of a
-/// normal distribution (3: 99.73 %). Uses the chi-squared distribution with the degrees of freedom of
-/// degrees_of_freedom; quantiles are approximated by Wilson and Hilferty (1931; within 1 % for 3 degrees or more).
-/// Throws std::invalid_argument unless 0 < sigmas <= 6.
+/// Returns the confidence interval of the true Allan deviation, with the probability of `sigmas` standard deviations of
+/// a normal distribution (3: 99.73 %). The interval uses the chi-squared distribution with quantiles approximated by
+/// Wilson and Hilferty (1931; within 1 % for 3 degrees of freedom or more). Throws std::invalid_argument unless 0 <
+/// sigmas <= 6.
 AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, double sigmas = 3.0);
 
 /// Returns the Allan deviation of white noise of density N [unit / sqrt(Hz)] at averaging time `tau_s`, in closed form.
 double white_deviation(double density, double tau_s);
-/// Returns the Allan deviation of a random walk of K [unit / sqrt(s)], in closed form.
+/// Returns the Allan deviation of a random walk with coefficient K [unit / sqrt(s)], in closed form.
 double walk_deviation(double walk_sqrt_s, double tau_s);
 /// Returns the Allan deviation of a first-order Gauss-Markov process with stationary standard deviation `sigma` and
 /// correlation time `time_s`, in closed form.

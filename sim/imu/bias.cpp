@@ -14,8 +14,8 @@ namespace {
 constexpr double kRatio = 10.0;  // ratio of correlation times: ripple of the floor below 2 %
 
 /// Returns the standard deviation of one Gauss-Markov process in an infinite series of processes whose combined Allan
-/// deviation is `floor`. Each process contributes sigma^2 / (f ln ratio) to the spectrum at frequency f, and flicker
-/// noise of spectrum h / f has the Allan variance 2 ln 2 h.
+/// deviation is `floor`. Each process contributes sigma^2 / (f ln ratio) to the spectrum at frequency f; flicker noise
+/// of spectrum h / f has the Allan variance 2 ln 2 h.
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

@@ -8,14 +8,14 @@
 
 namespace tumble::sim {
 
-/// Bias of a triad, independent for each axis: the sum of a turn-on value (normal, drawn once), an in-run instability
-/// and a random walk. The instability is flicker noise over three decades: the sum of four first-order Gauss-Markov
-/// processes of equal size, with correlation times a factor of ten apart. The processes start in their stationary
-/// state. The instability is bounded; its standard deviation is 2.58 times the floor of the Allan deviation. The Allan
-/// deviation of the instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2 of `in_run_s`.
-/// Data sheets state the value `in_run` as "in-run bias stability" (IEEE Std 952-1997, annex C; the sum of Gauss-Markov
-/// processes as flicker: Keshner, "1/f noise", Proceedings of the IEEE 70, 1982). The model excludes temperature and
-/// any dependence on earlier motion.
+/// Bias simulates the bias of a triad, independent for each axis: a turn-on value (normal, drawn once), in-run
+/// instability and a random walk. The in-run instability is flicker noise over three decades: four first-order
+/// Gauss-Markov processes of equal size, with correlation times a factor of ten apart. The Gauss-Markov processes start
+/// in their stationary state. The in-run instability is bounded; its standard deviation is 2.58 times the floor of the
+/// Allan deviation. The Allan deviation of the in-run instability is flat at `in_run` within 5 % for averaging times
+/// from 1/200 to 1/2 of `in_run_s`. Data sheets state the value `in_run` as "in-run bias stability" (IEEE Std 952-1997,
+/// annex C; the sum of Gauss-Markov processes as flicker: Keshner, "1/f noise", Proceedings of the IEEE 70, 1982). The
+/// bias model excludes temperature and any dependence on earlier motion.
 class Bias {
  public:
   struct Params {
@@ -26,10 +26,10 @@ class Bias {
   };
   /// The bias advances in steps of `period_s`. Bias components of size 0 draw no random numbers.
   Bias(const Params& params, double period_s, const Stream& stream);
-  /// Returns the current bias, then advances by one period.
+  /// Returns the current bias, then advances the bias by one period.
   Eigen::Vector3d next();
 
-  /// Returns the Allan deviation of the instability alone, in closed form.
+  /// Returns the Allan deviation of the in-run instability alone, in closed form.
   static double in_run_deviation(const Params& params, double tau_s);
 
  private:

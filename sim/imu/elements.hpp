@@ -9,20 +9,20 @@
 
 namespace tumble::sim {
 
-/// Sensing elements of a triad. Each sensing element has its own axis, scale, zero offset and saturation level. Let u
-/// be the signal in the device's axes with all errors except saturation. Sensing element i measures s_i = m_i . u +
-/// o_i, with row i of the misalignment matrix M and the zero offset o_i. Saturation maps the vector s to c(s). The
-/// device subtracts the offset and inverts the matrix, so the reading is y = M^-1 (c(s) - o). The saturation of
-/// elements has these consequences:
+/// Elements models the sensing elements of a triad (gyroscope or accelerometer). Each sensing element has its own axis,
+/// scale, zero offset and saturation level. Let u be the signal in the device's axes with all errors except saturation.
+/// Sensing element i measures s_i = m_i . u + o_i, with row i of the misalignment matrix M and the zero offset o_i.
+/// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix, so the reading is
+/// y = M^-1 (c(s) - o). Saturation of sensing elements has these consequences:
 /// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
-/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The limit is a plane
-///   in the readings, tilted against the axes, and different for the two signs.
+/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturation limit
+///   is a plane in the readings, tilted against the axes, and different for the two signs.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
-///   element j. For the unsaturated elements, m_i . y = m_i . u still holds.
-/// Real devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of RepoIMU;
-/// scenarios/certificate/real_rails.cpp has the values). The model excludes noise and quantum along the axes of the
-/// elements, because both act in the device's axes. The model also excludes compensation errors that differ at
-/// saturation, and offsets that drift within a recording.
+///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i.
+/// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of
+/// RepoIMU; scenarios/certificate/real_rails.cpp has the values). The model has no noise and quantisation along the
+/// axes of the elements, because both act in the device's axes. The model also excludes compensation errors that differ
+/// at saturation, and offsets that drift within a recording.
 class Elements {
  public:
   struct Params {
@@ -33,20 +33,20 @@ class Elements {
   };
   static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
-  /// Creates aligned elements: M is the identity, and there is no offset.
+  /// Creates aligned sensing elements: M is the identity, and there is no offset.
   Elements() = default;
   /// Draws the sensing elements at random; parameters of 0 draw no random numbers.
   Elements(const Params& params, Stream stream);
-  /// Creates elements with the misalignment matrix M = `axes`, which must be invertible.
+  /// Creates sensing elements with the misalignment matrix M = `axes`, which must be invertible.
   Elements(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset);
 
   const Eigen::Matrix3d& axes() const { return axes_; }
   const Eigen::Vector3d& offset() const { return offset_; }
-  /// Returns true if M is the identity and there is no offset.
+  /// Returns whether M is the identity and there is no offset.
   bool axis_aligned() const { return axis_aligned_; }
 
   /// Returns the device's reading of `signal` after saturation by `rail`; signal and reading are in the device's axes.
-  /// Sets bit `first_bit + i` of `flags` if element i saturated. For aligned elements, the device's reading is the
+  /// Sets bit `first_bit + i` of `flags` if element i saturated. For aligned elements, the device's reading equals the
   /// output of `rail`.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 

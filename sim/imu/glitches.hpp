@@ -11,9 +11,10 @@
 
 namespace tumble::sim {
 
-/// Replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong reading is
-/// uniform within 1.5 times the stated range and independent of the signal. It does not count as saturation, so the
-/// truth's unclipped reading has the same value. Runs of several wrong samples and wrong time stamps are not modelled.
+/// Glitches replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong
+/// reading is uniform within 1.5 times the stated range, and independent of the signal. The wrong reading does not
+/// count as saturation, so the truth's unclipped reading has the same value. The model excludes runs of several wrong
+/// samples and wrong time stamps.
 class Glitches {
  public:
   /// Reads `glitch_share` and the stated ranges. A share of 0 draws no random numbers.

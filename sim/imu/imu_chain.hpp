@@ -14,35 +14,34 @@
 
 namespace tumble::sim {
 
-/// Output of a triad for one averaging window.
+/// TriadReading is the output of a triad for one averaging window.
 struct TriadReading {
   Eigen::Vector3d delivered;  ///< reading as delivered by the device
   Eigen::Vector3d unclipped;  ///< reading with the same errors, but without saturation
   Eigen::Vector3d bias;       ///< bias at the end of the window
 };
 
-/// Error chain of one triad (gyroscope or accelerometer), updated at the physics rate and read once per output window.
-/// Stages in order: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white noise of
-/// the active range, sensing elements with saturation, the device's compensation of the elements, quantum, digital
-/// low-pass, mean over the window. With `clip_after_low_pass`, elements and saturation act on the mean over the window
-/// instead.
-/// For a rotating triad, the mean of the readings differs from the increment of the motion (coning, sculling). The
-/// caller therefore passes the exact ideal reading of the window, and the chain adds the mean of the chain's errors. An
-/// element that saturated in the window reports the plain mean of the chain's output. If every stage of the chain is
-/// off, the reading equals the exact reading, bit for bit. Equal stages with equal noise, but without saturation,
-/// compute the unclipped reading. A device with its own window or update rate (sampling.hpp) does not integrate; its
-/// reading is the plain mean over its window.
+/// TriadChain is the error chain of one triad (gyroscope or accelerometer), updated at the physics rate and read once
+/// per output window. The stages in order are: analogue low-pass, scale and misalignment, bias, external additions
+/// (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation of the elements,
+/// quantum, digital low-pass, mean over the window. With `clip_after_low_pass`, sensing elements and saturation act on
+/// the mean over the window instead. If a triad rotates, the mean of the readings differs from the increment of the
+/// motion (coning, sculling). The caller therefore passes the exact ideal reading of the window, and the chain adds the
+/// mean of its errors. An element that saturated in the window reports the plain mean of the chain's output. If every
+/// stage of the chain is off, the reading equals the exact reading, bit for bit. A second path with equal stages and
+/// noise, but without saturation, computes the unclipped reading. A device with a separate window or update rate
+/// (sampling.hpp) does not integrate; its reading is the plain mean over its window.
 class TriadChain {
  public:
-  /// `prefix` and `unit` select the parameters: "gyro", "rad_s" or "accel", "m_s2". Random streams are named after
-  /// `stream_name`; `steps` is the number of physics steps per window.
+  /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2". Random streams are named
+  /// after `stream_name`; `steps` is the number of physics steps per window.
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
   /// Processes one physics step: `ideal` is the ideal mean over the step, and `added` is added to the signal before the
   /// noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
-  /// Ends the window with the exact reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
+  /// Ends the window with the exact ideal reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
   /// saturated.
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
@@ -51,7 +50,7 @@ class TriadChain {
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
-  /// Processing path from the signal to the mean of a window, with or without saturation.
+  /// Path processes the signal to the mean of a window, with or without saturation.
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();

@@ -8,11 +8,11 @@
 
 namespace tumble::sim {
 
-/// Parameters of an inertial measurement unit. The defaults describe an ideal device at 100 Hz without magnetometer.
+/// Parameters of an inertial measurement unit. The defaults describe an ideal device at 100 Hz without a magnetometer.
 std::span<const Parameter> imu_parameters();
 
-/// Checks that resolved numbers do not contradict each other. Throws InvalidSituation, with a message that starts with
-/// `place`, for these contradictions:
+/// Checks that the resolved parameters of an IMU do not contradict each other. Throws InvalidSituation, with a message
+/// that starts with `place`, for these contradictions:
 /// - a kind of saturation without a saturation level
 /// - spreads or offsets that leave no saturation level
 /// - `wrap` together with `slow_recovery`

@@ -16,7 +16,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Ideal mean angular velocity and specific force over an interval, in I.
+/// Ideal contains the mean angular velocity and specific force over an interval, in frame I.
 struct Ideal {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
@@ -32,7 +32,7 @@ std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std:
   return drawn;
 }
 
-/// A simulated device: both triads (gyro and accelerometer), its time stamps, and the output of its samples.
+/// Device is a simulated IMU: gyro and accelerometer, time stamps, and the output of samples.
 class Device {
  public:
   Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, const GivenElements& given,
@@ -58,7 +58,7 @@ class Device {
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
-  /// Ends a window; returns false if the sample of the window is lost.
+  /// Ends an averaging window; returns false if the sample of the window is lost.
   bool take(const Ideal& exact, std::int64_t end_ns) {
     std::uint8_t flags = 0;
     TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
@@ -100,7 +100,7 @@ class Device {
   bool flagged_;
 };
 
-/// Optional magnetometer of a device, which averages the true field over each window.
+/// Compass is the optional magnetometer of a device, which averages the true field over each window.
 class Compass {
  public:
   Compass(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, std::uint64_t seed)
@@ -133,7 +133,7 @@ class Compass {
   int count_ = 0;
 };
 
-/// Relation between the output samples of a device and the steps of its error chain.
+/// Pace relates the output samples of a device to the steps of its error chain.
 struct Pace {
   int steps = 1;   ///< chain steps per sample
   int shares = 1;  ///< chain steps per physics step; above 1 for devices faster than the physics
@@ -164,9 +164,9 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// Selects the rotation vector that agrees with the physics steps of the window. The selection is needed because a
-/// rotation between two attitudes has several rotation vectors, which differ by full turns. A rotation below half a
-/// turn per window is unchanged.
+/// Selects the rotation vector of a window that agrees with the physics steps of the window. A rotation between two
+/// attitudes has several rotation vectors, which differ by full turns. A rotation below half a turn per window stays
+/// unchanged.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

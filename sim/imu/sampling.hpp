@@ -9,10 +9,10 @@
 
 namespace tumble::sim {
 
-/// Sampling of a device that does not integrate between outputs. Each reading is the plain mean of the signal over the
-/// device's own window. The device may have its own update rate, which is slower or faster than the output rate and not
-/// synchronous with the outputs. Outputs repeat the last reading until a new reading is available (sample and hold).
-/// The model excludes drift and jitter of the device's clock, and weighted windows.
+/// Sampling models a device that does not integrate between outputs. Each reading is the plain mean of the signal over
+/// the device's averaging window. The device may have an update rate that is slower or faster than the output rate and
+/// not synchronous with the outputs. The output repeats the last reading until a new reading is available (sample and
+/// hold). The sampling model excludes drift and jitter of the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {
@@ -24,14 +24,15 @@ class Sampling {
     std::uint8_t railed = 0;  ///< bits of all steps in the window
   };
 
-  /// `rate_hz` is the rate of calls of `add`. Draws the phase of the readings from `stream` if the device has its own
-  /// update rate.
+  /// `rate_hz` is the rate of calls of `add`. The constructor draws the phase of the readings from `stream` if the
+  /// device has a separate update rate.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns false if the device integrates between outputs. If on() is false, no other member may be used.
+  /// Returns whether the device averages over its window instead of integrating between outputs. If on() is false, no
+  /// other member may be used.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
-  /// Returns the current output. The cost is O(window) for a device without its own update rate.
+  /// Returns the current output; cost O(window) for a device without a separate update rate.
   Reading output() const;
 
  private:

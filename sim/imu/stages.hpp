@@ -7,20 +7,21 @@
 
 #include "sim/random/stream.hpp"
 
-/// Small stages of an inertial sensor's error model, each for one triad; bias.hpp and rail.hpp contain larger stages. A
-/// stage that is off returns its input bit for bit and draws no random numbers.
+/// stages.hpp contains small stages of an inertial sensor's error model, each for one triad; bias.hpp and rail.hpp
+/// contain larger stages. A stage that is off returns its input bit for bit and draws no random numbers.
 namespace tumble::sim {
 
-/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, the numbers are zero and
-/// no random number is drawn.
+/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, the three numbers are
+/// zero and no random number is drawn.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
 /// Returns a normally distributed number with standard deviation `sigma`, truncated at three standard deviations. For
-/// `sigma` 0, the number is 0 and no random number is drawn.
+/// `sigma` 0, the result is 0 and no random number is drawn.
 double bounded_normal(Stream& stream, double sigma);
 
-/// Delays a signal by `delay_s`. The output has the first value until the delay has passed; values between samples are
-/// interpolated linearly. The sum of the signal over a long time is preserved. A delay of 0 switches the stage off.
+/// DelayLine delays a signal by `delay_s`. The output equals the first value until the delay has passed; values between
+/// samples are interpolated linearly. The delay preserves the sum of the signal over a long time. A delay of 0 switches
+/// the stage off.
 class DelayLine {
  public:
   DelayLine(double delay_s, double rate_hz);
@@ -33,8 +34,9 @@ class DelayLine {
   bool started_ = false;
 };
 
-/// Second-order low-pass filter (Butterworth, bilinear transform with prewarped cutoff) with gain 1 for a constant
-/// signal. The first sample sets the steady state of the filter. A cutoff of 0 switches the stage off.
+/// LowPass is a second-order low-pass filter (Butterworth, bilinear transform with prewarped cutoff) with gain 1 for a
+/// constant signal. The first sample sets the steady state of the low-pass filter. A cutoff frequency of 0 switches the
+/// stage off.
 class LowPass {
  public:
   /// `cutoff_hz` must be below half of `rate_hz`.
@@ -49,18 +51,18 @@ class LowPass {
 };
 
 /// Draws scale and misalignment errors of a triad: 1 plus scale errors on the diagonal, and six independent small
-/// angles off the diagonal, all normal. The result is exactly the identity if both standard deviations are 0.
+/// angles off the diagonal, all normal. The axis errors are exactly the identity if both standard deviations are 0.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
-/// Selects, for each axis, the part of a device that provides the reading: the precise part up to `handover`, the
-/// coarse part above, and again the precise part below 90 % of `handover`. A handover of 0 always selects the coarse
-/// part. Bias, scale and axes do not change with the part; noise and quantum do.
+/// RangeChoice selects for each axis the precise part of a two-range device up to `handover`, the coarse part above,
+/// and the precise part again below 90 % of `handover`. A handover of 0 always selects the coarse part. Bias, scale and
+/// axes are equal for both parts; noise and quantum differ.
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}
-  /// Selects the part for each axis by the signal before noise and saturation.
+  /// Selects the part of the device for each axis by the signal before noise and saturation.
   void update(const Eigen::Vector3d& signal);
-  /// Returns, for each axis, the number (`coarse` or `precise`) of the selected part.
+  /// Returns `coarse` or `precise` for each axis, according to the selected part.
   Eigen::Vector3d pick(double coarse, double precise) const;
 
  private:

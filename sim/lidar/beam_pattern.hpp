@@ -9,18 +9,19 @@
 
 namespace tumble::sim {
 
-/// Maximum number of beams per slot.
+/// kMaxChannels is the maximum number of lidar beams per slot.
 inline constexpr int kMaxChannels = 16;
 
-/// Firings of one channel in kLanes consecutive slots: origins and directions in the axes of L.
+/// ChannelFirings contains the firings of one channel in kLanes consecutive slots: origins and directions in the axes
+/// of L.
 struct ChannelFirings {
   alignas(64) double origin_x_m[kLanes], origin_y_m[kLanes], origin_z_m[kLanes];
   alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
 };
 
-/// Firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast together. Neighbouring
-/// lanes have similar directions, which makes a packet of rays fast to cast. All kLanes lanes are filled, including
-/// lanes beyond `slots`.
+/// FiringBlock contains the firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast
+/// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. All kLanes lanes
+/// are filled, including lanes beyond `slots`.
 struct FiringBlock {
   std::int64_t first_slot = 0;  ///< counted from the start of the recording; the unique key of the random numbers
   int slots = 0;
@@ -30,9 +31,9 @@ struct FiringBlock {
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// The firings of a lidar. A slot is a sequence of all channels (spinning), or an instant at which all units fire
-/// (rosette). Slot k starts at k times the slot period, also across sweeps, and belongs to the sweep in which the slot
-/// starts.
+/// BeamPattern describes the firings of a lidar. A slot is a sequence of all channels (spinning), or an instant at
+/// which all units fire (rosette). Slot k starts at k times the slot period, also across sweeps, and belongs to the
+/// sweep in which it starts.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;
@@ -44,22 +45,21 @@ class BeamPattern {
   int channels() const { return channels_; }
   /// Returns the true and reported time from the start of a slot to the firing of a channel.
   std::int64_t lag_ns(int channel) const { return channel * firing_period_ns_; }
-  /// Returns the longest time from the start of a slot to the last firing of the slot.
+  /// Returns the longest time from the start of a slot to its last firing.
   std::int64_t slot_length_ns() const { return lag_ns(channels_ - 1); }
   std::uint16_t ring(int channel, std::int64_t slot) const {
     return static_cast<std::uint16_t>(ring_[channel] + channels_ * (slot % banks_));
   }
 
-  /// Fills the firings of the slots `slot` to `slot + slots - 1` of a sweep, at most kLanes.
+  /// Fills in the firings of the slots `slot` to `slot + slots - 1` of a sweep, at most kLanes.
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Returns the number of direction cells into which all slots fall, so that results can be precomputed per channel
-  /// and cell. Returns 0 if the pattern does not repeat.
+  /// Returns the number of direction cells that cover all slots, so that results can be precomputed per channel and
+  /// cell. Returns 0 if the pattern does not repeat.
   virtual int cells() const { return 0; }
-  /// Returns the largest angle about the z axis of L between a firing of a cell and the firing at the middle of the
-  /// cell.
+  /// Returns the largest angle about the z axis of L between a firing in a cell and the firing at the cell's middle.
   virtual double cell_half_angle_rad() const { return 0.0; }
-  /// Fills the origins and directions of the beams at the middles of the cells `first` to `first + kLanes - 1`.
+  /// Fills in the origins and directions of the beams at the middles of the cells `first` to `first + kLanes - 1`.
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
 
  protected:
@@ -69,11 +69,11 @@ class BeamPattern {
   std::array<std::uint16_t, kMaxChannels> ring_{};
 };
 
-/// Spinning lidar: a column of lasers that rotates about the z axis. The azimuth is zero (along x of L) at the start of
-/// each sweep and increases clockwise seen from above. Channel c of sequence k fires at the time k P + c p, with the
-/// sequence period P and the firing period p. The beam of the channel leaves the mirror at the distance R1 from the
-/// axis and R2 below the origin. Rings are counted from the lowest elevation. The timing and geometry are from the
-/// RoboSense RS-16 User's Guide v4.0 and the published driver.
+/// SpinningPattern is that of a spinning lidar: a column of lasers that rotates about the z axis. The azimuth is zero
+/// (along x of L) at the start of each sweep and increases clockwise seen from above. Channel c of sequence k fires at
+/// the time k P + c p, with the sequence period P and the firing period p. The beam of a channel leaves the mirror at
+/// the distance R1 from the axis and R2 below the origin. Ring numbers start at the lowest elevation. The timing and
+/// geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -84,7 +84,7 @@ class SpinningPattern final : public BeamPattern {
 
  private:
   std::uint32_t reported_start_ns(std::int64_t sweep, std::int64_t slot) const;
-  /// Fills the firings of all channels from the azimuth at the start of each lane's slot.
+  /// Fills in the firings of all channels from the azimuth at the start of each lane's slot.
   void aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const;
 
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
@@ -93,10 +93,10 @@ class SpinningPattern final : public BeamPattern {
       sin_lag_;  ///< lag: azimuth since the start of the sequence
 };
 
-/// Lidar with a column of up to 128 evenly spaced rings that rotates about the z axis. A column fires in banks of 16
-/// rings from the bottom to the top, evenly distributed over the column's period. The slots are the banks. All beams
-/// start at the origin of L. Elevations may rise by a share of the ring spacing from sweep to sweep, which approximates
-/// patterns that do not repeat.
+/// ColumnPattern is that of a lidar with a column of up to 128 evenly spaced rings that rotates about the z axis. A
+/// column fires in banks of 16 rings from bottom to top, evenly distributed over the column's period. Each bank of 16
+/// rings is one slot. All beams start at the origin of L. Elevations may rise by a fraction of the ring spacing from
+/// sweep to sweep, which approximates patterns that do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);
@@ -106,10 +106,10 @@ class ColumnPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, lowest_rad_, spacing_rad_, shift_share_;
 };
 
-/// Rosette lidar: a beam that is refracted by two prisms rotating at constant rates, for one or several units with
-/// different yaw. With y/x and z/x of the beam, y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t),
-/// where t is the time since the start of the recording. Ring numbers are the units from right (negative yaw) to left.
-/// All units share the origin of L.
+/// RosettePattern is that of a rosette lidar: two prisms rotating at constant rates refract a beam, for one or several
+/// units with different yaw. With y/x and z/x of the beam, y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1
+/// - w2) t), where t is the time since the start of the recording. The ring number is the number of the unit, from
+/// right (negative yaw) to left. All units share the origin of L.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);

@@ -13,8 +13,8 @@ struct Share {
   int ray;
 };
 
-/// The echo with the most energy, which consists of the rays `first` to `last` - 1 in order of range. Among echoes of
-/// equal energy, the nearest echo is chosen.
+/// Echo is the echo with the most energy, which consists of the rays `first` to `last` - 1 in order of range. Among
+/// echoes of equal energy, the nearest echo is chosen.
 struct Echo {
   int first = 0, last = 0;
   float energy = 0.0f;

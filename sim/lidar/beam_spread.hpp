@@ -8,22 +8,22 @@
 
 namespace tumble::sim {
 
-/// Maximum number of rays per beam.
+/// kMaxBeamRays is the maximum number of rays per beam.
 inline constexpr int kMaxBeamRays = 16;
 
-/// The echoes that determine the ranges of a device with beams of finite width; one lane per firing.
+/// Echoes contains the echoes that determine the measured ranges of beams of finite width; one lane per firing.
 struct Echoes {
   RayPacket packet;  ///< range of the echo; reflectivity and cosine as for a single surface with that echo
   alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes
 };
 
-/// Models a finite beam width by a fixed pattern of rays, each with an equal part of the ellipse's area (Vogel,
-/// Mathematical Biosciences 44, 1979). Each ray returns the energy reflectivity times cosine of incidence over range
-/// squared. Hits whose ranges differ by less than the length of the echo are merged. The measured range is the
-/// energy-weighted mean of the ranges in the strongest echo. A beam across an edge therefore returns a range between
-/// the two surfaces, or the range of one surface if the surfaces are farther apart. The surface id and the exact hit
-/// belong to the ray with the most energy. The model excludes an intensity profile over the beam, and several returns
-/// per firing.
+/// BeamSpread models a finite beam width by a fixed pattern of rays, each with an equal part of the ellipse's area
+/// (Vogel, Mathematical Biosciences 44, 1979). Each ray returns an energy of reflectivity times cosine of incidence,
+/// divided by the range squared. Hits whose ranges differ by less than the length of the echo merge into one echo. The
+/// measured range is the energy-weighted mean of the ranges in the strongest echo. A beam across an edge therefore
+/// returns a range between the two surfaces, or the range of one surface if the surfaces are farther apart. The surface
+/// id and the exact hit belong to the ray with the most energy. The model excludes an intensity profile over the beam,
+/// and several returns per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);
@@ -40,7 +40,7 @@ class BeamSpread {
   std::array<double, kMaxBeamRays> across_, up_;  ///< tangents of the angular offsets
 };
 
-/// Sets the exact hits of rays without width.
+/// Sets the exact hits of beams without width.
 void set_hits(Echoes& echoes);
 
 }  // namespace tumble::sim

@@ -9,16 +9,16 @@
 
 namespace tumble::sim {
 
-/// Precomputes which firings of a repeating pattern may hit the robot's own cage. The mask saves time because the cage
-/// is rigidly attached to the lidar and most firings miss the cage. The mask has no false negatives: the beam at the
-/// middle of each cell is cast against widened shapes. The shapes are widened by the largest distance between a beam of
-/// the cell and the beam at the middle.
+/// CageMask precomputes which firings of a repeating pattern may hit the robot's own cage. The cage mask saves time
+/// because the cage is rigidly attached to the lidar and most firings miss it. The cage mask has no false negatives: it
+/// casts the beam at the middle of each cell against widened shapes. The shapes are widened by the largest distance
+/// between a beam of the cell and the middle beam.
 class CageMask {
  public:
-  /// `cage` is in the axes of L. For a pattern that does not repeat, every firing may hit.
+  /// `cage` is in the axes of the lidar frame L. For a pattern that does not repeat, every firing may hit the cage.
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);
 
-  /// Returns true if any firing of a channel in the block may hit the cage.
+  /// Returns whether any firing of a channel in the block may hit the cage.
   bool may_hit(const FiringBlock& block, int channel) const {
     if (cells_ == 0) return !is_empty_;
     bool may = false;

@@ -42,7 +42,7 @@ float unit_of(std::uint32_t word) {
 }
 
 /// Computes the natural logarithm of x in (0, 1] with x = 2^e m, m in [0.71, 1.41], and the series of 2 atanh((m - 1) /
-/// (m + 1)). The relative error is 2e-7.
+/// (m + 1)). The relative error of the logarithm is 2e-7.
 float log_of(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
   const std::int32_t exponent = bits >> 23;
@@ -52,8 +52,8 @@ float log_of(float x) {
   return static_cast<float>(exponent) * 0.693147181f + series;
 }
 
-/// Computes cosine and sine of the angle 2 pi word / 2^32 by quadrant and Taylor series within +-pi/4. The error is
-/// 1e-7.
+/// Computes cosine and sine of the angle 2 pi word / 2^32 by quadrant and Taylor series within +-pi/4. The error of
+/// cosine and sine is 1e-7.
 void cos_sin_of(std::uint32_t word, float& cosine, float& sine) {
   const std::uint32_t quadrant = (word + 0x20000000u) >> 30;
   const auto rest = static_cast<std::int32_t>(word - (quadrant << 30));

@@ -9,18 +9,18 @@
 
 namespace tumble::sim {
 
-/// Random numbers of one packet of rays, with one number of each kind per lane.
+/// LaneNoise contains the random numbers of one packet of rays, with one number of each kind per lane.
 struct LaneNoise {
   alignas(64) float normal[kLanes];   ///< mean 0, standard deviation 1, tails truncated at 6.6
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 
-/// Random numbers for sixteen lanes at a time. Philox 4x32-10 and Box-Muller (1958) are written as loops over lanes, in
-/// single precision and without calls, so that the compiler vectorises the loops. The numbers depend only on (stream,
-/// index, lane).
+/// LaneNoiseSource draws random numbers for sixteen lanes at a time. Philox 4x32-10 and Box-Muller (1958) are written
+/// as loops over lanes, in single precision and without calls, so that the compiler vectorises the loops. The random
+/// numbers depend only on (stream, index, lane).
 class LaneNoiseSource {
  public:
-  /// The key is a block of the stream that draw() never uses.
+  /// The random key is a block of the stream that draw() never uses.
   explicit LaneNoiseSource(const Stream& stream);
 
   /// `index` identifies the packet; must be below 2^61.

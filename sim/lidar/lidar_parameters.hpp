@@ -7,7 +7,8 @@
 
 namespace tumble::sim {
 
-/// Number of channels of a spinning lidar; elevation_01_rad is the elevation of the channel that fires first.
+/// kSpinningChannels is the number of channels of a spinning lidar; elevation_01_rad belongs to the channel that fires
+/// first.
 inline constexpr int kSpinningChannels = 16;
 
 /// Parameters of a lidar whose column of lasers rotates about the z axis of L (RoboSense RS-16).

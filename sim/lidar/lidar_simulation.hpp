@@ -12,7 +12,7 @@
 
 namespace tumble::sim {
 
-/// True motion of the body at a fixed period from time 0.
+/// MotionTrack is the true motion of the body at a fixed period from time 0.
 struct MotionTrack {
   std::int64_t period_ns = 0;
   std::span<const Eigen::Vector3d> p_WB_m;
@@ -20,9 +20,10 @@ struct MotionTrack {
 };
 
 /// Casts all sweeps of one lidar over a motion; each point is cast from the true sensor pose at its firing time. Rays
-/// hit the static world and the robot's own cage (Embree); rays without a hit give no point. After the casting, the
-/// errors of the device are applied: range noise and quantum, drop-outs. Results do not depend on `threads`. `T_BL` is
-/// the true mounting. On return, `record` and `truth` are complete, except for the calibration in `record.T_BL`.
+/// hit the static world and the robot's own cage (Embree); a ray without a hit gives no point. The function then
+/// applies the errors of the device: range noise and quantum, drop-outs. The results are independent of `threads`.
+/// `T_BL` is the true mounting of the lidar. simulate_lidar completes `record` and `truth`, except for the calibration
+/// in `record.T_BL`.
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
                     const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth);
 

@@ -5,16 +5,16 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// This header is used only within sim. NearestHits stores the nearest hits found so far for a packet of rays.
+/// NearestHits stores the nearest hits found so far for a packet of rays.
 namespace tumble::sim {
 
-/// Nearest hit of each lane, computed with our own arithmetic. Among hits at equal ranges, the hit with the lowest
-/// geometry number is kept, so that the result does not depend on the order of calls.
+/// NearestHits computes the nearest hit of each lane with arithmetic that is identical on every CPU. Among hits at
+/// equal ranges, NearestHits keeps the hit with the lowest geometry number, so that the order of calls is irrelevant.
 class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
 
-  /// Starts without hits; hits beyond the maximum ranges of the packet's rays are ignored.
+  /// Starts without hits, and ignores hits beyond the maximum ranges of the rays.
   explicit NearestHits(const RayPacket& packet);
 
   bool is_replaced(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {

@@ -8,9 +8,9 @@ namespace tumble::sim {
 
 namespace {
 
-// kSure gives two limits of the signal that avoid the power function for most returns. If the uniform number is below
-// kSure, a return is kept from the signal sure_signal_ on. From the signal certain_signal_ on, a return is always kept,
-// because the probability of loss is below the resolution of the uniform numbers.
+// kSure gives two limits of the signal that avoid the power function for most returns. If the uniform random number is
+// below kSure, a return is kept from the signal sure_signal_ on. From the signal certain_signal_ on, a return is always
+// kept, because the loss probability is below the resolution of the random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 

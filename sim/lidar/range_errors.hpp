@@ -9,17 +9,18 @@
 
 namespace tumble::sim {
 
-/// The device's measurements of sixteen exact hits; values are valid only if `kept` is set.
+/// Returns contains the device's measurements of sixteen exact hits; values are valid only if `kept` is set.
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];
   alignas(64) float intensity[kLanes];  ///< 0..1
 };
 
-/// Applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random loss, white
-/// noise, range limits, quantum. Intensity is reflectivity times the cosine of incidence, rounded down to the intensity
-/// quantum, as reported by devices that compensate for range. The model excludes range bias by incidence or intensity,
-/// cross-talk, and several returns per firing. Before RangeErrors, BeamSpread models beam divergence and mixed returns.
+/// RangeErrors applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random
+/// loss, white noise, range limits, quantum. The intensity is reflectivity times the cosine of incidence, rounded down
+/// to the intensity quantum, as in devices that compensate for range. The model excludes range bias by incidence or
+/// intensity, cross-talk, and several returns per firing. BeamSpread models beam divergence and mixed returns before
+/// RangeErrors acts.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Elapsed fraction of an interval at each lane, and the resulting weights of the interval's rotations.
+/// Shares contains the elapsed fraction of an interval at each lane, and the resulting weights of the interval's
+/// rotations.
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
   alignas(64) double within[kLanes];  ///< 1 from the interval's first lane on, 0 before
@@ -35,7 +36,7 @@ struct Shares {
   }
 }
 
-/// Computes one number of the lidar's pose (an entry of rotation or position) and its derivative by time, for the lanes
+/// Computes one number of the lidar's pose (an entry of rotation or position) and its time derivative, for the lanes
 /// within the interval.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
@@ -86,7 +87,7 @@ void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, Tr
     const TrackCursor::Interval& now = track.interval(middle_ns(from));
     Shares shares;
     for (int s = 0; s < kLanes; ++s) {
-      // lanes beyond the interval are overwritten by the next interval
+      // the next interval overwrites lanes beyond this interval
       shares.within[s] = s >= from ? 1.0 : 0.0;
       shares.share[s] = now.share(middle_ns(std::max(s, from)));
     }

@@ -6,9 +6,9 @@
 
 namespace tumble::sim {
 
-/// Computes poses of the lidar for a block of firings and converts firings to rays in world axes, each at its own
-/// firing time. Within a slot (50 us) the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s,
-/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. A slot that contains a sample of the track, where the rate
+/// BlockPoses computes the lidar's pose for a block of firings, and converts firings to world rays, each at its own
+/// firing time. Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s,
+/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. A slot that contains a sample of the motion, where the rate
 /// changes, has one pose per firing.
 class BlockPoses {
  public:
@@ -29,7 +29,7 @@ class BlockPoses {
   Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 
-/// Returns rays in the axes of L.
+/// Returns rays in the axes of the lidar frame L.
 void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays);
 
 }  // namespace tumble::sim

@@ -33,12 +33,12 @@ using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 /// The options select one Embree kernel on every CPU: AVX2 with its native packet width. By default, Embree chooses the
 /// kernel by CPU, and the results of different kernels differ in the last bits.
 constexpr const char* kDevice =
-    // "threads=1" would limit oneTBB in the whole process during the device's life
+    // "threads=1" would limit oneTBB in the whole process while the Embree device exists
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
 /// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges only select
-/// candidates: all faces within the factor kReach of the nearest hit are examined.
+/// candidates: the code examines all faces within the factor kReach of the nearest hit.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -53,7 +53,8 @@ struct MeshLabel {
   }
 };
 
-/// Data of the callbacks; Embree passes the address of the first member. The id of the ray contains the lane's index.
+/// CastContext is the data of the callbacks; Embree passes the address of the first member. The id of a ray contains
+/// the index of its lane.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -68,9 +69,9 @@ float searched_to(double range_m) {
   return static_cast<float>(range_m) * kReach;
 }
 
-/// Combines pairs of triangles (a, b, c), (a, c, d), as in a height field, to quads (b, c, d, a), which Embree cuts
-/// along the diagonal of the pair. With quads, building takes half the time, and casting takes 10 % less. Returns an
-/// empty list if the triangles do not form pairs.
+/// Combines pairs of triangles (a, b, c), (a, c, d), as in a height field, into quads (b, c, d, a), which Embree cuts
+/// along the diagonal of the pair. With quads, building the scene takes half the time, and casting takes 10 % less.
+/// Returns an empty list if the triangles do not form pairs.
 std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::vector<std::array<std::uint32_t, 4>> quads;
   if (triangles.size() % 2 != 0) return quads;
@@ -104,8 +105,8 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
 }
 
 /// Computes the range at which a ray meets the plane of a face that Embree reported, and the normal of the plane (any
-/// length). For a quad, `second_half` selects the half through which the ray passes. The selection comes from Embree's
-/// approximate reciprocal, which is accurate enough because the two halves are adjacent.
+/// length). For a quad, `second_half` selects the half through which the ray passes. Embree's approximate reciprocal is
+/// accurate enough for this selection, because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
   // corners are relative to the ray's origin; double represents the differences of floats exactly
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
@@ -126,7 +127,7 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   return normal.dot(a) / normal.dot(ray.direction);
 }
 
-/// Embree's filter callback: called for every hit within a ray's reach, in unspecified order.
+/// Embree calls this filter for every hit within a ray's reach, in unspecified order.
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -245,7 +246,7 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // an arena with one thread, because building must not use threads that the caller did not provide
+  // the arena has one thread, because building must not use threads that the caller did not provide
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));
@@ -279,7 +280,7 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // an unused lane repeats the first lane with an empty range, so that the input of the lane is defined
+    // an unused lane repeats the first lane with an empty range, so that its input is defined
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;
@@ -306,7 +307,7 @@ void RayScene::cast(RayPacket& packet) const {
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
   CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
-  // the rays of a channel have similar directions
+  // the rays of one channel have similar directions
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
   cast.nearest.write(packet);

@@ -9,10 +9,10 @@
 
 namespace tumble::sim {
 
-/// Number of rays that are cast at a time: one channel in consecutive slots, with similar directions.
+/// kLanes is the number of rays that are cast at a time: one channel in consecutive slots, with similar directions.
 inline constexpr int kLanes = 16;
 
-/// Sixteen rays and their hits. Lanes with index `count` or above are not cast.
+/// RayPacket contains sixteen rays and their hits. Lanes with index `count` or above are not cast.
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
@@ -26,11 +26,12 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Casts rays and finds nearest points on a fixed geometry (Embree, plus infinite planes). Building takes about 0.07 s
-/// for 320 000 triangles; the cost of a cast is logarithmic in the geometry. Const members may be called from several
-/// threads. Coordinates are float: at 50 m from the origin a hit is accurate to about 1e-5 m. Embree selects the
-/// surface with its AVX2 kernel on every CPU; RayScene then computes the hit on the surface in double precision.
-/// Results are therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
+/// RayScene casts rays and finds nearest points on a fixed geometry (Embree, plus infinite planes). Building the scene
+/// takes about 0.07 s for 320 000 triangles; the cost of a cast is logarithmic in the geometry. Several threads may
+/// call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to about 1e-5 m. Embree
+/// selects the surface with its AVX2 kernel on every CPU; RayScene then computes the hit on the surface in double
+/// precision. The results are therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error
+/// on other CPUs.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);
@@ -39,7 +40,7 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
 
   bool empty() const;
-  /// Finds the nearest hit of each lane.
+  /// Finds the nearest hit of each ray in the packet.
   void cast(RayPacket& packet) const;
   /// Returns the distance from a point to the nearest surface [m], at most `limit_m`.
   float distance(const Eigen::Vector3f& point_m, float limit_m) const;

@@ -18,7 +18,7 @@ bool is_seen(const mjModel& model, int geom) {
   return (model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0) && alpha != 0.0f;
 }
 
-/// Vertices of a height field in the axes of its geom; each grid row of nodes is along x.
+/// HeightField provides the vertices of a height field in the axes of its geom; each row of grid nodes is along x.
 class HeightField {
  public:
   HeightField(const mjModel& model, int geom)

@@ -10,10 +10,11 @@
 #include "sim/engine/model.hpp"
 #include "sim/lidar/shape.hpp"
 
-/// This header is used only within sim. The functions extract the surfaces that rays can hit from a compiled model.
+/// scene_geometry.hpp extracts from a compiled model the surfaces that rays can hit.
 namespace tumble::sim {
 
-/// Surface id of a return from the robot's own struts. Non-negative ids are indices of engine::World::surfaces.
+/// kOwnCage is the surface id of a return from the robot's own struts. Non-negative surface ids are indices of
+/// engine::World::surfaces.
 inline constexpr std::int32_t kOwnCage = -2;
 
 struct TriangleMesh {
@@ -21,7 +22,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A primitive shape with its surface id and diffuse reflectivity (0..1).
+/// SceneShape is a primitive shape with its surface id and diffuse reflectivity (0..1).
 struct SceneShape {
   Shape shape;
   std::int32_t surface_id;
@@ -38,30 +39,30 @@ struct SceneGeometry {
   std::vector<SceneMesh> meshes;
 };
 
-/// Conversion of a height field to triangles: only the top, or closed by the side walls and base box that mj_ray also
-/// hits.
+/// HeightFieldSides selects the triangles of a height field: only the top, or closed by the side walls and base box
+/// that mj_ray also hits.
 enum class HeightFieldSides { open, closed };
 
 /// Returns the geoms of engine::World::surface_geom in world axes; the surface id of a geom is its index in
-/// surface_geom. Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are left
-/// out. Throws InvalidSituation for a geom type whose surface is not supported (SDF).
+/// surface_geom. The function omits visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in
+/// mj_ray). Throws InvalidSituation for a geom type whose surface is not supported (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
 /// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. A primitive that
-/// contains the origin of L is the lidar's housing or a surrounding shell, and is treated as transparent.
+/// contains the origin of L is the housing of the lidar or a shell around it, and is transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
 /// Returns the pose of a geom in W by the current kinematics of the data.
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// Adds one geom of any purpose; `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a geom type
+/// Adds the surface of one geom; `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a geom type
 /// whose surface is not supported (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of the geom's colour times the mean colour
-/// of its texture, limited to 0.05..0.95. The visible colour approximates the reflectivity at 905 nm, which differs for
-/// real surfaces.
+/// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its
+/// texture, limited to 0.05..0.95. The visible colour approximates the reflectivity at 905 nm, which differs for real
+/// surfaces.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

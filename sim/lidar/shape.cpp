@@ -16,8 +16,8 @@ struct Roots {
   double first, second;
 };
 
-/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. Without real solutions, the function returns
-/// NaN, so that comparisons are false.
+/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. The function returns NaN if there are no real
+/// solutions, so that comparisons are false.
 Roots solve_quadratic(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0) || !(a > 0.0)) return {std::nan(""), std::nan("")};
@@ -131,7 +131,7 @@ double cast_box(const Vector3d& half, const Vector3d& o, const Vector3d& d, Vect
   return outside ? enter : leave;
 }
 
-/// Returns the signed distance to a box of any dimension; negative inside.
+/// Returns the signed distance of a point to a box of any dimension; negative inside.
 template <typename Vector>
 double signed_box_distance(const Vector& point, const Vector& half) {
   const Vector beyond = point.cwiseAbs() - half;
@@ -140,7 +140,7 @@ double signed_box_distance(const Vector& point, const Vector& half) {
 }
 
 /// Finds the nearest point of an ellipsoid as the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2, with
-/// the semi-axes a_i and the point y (Eberly, Distance from a point to an ellipsoid). Bisection is used because the sum
+/// the semi-axes a_i and the point y (Eberly, Distance from a point to an ellipsoid). Bisection works because the sum
 /// decreases monotonically for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();

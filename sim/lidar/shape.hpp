@@ -4,14 +4,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-/// This header is used only within sim. Shape is an analytic surface of one of MuJoCo's primitive geoms.
+/// Shape is an analytic surface of one of MuJoCo's primitive geoms.
 namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// A primitive with its pose in a frame F (world or body). The shape's axes S and `size_m` are as in MuJoCo. A plane
-/// has half sizes x, y about the z axis (0: infinite); a sphere has a radius; a capsule and a cylinder have a radius
-/// and a half length along z; an ellipsoid has semi-axes; a box has half sizes.
+/// Shape is a primitive with its pose in a frame F (world or body). The shape's axes S and its size `size_m` are
+/// defined as in MuJoCo. A plane has half sizes x, y about the z axis (0: infinite); a sphere has a radius; a capsule
+/// and a cylinder have a radius and a half length along z; an ellipsoid has semi-axes; a box has half sizes.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -20,7 +20,7 @@ struct Shape {
 };
 
 /// Returns the distance along the unit vector `direction_F` to the first crossing of the surface, from outside or
-/// inside; infinity without a crossing. A plane is hit only from its front, as in mj_ray. `normal_F` is the outward
+/// inside; infinity without a crossing. A ray hits a plane only from its front, as in mj_ray. `normal_F` is the outward
 /// unit normal at the hit.
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
@@ -28,7 +28,7 @@ double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eig
 /// Returns the distance of a point on either side to the surface [m]; exact except for the ellipsoid (1e-9 relative).
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Returns true if a point is inside; always false for a plane.
+/// Returns whether a point is inside the shape; always false for a plane.
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
 /// Returns the half sizes of the shape's bounding box along S; infinite along an unbounded plane.

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// Eight rays in the axes of a shape.
+/// LocalRays contains eight rays in the axes of a shape.
 struct LocalRays {
   alignas(64) double origin[3][kShapeLanes], direction[3][kShapeLanes];
 };
@@ -48,7 +48,7 @@ struct LocalRays {
 /// Computes the hit by the slab method (Kay and Kajiya, SIGGRAPH 1986): the last side through which the ray enters, or,
 /// from inside, the first side through which the ray leaves.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
-  // axis numbers have the lanes' width, so that the compiler selects ranges and axis numbers with equal masks
+  // axis numbers have the width of the lanes, so that the compiler selects ranges and axis numbers with equal masks
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];
   for (int i = 0; i < kShapeLanes; ++i) {

@@ -3,27 +3,27 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// This header is used only within sim. cast_rays() intersects eight rays with one shape.
+/// shape_lanes.hpp intersects eight rays with one shape at a time.
 namespace tumble::sim {
 
-/// Number of rays that Embree passes in one call.
+/// kShapeLanes is the number of rays that Embree passes in one call.
 inline constexpr int kShapeLanes = 8;
 
-/// Hits of eight rays on a shape, as computed by cast_ray().
+/// ShapeHits contains the hits of eight rays on a shape, as computed by cast_ray().
 struct ShapeHits {
   alignas(64) double range_m[kShapeLanes];  ///< infinity without a hit
   /// Unit normal of the surface in F; undefined without a hit. Zero components of the normal may have either sign.
   alignas(64) double normal_x[kShapeLanes], normal_y[kShapeLanes], normal_z[kShapeLanes];
 };
 
-/// Eight rays in the frame F, stored by coordinate.
+/// ShapeRays contains eight rays in the frame F, stored by coordinate.
 struct ShapeRays {
   const float *origin_x_m, *origin_y_m, *origin_z_m;
   const float *direction_x, *direction_y, *direction_z;  ///< unit vectors
 };
 
-/// Computes cast_ray() for eight rays, bit-identically. For planes and boxes, which form the walls of rooms, the
-/// function computes all rays at once. Hits of rays whose `wanted` is 0 are undefined.
+/// Computes the result of cast_ray() for eight rays, bit-identically. For planes and boxes, which form the walls of
+/// rooms, the function computes all rays at once. The hits of rays whose `wanted` is 0 are undefined.
 void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);
 
 }  // namespace tumble::sim

@@ -10,10 +10,10 @@
 
 namespace tumble::sim {
 
-/// The true surface of a situation's static world, which returns distances for the scoring of maps.
+/// Surface is the true surface of a situation's static world, which gives distances for the scoring of maps.
 class Surface {
  public:
-  /// Copies the world's static geoms to a scene for rays, without a new composition of the world. Throws
+  /// Copies the static geoms of the world to a scene for rays, without composing the world again. Throws
   /// InvalidSituation for a geom without a surface.
   explicit Surface(const BuiltSituation& built);
   ~Surface();

@@ -20,7 +20,7 @@ bool any_hit(const RayPacket& rays) {
   return any;
 }
 
-/// Returns of one channel from a block.
+/// ChannelReturns contains the returns of one channel from a block of slots.
 struct ChannelReturns {
   alignas(64) float position_x[kLanes], position_y[kLanes], position_z[kLanes];  ///< in L
   Returns returns;
@@ -120,7 +120,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // the cage mask considers only the axes of beams, so every ray next to an axis is cast against the cage
+        // the cage mask considers only beam axes, so every ray next to an axis is cast against the cage
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -16,7 +16,8 @@
 
 namespace tumble::sim {
 
-/// The returns of one sweep in order of time. The buffers are sized once for all firings and then reused.
+/// SweepPoints contains the returns of one sweep in order of time. The buffers are sized once for all firings of a
+/// sweep and then reused.
 struct SweepPoints {
   std::vector<Eigen::Vector3f> position_L_m, hit_W_m;
   std::vector<float> range_m, intensity;
@@ -28,8 +29,8 @@ struct SweepPoints {
   void make_room(std::size_t points);
 };
 
-/// Casts the sweeps of one lidar: one block of slots at a time, one packet of rays per channel. All members are const,
-/// so that several threads may cast sweeps.
+/// SweepCaster casts the sweeps of one lidar: one block of slots at a time, one packet of rays per channel. All member
+/// functions are const, so several threads may cast sweeps.
 class SweepCaster {
  public:
   /// Builds the ray scene of the world (about 0.07 s for a height field of 400 x 400 cells). Throws InvalidSituation.
@@ -38,12 +39,12 @@ class SweepCaster {
 
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
-  /// Casts sweep `number` of the recording; the result depends only on the motion and the seed. Allocates no memory
-  /// once `points` has room.
+  /// Casts sweep `number` of the recording; the result depends only on the motion and the seed. The function allocates
+  /// no memory once `points` has room.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 
  private:
-  /// Buffers for a block, so that casting allocates no memory.
+  /// Workspace contains the buffers for a block of slots, so that casting allocates no memory.
   struct Workspace;
 
   void cast_channel(const FiringBlock& block, const BlockPoses& poses, int channel, bool meets_cage,

@@ -11,18 +11,19 @@
 
 namespace tumble::sim {
 
-/// Rotation and position as one matrix: T_WL is [R_WL, p_WL].
+/// Pose34 is rotation and position as one matrix: T_WL is [R_WL, p_WL].
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
-/// Interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the body's position
-/// is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5 ms apart, the
-/// error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. Beyond the last sample, the last interval
-/// is extrapolated. The current interval is cached, so that ascending times are fast.
+/// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the
+/// body's position is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5
+/// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. After the last motion
+/// sample, TrackCursor extrapolates the last interval. The current interval is cached, so that ascending times are
+/// fast.
 class TrackCursor {
  public:
-  /// Interval between two samples. At the fraction `x` of the interval, the body has rotated by the angle a = x |turn|
-  /// [rad]. With first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2, the pose is start + first turned + second
-  /// rotated_twice + x step_m (Rodrigues: exp(x K) = I + first K + second K^2).
+  /// Interval is the time between two samples of the motion. At the fraction `x` of the interval, the body has rotated
+  /// by the angle a = x |turn| [rad]. With first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2, the pose is start +
+  /// first turned + second rotated_twice + x step_m (Rodrigues: exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
@@ -57,7 +58,7 @@ class TrackCursor {
     return now_;
   }
 
-  /// Returns the pose at a time.
+  /// Returns the pose of the lidar at a given time.
   Pose34 at(std::int64_t time_ns) {
     const Interval& now = interval(time_ns);
     const double share = now.share(time_ns), angle2 = share * share * now.angle2;

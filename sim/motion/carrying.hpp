@@ -9,25 +9,26 @@
 
 namespace tumble::sim {
 
-/// Target pose of a robot that a hand carries.
+/// HandHeldPose is the target pose of a robot that a hand carries.
 struct HandHeldPose {
   Eigen::Vector3d p_m;  ///< centre of mass, in W
   Eigen::Quaterniond q;
 };
 
-/// Smooth path over time, defined at any time, also before 0. The path is differentiated twice numerically, so
-/// velocities must be continuous.
+/// HandHeldPath is a smooth path over time, defined at any time, also before 0. The path is differentiated twice
+/// numerically, so its velocity must be continuous.
 using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
-/// Returns the wrench of a hand that carries a robot along a path: the feed-forward force of the path, plus a spring
-/// and a damper. The hand has no body in the simulation. `inertia_B_kg_m2` is about the centre of mass, in B axes.
+/// Returns the wrench of a hand that carries a robot along a path: the path's feed-forward force, a spring and a
+/// damper. The hand has no body in the simulation. `inertia_B_kg_m2` is about the centre of mass, in B axes.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path);
 
 /// Returns the moment of inertia of the robot that `hand` carries, about the robot's centre of mass in B axes [kg m^2].
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);
 
-/// Smooth step from 0 at u = 0 to 1 at u = 1 with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5; constant outside.
+/// Returns a smooth step from 0 at u = 0 to 1 at u = 1 with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5; constant
+/// outside.
 double eased(double u);
 
 }  // namespace tumble::sim

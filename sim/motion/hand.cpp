@@ -14,8 +14,8 @@ constexpr double kFullTremor_m_s = 0.1;  // a waiting hand is steady; the tremor
                                          // on
 
 /// Returns the smallest rotation that turns the unit vector `from` up; a half turn about x if `from` points straight
-/// down. The rotation is computed here because Eigen's setFromTwoVectors compiles a singular value decomposition for a
-/// vector that points down, which takes 6 s.
+/// down. The function replaces Eigen's setFromTwoVectors, which compiles a singular value decomposition for a vector
+/// that points down, which takes 6 s.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};

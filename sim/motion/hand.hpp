@@ -10,12 +10,12 @@
 
 namespace tumble::sim {
 
-/// Target position of the hand for the geometric centre of a sphere.
+/// Reference is the target position of the hand for the geometric centre of a sphere.
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Parameters that every hand motion has.
+/// kHandParameters lists the parameters that every hand motion has.
 inline constexpr std::array kHandParameters = {
     Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m",
               "horizontal stiffness with which the hand keeps the robot on its path; assumed"},
@@ -45,7 +45,7 @@ inline constexpr std::array kHandParameters = {
 };
 inline constexpr std::size_t kHandPatches = 3;
 
-/// Concatenates the parameters of the hand and the parameters of a motion in one table.
+/// Concatenates the parameters of the hand and of a motion in one table.
 template <std::size_t N>
 constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
   std::array<Parameter, kHandParameters.size() + N> all{};
@@ -54,9 +54,9 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// A hand that moves a sphere with a horizontal force at the sphere's centre. The force follows a reference position
-/// (spring, damper, and the feed-forward force of rolling) with tremor; on floor patches with different friction,
-/// bursts of torque are added. The hand applies no vertical force and has no body in the simulation.
+/// Hand moves a sphere with a horizontal force at the sphere's centre. The force of the hand follows a reference
+/// position (spring, damper, and feed-forward force of rolling) with tremor; floor patches with different friction
+/// cause bursts of torque. The hand applies no vertical force and has no body in the simulation.
 class Hand {
  public:
   /// Error messages of the constructor start with `motion`. Throws InvalidSituation if the robot is not a sphere.
@@ -67,8 +67,8 @@ class Hand {
   /// Returns the state at rest with the centre at `p_G_m`; the heavy side points down, so that the sphere is in
   /// equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Returns the wrench that the hand applies in `state`. The function stores when a burst began, so times must
-  /// increase between calls.
+  /// Returns the wrench that the hand applies to a sphere in `state`. The function stores when a burst began, so times
+  /// must increase between calls.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// Parameters of an initial impulse: its direction and the resulting spin.
+/// kImpulseParameters lists the parameters of an initial impulse: its direction and the resulting spin.
 inline constexpr std::array kImpulseParameters = {
     Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad",
               "direction of the push, as a rotation about z; 0: down the slope"},

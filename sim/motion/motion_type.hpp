@@ -10,8 +10,8 @@
 
 namespace tumble::sim {
 
-/// Cause of a robot's motion: the robot's start pose and the wrench that acts on the robot. Velocities are never set
-/// directly, because accelerometers would not measure a jump of the velocity.
+/// Motion is the cause of a robot's motion: its start pose and the wrench that acts on it. A Motion never sets
+/// velocities directly, because accelerometers would not measure a jump of the velocity.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -23,33 +23,33 @@ class Motion {
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 
-/// A kind of motion with its parameters and its factory for a world. `world` must outlive the motion.
+/// MotionType is a kind of motion with its parameters and its factory for a world. `world` must outlive the motion.
 struct MotionType {
   ComponentType component;
   std::unique_ptr<Motion> (*make)(const Values& values, const engine::World& world);
 };
 
-/// A push by force and torque for a short time, then free motion.
+/// Returns the motion type of a short push by force and torque, followed by free motion.
 const MotionType& push_motion();
-/// A hand holds the robot above the ground, swings the robot and releases it.
+/// Returns the motion type in which a hand holds the robot above the ground, swings it and releases it.
 const MotionType& throw_motion();
-/// A hand holds the robot above the ground and releases the robot.
+/// Returns the motion type in which a hand holds the robot above the ground and releases it.
 const MotionType& drop_motion();
-/// A hand leads a sphere along two straight legs.
+/// Returns the motion type in which a hand leads a sphere along two straight legs.
 const MotionType& hand_roll_motion();
-/// A hand leads a sphere along a path of selectable shape.
+/// Returns the motion type in which a hand leads a sphere along a path of selectable shape.
 const MotionType& hand_path_motion();
-/// A hand carries a robot and twirls the robot about its x axis.
+/// Returns the motion type in which a hand carries a robot and twirls it about its x axis.
 const MotionType& twirl_motion();
-/// A walker carries a robot along a horizontal figure of eight.
+/// Returns the motion type in which a walker carries a robot along a horizontal figure of eight.
 const MotionType& stroll_motion();
-/// A hand repeatedly leads a hanging robot aside and releases the robot.
+/// Returns the motion type in which a hand repeatedly leads a hanging robot aside and releases it.
 const MotionType& swing_motion();
 
-/// Returns all kinds of motion in the order of registration. A new kind of motion needs a source file and a line in
+/// Returns all motion types in the order of registration. A new motion type needs a source file and a line in
 /// motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();
-/// Returns the kind of motion with this name. For an unknown name, throws InvalidSituation with the nearest known name.
+/// Returns the motion type with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const MotionType& find_motion_type(std::string_view name);
 
 }  // namespace tumble::sim

@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// Shapes of a horizontal path; scenarios select a shape by number.
+/// PathShape lists the shapes of a horizontal path; scenarios select a shape by number.
 enum class PathShape {
   line,   ///< straight along +x, with an optional lateral sway
   l,      ///< two equal legs with a corner to the left
@@ -25,8 +25,8 @@ struct PathPlan {
   double sway_length_m = 4.0;  ///< line only: wavelength
 };
 
-/// Returns nodes of the path about 5 mm apart; the centre of the nodes' bounding box is at the origin. Only the free
-/// path draws random numbers from `stream`. O(length).
+/// Returns nodes of the path about 5 mm apart; the centre of their bounding box is at the origin. Only the free path
+/// draws random numbers from `stream`. Cost: O(length of the path).
 std::vector<Eigen::Vector2d> plan_path(const PathPlan& plan, Stream& stream);
 
 }  // namespace tumble::sim

@@ -35,8 +35,8 @@ constexpr std::array kStrollParameters = {
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
 
-/// A walker carries the robot along a horizontal figure of eight, from rest to rest. The robot faces along the path,
-/// with the tremor of a hand.
+/// In the motion Stroll, a walker carries the robot along a horizontal figure of eight, from rest to rest. The robot
+/// faces along the path, with the tremor of a hand.
 class Stroll : public Motion {
  public:
   Stroll(const Values& values, const engine::World& world)

@@ -32,7 +32,7 @@ constexpr std::array kSwingParameters = {
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// One swing, in which the hand grips the robot, leads it aside, holds it and releases it.
+/// Lift is one swing, in which the hand grips the robot, leads it aside, holds it and releases it.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;
@@ -62,8 +62,8 @@ double smooth(double share) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand that grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a damper pull the
-/// segment to a moving target. The hand applies no torque and has no body in the simulation.
+/// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a
+/// damper pull the segment to a moving target. The hand applies no torque and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)

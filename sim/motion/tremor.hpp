@@ -7,9 +7,9 @@
 
 namespace tumble::sim {
 
-/// Smooth random unsteadiness as a pure function of time: a sum of sinusoids of random phase. Frequencies are
-/// log-uniform between two limits that the caller states; amplitudes are inversely proportional to frequency. The root
-/// mean square over a long time equals the value that the caller states.
+/// Tremor is the random unsteadiness of a hand as a smooth function of time: a sum of sinusoids of random phase. The
+/// frequencies are log-uniform between two limits that the caller states; amplitudes are inversely proportional to
+/// frequency. The root mean square over a long time equals the value that the caller states.
 class Tremor {
  public:
   Tremor(Stream& stream, double rms, double lowest_hz, double highest_hz);

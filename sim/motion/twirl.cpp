@@ -43,12 +43,12 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// One twist of the wrist or the fingers, from rest to rest; the rate is a sin^2 pulse.
+/// Stroke is one twist of the wrist or the fingers, from rest to rest; the rate is a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
 
-  /// Returns the angle turned until `time_s`, in closed form.
+  /// Returns the angle that the twist has covered at `time_s`, in closed form.
   double angle_rad(double time_s) const {
     constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
@@ -72,7 +72,7 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// A hand carries the robot by a point of the robot and twirls the robot about x, stroke by stroke. A spring and a
+/// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke. A spring and a
 /// damper keep the robot on the intended path, with the path's feed-forward forces. The hand has no body in the
 /// simulation.
 class Twirl : public Motion {
@@ -100,7 +100,7 @@ class Twirl : public Motion {
   }
 
  private:
-  /// Intended pose of the robot.
+  /// Returns the intended pose of the robot.
   HandHeldPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {

@@ -7,10 +7,9 @@
 
 namespace tumble::sim {
 
-/// A named, independent stream of random numbers: `Stream(seed, "imu.noise")`. The stream is counter-based (Philox
-/// 4x32-10, Salmon et al., SC 2011): the n-th number is available without the numbers before it, and results depend
-/// neither on threads nor on order. The distributions are implemented here, because distributions of standard libraries
-/// differ.
+/// Stream is a named, independent stream of random numbers: `Stream(seed, "imu.noise")`. The stream is counter-based
+/// (Philox 4x32-10, Salmon et al., SC 2011): any number is available without the numbers before it, independent of
+/// threads and order. The distributions are implemented here, because those of standard libraries differ.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);
@@ -20,7 +19,7 @@ class Stream {
   /// Returns two standard normal numbers that depend only on (seed, name, index).
   std::array<double, 2> normal_pair(std::uint64_t index) const;
 
-  /// Returns the next number of the sequence.
+  /// Returns the next number of the random sequence.
   std::uint64_t bits();
   double uniform();  ///< in [0, 1)
   double uniform(double low, double high);

@@ -4,12 +4,11 @@
 #include "sim/engine/model.hpp"
 #include "sim/render/renderer.hpp"
 
-/// This header is used only within sim. The functions add grid lines, paths and point clouds (the decoration of a
-/// picture) to MuJoCo's scene. Callers must count the decoration's geoms first, because adding to a full scene is a
-/// programming error.
+/// decoration.hpp adds grid lines, paths and point clouds to a picture's MuJoCo scene. Callers must count the
+/// decoration's geoms first, because adding to a full scene is a programming error.
 namespace tumble::sim {
 
-/// Returns the maximum number of engine geoms that the decoration of a view uses.
+/// Returns the maximum number of MuJoCo geoms that the decoration of a view uses.
 int decoration_size(const engine::World& world, const View& view);
 
 /// Adds lines 1 m apart over height fields and 0.5 m apart over planes, which show slope and scale.

@@ -25,7 +25,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
     balls.push_back({T_WB.translation(), robot_radius_m});
     near.extend(T_WB.translation());
   }
-  // a diverged estimate must not shrink the robots: if there are robots, distant paths do not influence the framing
+  // a diverged estimate must not make the robots tiny: if there are robots, distant paths do not influence the framing
   if (!near.isEmpty()) {
     const Vector3d margin = Vector3d::Constant(kNear_m + 0.25 * near.diagonal().norm());
     near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);
@@ -35,7 +35,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // points are maps, which are much larger than the motion, so points only count if the view has no robot or path
+  // point clouds are maps, which are much larger than the motion, so they count only if the view has no robot or path
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});

@@ -7,7 +7,7 @@
 
 namespace tumble::sim {
 
-/// Camera pose in the form of MuJoCo's free camera.
+/// Framing is the camera pose in the form of MuJoCo's free camera.
 struct Framing {
   Eigen::Vector3d look_at_W_m;
   double distance_m;

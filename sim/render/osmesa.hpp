@@ -5,9 +5,8 @@
 
 namespace tumble::sim {
 
-/// This header is used only within sim. OsMesa holds the functions of the library OSMesa, which is loaded when the
-/// first picture is rendered. OSMesa loads LLVM, which makes the start of every program a third longer
-/// (docs/figures.md).
+/// OsMesa contains the functions of the library OSMesa, which is loaded when the first picture is rendered. OSMesa
+/// loads LLVM, which would make the start of every program a third longer (docs/figures.md).
 struct OsMesa {
   decltype(&::OSMesaCreateContextExt) create_context;
   decltype(&::OSMesaDestroyContext) destroy_context;

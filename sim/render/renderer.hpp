@@ -14,29 +14,29 @@
 
 namespace tumble::sim {
 
-/// RGB pixels, row by row from the top.
+/// Picture contains RGB pixels, row by row from the top.
 struct Picture {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
 
-/// A line in the scene.
+/// DrawnPath is a line in the scene.
 struct DrawnPath {
   std::vector<Eigen::Vector3d> points_W_m;
   std::array<float, 4> rgba = {1, 1, 1, 1};
   double width_m = 0.02;
 };
 
-/// Points drawn as small spheres, each with its own colour (maps by error).
+/// DrawnPoints are points drawn as small spheres, each with its own colour (maps by error).
 struct DrawnPoints {
   std::vector<Eigen::Vector3d> points_W_m;
   std::vector<std::array<float, 4>> rgba;
   double radius_m = 0.02;
 };
 
-/// Content of a picture. The camera looks at `look_at_W_m`. If `look_at_W_m` is NaN, the robots and nearby paths are
-/// framed automatically (all paths if there is no robot).
+/// View describes the content of a picture. The camera looks at the point `look_at_W_m`. If `look_at_W_m` is NaN, the
+/// camera frames the robots and nearby paths (all paths if there is no robot).
 struct View {
   std::vector<Eigen::Isometry3d> robots_T_WB;  ///< poses at which the robot is drawn
   std::vector<DrawnPath> paths;
@@ -49,11 +49,11 @@ struct View {
   double elevation_rad = -0.45;
 };
 
-/// Renders pictures of a situation's world without a display (OSMesa).
+/// Renderer renders pictures of a situation's world without a display (OSMesa).
 class Renderer {
  public:
-  /// Prepares a copy of the world. The shadow map has `shadow_pixels` per side; the rendering cost grows with the
-  /// square of `shadow_pixels`. Throws std::runtime_error if no OSMesa context can be created.
+  /// Prepares a copy of the world for rendering. The shadow map has `shadow_pixels` per side; the rendering cost grows
+  /// with the square of `shadow_pixels`. Throws std::runtime_error if no OSMesa context can be created.
   explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;

@@ -23,7 +23,7 @@ struct ContextDeleter {
 };
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
-/// Makes a context current during the object's lifetime.
+/// Current makes an OSMesa context current during the object's lifetime.
 class Current {
  public:
   explicit Current(OSMesaContext context) {
@@ -36,12 +36,12 @@ class Current {
   Current& operator=(const Current&) = delete;
 
  private:
-  // pictures are drawn into a frame buffer object, so the context's own buffer is not used
+  // pictures are drawn into a frame buffer object, so the buffer of the context is unused
   static constexpr int kSide = 16;
   unsigned char pixels_[4 * kSide * kSide];
 };
 
-/// MuJoCo's scene for one picture.
+/// Scene is MuJoCo's scene for one picture.
 class Scene {
  public:
   Scene(const mjModel& model, int geoms) {
@@ -94,8 +94,8 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Restricts the shadow map to the visible area, because the area of the map determines the sharpness of shadows.
-/// MuJoCo would spread the shadow map over the whole world.
+/// Restricts the shadow map to the visible area, because a smaller area gives sharper shadows. MuJoCo would spread the
+/// shadow map over the whole world.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);

@@ -8,10 +8,9 @@
 
 namespace tumble::sim {
 
-/// This class is used only within sim. SceneRenderer renders pictures of a compiled world (OSMesa, MuJoCo's renderer).
-/// An OSMesa context is current in one thread at a time. The renderer makes its context current during each call, so
-/// any thread may use the renderer, but only one thread at a time. Several renderers may exist in one process. No
-/// display is needed.
+/// SceneRenderer renders pictures of a compiled world (OSMesa, MuJoCo's renderer). An OSMesa context is current in one
+/// thread at a time. The renderer makes its context current during each call, so any thread may use it, but only one
+/// thread at a time. Several renderers may exist in one process. No display is needed.
 class SceneRenderer {
  public:
   /// Takes ownership of the world and changes its settings of sky, light and shadow.

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A ring of vertices about the axis, or a pole if the radius is 0.
+/// Ring is a ring of vertices about the axis, or a pole if the radius is 0.
 struct Ring {
   double radius_x_m, radius_y_m, z_m;
 };

@@ -8,19 +8,19 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// This header is used only within sim. tessellate() converts primitives to triangles.
+/// tessellation.hpp converts primitive shapes to triangles.
 namespace tumble::sim {
 
-/// Triangles are anticlockwise seen from outside. Triangles that share a vertex form one smooth surface; sharp edges
-/// have two vertices at one position.
+/// The triangles are anticlockwise seen from outside. Triangles that share a vertex form one smooth surface; sharp
+/// edges have two vertices at one position.
 struct Tessellation {
   std::vector<Eigen::Vector3f> vertices_F_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Returns the surface of a primitive in F. Round primitives have `segments` pieces about their axis (even, at least 4)
-/// and are inscribed: no vertex is outside of the shape. A plane becomes a rectangle; its unbounded sides have the half
-/// width `unbounded_m`.
+/// Returns the surface of a primitive shape in frame F. Round primitives have `segments` pieces about their axis (even,
+/// at least 4) and are inscribed: no vertex is outside of the shape. A plane becomes a rectangle; its unbounded sides
+/// have the half width `unbounded_m`.
 Tessellation tessellate(const Shape& shape, int segments, double unbounded_m);
 
 }  // namespace tumble::sim

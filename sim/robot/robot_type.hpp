@@ -9,30 +9,30 @@
 
 namespace tumble::sim {
 
-/// A kind of robot: its parameters, its MJCF file, and the changes that a situation makes to the file.
+/// RobotType is a kind of robot: its parameters, its MJCF file, and the changes that a situation makes to the file.
 struct RobotType {
   ComponentType component;
   std::string_view file;  ///< in the folder of models
-  /// Sets mass, inertia, contact and centre of mass of the parsed robot; fills com_offset_m and sphere_radius_m of
+  /// Sets mass, inertia, contact and centre of mass of the parsed robot; fills in com_offset_m and sphere_radius_m of
   /// `world`.
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
-  /// Body of the file that carries all sensor sites, with its origin at its centre of mass. The sensor body is a free
-  /// body, or is attached by joints below `anchor`.
+  /// Body of the MJCF file that carries all sensor sites, with its origin at its centre of mass. The sensor body is a
+  /// free body, or is attached by joints below `anchor`.
   std::string_view sensor_body = "robot";
   std::string_view anchor = "";  ///< static body that is moved to the world's start; empty: the robot is free
 };
 
-/// A cage of struts with two IMUs and a lidar.
+/// Returns the robot type rig: a cage of struts with two IMUs and a lidar.
 const RobotType& rig_robot();
-/// A sphere with an eccentric inner mass.
+/// Returns the robot type sphere, which has an eccentric inner mass.
 const RobotType& sphere_robot();
-/// Three segments in a row on hinges, with an IMU on the lowest segment.
+/// Returns the robot type pendulum: three segments in a row on hinges, with an IMU on the lowest segment.
 const RobotType& pendulum_robot();
 
-/// Returns all kinds of robot in the order of registration. A new kind of robot needs a source file and a line in
+/// Returns all robot types in the order of registration. A new robot type needs a source file and a line in
 /// robot_type.cpp.
 std::span<const RobotType* const> all_robot_types();
-/// Returns the kind of robot with this name. For an unknown name, throws InvalidSituation with the nearest known name.
+/// Returns the robot type with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const RobotType& find_robot_type(std::string_view name);
 
 /// Moves every geom and site of `body` by `shift_m` in the body's own frame.

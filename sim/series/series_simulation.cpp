@@ -15,7 +15,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the number of physics steps per window.
+/// Returns the number of physics steps per averaging window.
 std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   const double steps = 1e9 / (sensor.values.at("output_rate_hz") * static_cast<double>(step_ns));
   const double whole = std::round(steps);
@@ -26,7 +26,7 @@ std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   throw InvalidSituation(text.str());
 }
 
-/// Converts a true quantity to the readings of a sensor.
+/// Reader converts a true quantity to the readings of a sensor.
 class Reader {
  public:
   Reader(const Measured& measured, std::uint64_t seed, const std::string& stream)
@@ -41,7 +41,7 @@ class Reader {
     const ReadingErrors& errors = measured_->errors;
     const double noise = errors.noise > 0.0 ? errors.noise * noise_.normal() : 0.0;
     const double read = exact + bias_ + noise;
-    // the quantum is applied before the range, so that no reading is out of range
+    // quantisation comes before the range limit, so that no reading is out of range
     const double step = errors.quantum > 0.0 ? errors.quantum * std::round(read / errors.quantum) : read;
     return std::clamp(step, errors.low, errors.high);
   }

@@ -14,7 +14,7 @@
 
 namespace tumble::sim {
 
-/// Parameters of every series sensor: output rate, time stamps and losses.
+/// kSeriesParameters lists the parameters of every series sensor: output rate, time stamps and losses.
 inline constexpr std::array kSeriesParameters = {
     Parameter{"output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
               "samples per second; must divide the physics rate of 2000 Hz; each sample is the mean since the previous "
@@ -30,7 +30,8 @@ inline constexpr std::array kSeriesParameters = {
               "recording"},
 };
 
-/// Errors of readings, relative to the mean of the quantity over the averaging window; an error of 0 is off.
+/// ReadingErrors contains the errors of readings, relative to the mean of the quantity over the averaging window; 0
+/// switches an error off.
 struct ReadingErrors {
   double noise = 0.0;                                     ///< standard deviation of the white noise of each reading
   double bias = 0.0;                                      ///< standard deviation of an error drawn once per recording
@@ -39,7 +40,7 @@ struct ReadingErrors {
   double quantum = 0.0;  ///< resolution of the output
 };
 
-/// A quantity that a sensor measures.
+/// Measured is a quantity that a sensor measures.
 struct Measured {
   std::string name;  ///< ends in its unit: "pressure_pa"
   std::string unit;
@@ -47,12 +48,12 @@ struct Measured {
   std::function<double(std::size_t k)> exact;  ///< true value at physics sample k of the truth
 };
 
-/// Adds a series of `quantities` to a recording that contains the body's truth. A reading is the mean over a window
-/// with bias, white noise, range, quantum, stamps and losses (imu/time_stamps.hpp) by kSeriesParameters. If every error
-/// is 0, the reading equals the true mean, bit for bit. A sample that the device loses is also missing in the truth.
-/// Throws InvalidSituation if the output period is not a whole number of physics steps. The model excludes temperature
-/// errors, drift, and any bandwidth limit except the averaging window. `constants` are numbers of the sensor that
-/// estimators receive with the recording.
+/// Adds a series of `quantities` to a recording that contains the body's truth. A reading is the mean over an averaging
+/// window with bias, white noise, range, quantum, time stamps and losses (imu/time_stamps.hpp) by kSeriesParameters. If
+/// every error is 0, the reading equals the true mean, bit for bit. A sample that the device loses is also missing in
+/// the truth. Throws InvalidSituation if the output period is not a whole number of physics steps. The model excludes
+/// temperature errors, drift, and any bandwidth limit except the averaging window. `constants` are numbers of the
+/// sensor that estimators receive with the recording.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

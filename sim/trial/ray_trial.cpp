@@ -16,11 +16,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_m = 1e4;
-/// If two surfaces have coincident faces (the end of a wall within a door's reveal), both are hit and either surface is
-/// correct.
+/// If two surfaces have coincident faces (the end of a wall within a door's reveal), a ray may hit either surface.
 constexpr double kCoincident_m = 1e-4;
 
-/// Casts rays of MuJoCo (mj_ray) against the static part of a world.
+/// EngineRays casts rays of MuJoCo (mj_ray) against the static part of a world.
 class EngineRays {
  public:
   explicit EngineRays(const engine::World& world) : world_(world), data_(mj_makeData(world.model.get())) {
@@ -54,7 +53,7 @@ class EngineRays {
   engine::DataPtr data_;
 };
 
-/// A ray, and its hit according to MuJoCo.
+/// TrialRay is a ray with its hit according to MuJoCo.
 struct TrialRay {
   Vector3d origin_m, direction;
   EngineRays::Hit expected;

@@ -7,7 +7,7 @@
 
 namespace tumble::sim {
 
-/// Comparison of the lidar's ray scene with MuJoCo's rays (mj_ray).
+/// RayDisagreement compares the lidar's ray scene with MuJoCo's rays (mj_ray).
 struct RayDisagreement {
   std::int64_t rays = 0;
   std::int64_t hits = 0;           ///< number of hits of the engine's rays
@@ -25,9 +25,9 @@ struct RayTrialOptions {
                                 ///< deliberate error
 };
 
-/// Casts random rays in all directions with the ray scene and with MuJoCo. Half of the rays start 0.2 to 3 m above the
-/// surface at random positions of the world, half near the robot's start. The comparison of rays excludes the robot. A
-/// ray of MuJoCo takes up to 0.3 ms on a height field. Throws InvalidSituation for a geom without a surface.
+/// Casts random rays in all directions with the lidar's ray scene and with MuJoCo. Half of the rays start 0.2 to 3 m
+/// above the surface at random positions of the world, half near the robot's start. The comparison of rays excludes the
+/// robot. A ray of MuJoCo takes up to 0.3 ms on a height field. Throws InvalidSituation for a geom without a surface.
 RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions& options);
 
 }  // namespace tumble::sim

@@ -12,8 +12,8 @@
 
 namespace tumble::sim {
 
-/// Integrator of MuJoCo. The simulation uses `runge_kutta_4`; `euler` and `implicit` serve to demonstrate the errors of
-/// these integrators.
+/// Integrator selects the integrator of MuJoCo. The simulation uses `runge_kutta_4`; `euler` and `implicit` serve to
+/// demonstrate their errors.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -21,11 +21,11 @@ struct TrialOptions {
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
-/// A robot in its world that is set and advanced step by step with the model and engine of `simulate`, for
+/// Trial is a robot in its world that is advanced step by step with the model and engine of `simulate`, for
 /// measurements. A trial does not let the robot settle, and ignores the motion and sensors of the situation.
 class Trial {
  public:
-  /// Uses a copy of the world. Throws InvalidSituation if the time step is outside its limits.
+  /// The trial uses a copy of the world. Throws InvalidSituation if the time step is outside its limits.
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});
   ~Trial();
   Trial(Trial&&) noexcept;
@@ -41,14 +41,14 @@ class Trial {
   BodyState state() const;  ///< state of the body that carries the sensors
   /// Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
-  /// Return angle and angular velocity of a hinge by name, for a robot on joints. joint_rad and joint_rate_rad_s throw
-  /// InvalidSituation if there is no hinge of this name.
+  /// Returns the angle of a hinge, given its name, for a robot on joints; joint_rate_rad_s returns its rate. joint_rad
+  /// and joint_rate_rad_s throw InvalidSituation for an unknown name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
-  /// Advances by one step under gravity, contacts and `wrench`. Throws SimulationFailure.
+  /// Advances the trial by one step under gravity, contacts and `wrench`. Throws SimulationFailure like Physics::step.
   void step(const Wrench& wrench = {});
-  /// Returns the contacts at the end of the last step; their time is the time of the state, rounded to nanoseconds.
+  /// Returns the contacts at the end of the last step; their time is that of the state, rounded to nanoseconds.
   std::vector<ContactTruth> contacts() const;
 
  private:

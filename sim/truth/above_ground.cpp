@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A static height field of the world.
+/// Terrain is a static height field of the world.
 struct Terrain {
   engine::Field field;
   Eigen::Isometry3d T_WF;
@@ -36,7 +36,7 @@ std::vector<Terrain> terrains(const engine::World& world) {
   return found;
 }
 
-/// A time interval below the ground.
+/// Spell is a time interval below the ground.
 struct Spell {
   std::size_t steps = 0;
   double deepest_m = 0.0;

@@ -15,12 +15,11 @@ namespace tumble::sim {
 inline constexpr double kDipDepth_m = 0.01;
 inline constexpr double kDip_s = 0.05;
 
-/// Checks that a sensor stays above the ground. The check is needed because contacts are soft: a hard impact may push
-/// the robot so deep into a height field that the robot stays wedged, with its lidar below the surface. Simulated runs
-/// with a wedged robot must not be used to judge estimators. `truth` contains the poses of the body; `p_BX_m` is the
-/// position of the sensor on the body. The depth is the distance below the plane of the ground triangle. Throws
-/// SimulationFailure with sensor, time, depth and limit. Only height fields are checked; planes, rocks, trunks and
-/// walls are not.
+/// Checks that a sensor stays above the ground. Contacts are soft: a hard impact may push the robot so deep into a
+/// height field that it stays wedged, with its lidar below the surface. Simulated runs with a wedged robot must not be
+/// used to judge estimators. `truth` contains the poses of the body; `p_BX_m` is the position of the sensor on the
+/// body. The depth is the distance below the plane of the ground triangle. Throws SimulationFailure with sensor, time,
+/// depth and limit. The check covers only height fields, not planes, rocks, trunks and walls.
 void require_above_ground(const engine::World& world, const Truth& truth, const std::string& sensor,
                           const Eigen::Vector3d& p_BX_m);
 

@@ -14,7 +14,7 @@ struct Sums {
   double weight = 0.0, slip = 0.0, overspin = 0.0;
 };
 
-/// Weighted slip speed of one contact, and the excess of the rotation speed over the travel speed.
+/// Returns the weighted slip speed of one contact, and how far the rotation speed exceeds the travel speed.
 Sums weigh(const Truth& truth, const ContactTruth& contact) {
   const std::size_t k = static_cast<std::size_t>(contact.time_ns / truth.period_ns);
   const Eigen::Vector3d w_W = truth.q_WB[k] * truth.w_WB_B_rad_s[k];

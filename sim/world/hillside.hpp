@@ -8,19 +8,20 @@
 #include "sim/parameters.hpp"
 #include "sim/world/terrain/ground.hpp"
 
-/// Common parts of the rig's outdoor worlds: a square of 40 by 40 m whose top is level for x < kEdge_m, with relief,
-/// rocks, trunks and blocks.
+/// hillside.hpp contains common parts of the rig's outdoor worlds: a square of 40 by 40 m whose top is level for x <
+/// kEdge_m, with relief, rocks, trunks and blocks.
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// Nodes per side: cells of 20 cm. In cells of 10 cm, a strut that an impact pushes into the ground by some centimetres
-/// is moved out sideways and stays wedged for seconds.
+/// The height field has kSide nodes per side, with cells of 20 cm. With cells of 10 cm, a strut that an impact pushes
+/// into the ground by some centimetres stays wedged for seconds.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
-/// Parameters of relief and cover, which follow the parameters of a world in its table.
+/// kCoverParameters lists the parameters of relief, rocks, trunks and blocks, which follow the parameters of a world in
+/// its table.
 inline constexpr std::array kCoverParameters = {
     Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square height of the relief; 0: none"},
     Parameter{"relief_shortest_m", 2.5, 0.5, 20.0, "m", "shortest wavelength of the relief"},
@@ -43,7 +44,7 @@ inline constexpr std::array kCoverParameters = {
               "1: a building below the slope and a wall next to the slope, which the robot cannot reach; 0: none"},
 };
 
-/// Fraction of the relief's height that applies at a position, within [0, 1].
+/// Share returns the fraction of the relief's height that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
 /// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). Relief and bumps fade around the start, so

@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// Parameters of the square room around a level floor; the room gives the lidar features.
+/// kRoomParameters lists the parameters of the square room around a level floor; the room gives the lidar features.
 inline constexpr std::array kRoomParameters = {
     Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
@@ -26,7 +26,7 @@ void add_room(mjSpec* spec, engine::World& world, const Values& values, Stream& 
 /// Adds a ceiling at `height_m` that is transparent in pictures.
 void add_ceiling(mjSpec* spec, engine::World& world, double half_x_m, double half_y_m, double height_m);
 
-/// Group of geoms that a lidar sees and pictures do not show.
+/// kUnseenInPictures is the group of geoms that a lidar sees and pictures omit.
 inline constexpr int kUnseenInPictures = 3;
 
 }  // namespace tumble::sim

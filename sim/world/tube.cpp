@@ -42,7 +42,7 @@ double ground_m(const Values& values, double x_m, double y_m) {
 }
 
 /// Adds half of the shell: rings along x, from the foot of one wall to the crown. The shell has no contact, because
-/// MuJoCo would use the convex hull of the mesh; the ground and the ends hold the robot.
+/// MuJoCo would use the convex hull of its mesh; the ground and the ends hold the robot.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library knows no robot and no draw of the harness: no number of models/*.xml or of a data sheet there, no device
-// that these robots carry and no seed stands in its defaults, code or comments. The sheets of devices
-// (odometry/imu_sheet, lidar_sheet) are presets that a user names, and excepted.
+// The library must know no robot and no simulated run of the harness: its defaults, code and comments contain no number
+// of models/*.xml or of a data sheet, no device of these robots and no seed. The data sheets of devices
+// (odometry/imu_sheet, lidar_sheet) are excepted, because users select these presets by name.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::vector<std::string> all_of(const std::string& text, const char* pattern) {
 
 const char* const kNumber = R"((?:^|[^\w.])([0-9]+\.?[0-9]*(?:e-?[0-9]+)?)(?![\w.]))";
 
-/// Digits without sign, point, exponent and zeros at either end: 3 of 0.0145.
+/// Returns the digits of a number without sign, point, exponent and zeros at either end: 145 for 0.0145.
 std::string digits_of(const std::string& number) {
   std::string out = std::regex_replace(number.substr(0, number.find_first_of("eE")), std::regex("[^0-9]"), "");
   out.erase(0, out.find_first_not_of('0'));
@@ -38,8 +38,8 @@ std::string digits_of(const std::string& number) {
   return out;
 }
 
-/// Numbers that somebody measured on a robot or read in a data sheet: of three digits and more, except gravity and
-/// powers of two, which are sizes of arrays too.
+/// Returns numbers of three or more digits from a robot or a data sheet, except gravity and powers of two, which are
+/// also sizes of arrays.
 std::set<double> distinctive(const std::vector<std::string>& numbers) {
   constexpr double kGravity_m_s2 = 9.80665;
   std::set<double> out;
@@ -90,7 +90,7 @@ Known known() {
   return out;
 }
 
-/// What a source of the library says of the robots and draws of the harness.
+/// Returns what a source of the library mentions of the robots and simulated runs of the harness.
 std::vector<std::string> told_by(const std::string& source, const Known& known) {
   std::vector<std::string> out;
   const std::string code = std::regex_replace(source, std::regex("//[^\n]*"), "");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is added by a file and a line of registration: the line that was forgotten. Each function that a header of such
-// a list declares is called where the list is made.
+// The test finds forgotten registrations of components that consist of a file and a line of registration. Each function
+// that a header of such a list declares must be called where the list is created.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -56,7 +56,7 @@ TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
   }
 }
 
-/// Names of the files of a folder of the tree.
+/// Returns the names of the files in a folder of the tree.
 std::vector<std::string> stems_in(const std::string& folder) {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(tumble::test::source_dir() / folder))
@@ -73,7 +73,8 @@ TEST(Registration, TheDesignNamesEveryScenarioAndDevice) {
   EXPECT_EQ(left_out(devices, design), std::vector<std::string>());
 }
 
-/// The package for evalio cannot ask the program when its data sets are listed: they are those of the rig with a lidar.
+/// The evalio package cannot call the program when its data sets are listed, so its list must equal the rig scenarios
+/// with a lidar.
 TEST(Registration, EvalioHasEveryScenarioOfTheRig) {
   const std::string adapter =
       tumble::test::text_of(tumble::test::source_dir() / "python/src/tumble/evalio/recordings.py");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names and words that the field's terms have replaced do not return: names anywhere in the tree, words in the
+// The test rejects names and words that terms of the field have replaced: names anywhere in the tree, and words in the
 // documents that users read first.
 #include <gtest/gtest.h>
 
@@ -22,15 +22,15 @@ namespace {
 namespace fs = std::filesystem;
 using tumble::test::text_of;
 
-/// Words that no name may contain. docs/glossary.md has the field's terms.
+/// No name may contain these words; docs/glossary.md lists the terms of the field.
 constexpr std::array kReplaced = {"companion", "excess", "stretch", "stretches", "surprise", "thrust"};
 
-/// Names that may not appear anywhere.
+/// These names may not appear anywhere.
 constexpr std::array kReplacedNames = {"CarriedWay", "GravityTurn", "GravityTurningParams", "kPartialInContact",
                                        "kVoid",      "PartialLoss", "PublishedTraps",       "SeedMapper",
                                        "SeedParams", "SensorPlace", "TurnWindows",          "TurnHypotheses"};
 
-/// Words with a private meaning, which a new reader does not understand.
+/// These words have a private meaning that a new reader cannot understand.
 const std::regex kPrivateWords(
     R"(\b(anew|whoever|somebody|anybody|dearest|mended|bears? out|borne out|told|tells|hears?|heard|doubted|believed|begins anew|of which|by itself|of its own|so many|the like|last word|carried body|is none|are none|nobody|the door)\b)",
     std::regex::icase);
@@ -39,7 +39,7 @@ bool is_of_a_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// All names of a text, of comments and strings too.
+/// Returns all names of a text, also from comments and strings.
 std::set<std::string> names_in(const std::string& text) {
   std::set<std::string> out;
   for (auto at = text.begin(); at != text.end();) {
@@ -50,7 +50,7 @@ std::set<std::string> names_in(const std::string& text) {
   return out;
 }
 
-/// The words of a name: kOldWord_rad_s is k, old, word, rad, s.
+/// Returns the words of a name: kOldWord_rad_s consists of k, old, word, rad, s.
 std::set<std::string> words_of(const std::string& name) {
   std::set<std::string> out;
   std::string word;
@@ -69,8 +69,8 @@ std::set<std::string> words_of(const std::string& name) {
 
 enum class Text { prose, script, source };  ///< a script's strings are its comments too
 
-/// Replaced names in a text. A replaced word counts as a part of a name only: in comments and strings it is a plain
-/// word.
+/// Replaced names in a text. A replaced word counts only as a part of a name, because in comments and strings it is a
+/// plain word.
 std::vector<std::string> replaced_names(const std::string& text, Text kind) {
   static const std::regex comment(R"(//[^\n]*|#[^\n]*)"), string(R"("([^"\\\n]|\\.)*")");
   std::set<std::string> out;
@@ -125,7 +125,7 @@ TEST(Vocabulary, AReplacedNameIsFound) {
   EXPECT_EQ(replaced_names("int outstretched = stretched_to;", Text::source), Words{});
 }
 
-/// Lines of a document with a private word. Code blocks are left out.
+/// Returns the lines of a document that contain a private word, except code blocks.
 std::vector<std::string> private_words(const std::string& text) {
   std::vector<std::string> out;
   std::istringstream lines(text);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Attitude filters, one sample on one core [ns]: a body that turns, shakes and rests, 250 Hz. Bounds of the project:
-// 200 for the simple filters, 2000 for tumble. Where the reference C++ of VQF was found (VQF_SOURCE_DIR), it runs
-// beside.
+// Measures the time of attitude filters for one sample on one core [ns], for a body that turns, shakes and rests, at
+// 250 Hz. The project's limits are 200 ns for the simple filters and 2000 ns for tumble. The reference C++ of VQF is
+// also measured if it was found (VQF_SOURCE_DIR).
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kSamples = 5000;
 constexpr tumble::TimeNs kPeriod_ns = 4'000'000;
 
-/// Moves for 15 s and rests for 5 s.
+/// The body moves for 15 s and rests for 5 s.
 const std::vector<tumble::ImuSample>& samples() {
   static const std::vector<tumble::ImuSample> out = [] {
     std::vector<tumble::ImuSample> all(kSamples);

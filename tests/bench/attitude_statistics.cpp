@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // attitude_statistics SCENARIO|RECORDING.h5 FIRST LAST [--method NAME]... [--set M.NAME=VALUE]... [--keep FOLDER]
-// [--each]: simulates the draws without lidar (or takes one recording), runs methods of kind `attitude` and prints per
-// method, over the draws whose gyro never clips, over those whose gyro does and over all: median and mean of the
-// inclination's rms in motion, of the whole attitude's, and of the draws that are better than with the first method;
-// where a covariance is reported, the mean normalised square of the tilt's error per degree of freedom in motion and
-// the shares of samples within one and within three of its deviations (39.3 % and 98.9 % of a normal one in two
-// dimensions). FOLDER keeps recordings. Not a test: 2 to 3 s of one core a draw.
+// [--each]
+//
+// The program simulates the draws without lidar (or reads one recording) and runs methods of kind `attitude`. For each
+// method it prints results over the draws whose gyro is never saturated, over the draws with saturation and over all
+// draws: median and mean of the rms error in motion of the inclination and of the whole attitude, and the share of
+// draws that are better than with the first method. For methods that report a covariance, it also prints the mean
+// normalised square of the tilt error per degree of freedom in motion. The shares of samples within one and within
+// three standard deviations follow (a normal distribution in two dimensions has 39.3 % and 98.9 %). FOLDER stores the
+// recordings. The program is no test: it needs 2 to 3 s of one core per draw.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -77,7 +80,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// What one method made of one draw.
+/// Run contains the results of one method on one simulated run.
 struct Run {
   double inclination_rad = std::numeric_limits<double>::infinity();
   double attitude_rad = std::numeric_limits<double>::infinity();

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // carried_statistics [--wand FILE.h5]... [--broad NUMBER]... [--attitude NUMBER]... [--method NAME]... [--set
-// NAME=VALUE]...
-// [--flags]: carried bodies with clipped gyros. FILE.h5 is an imported recording with an optical reference, scored as
-// `tumble score` does; NUMBER a trial of BROAD ("05"), 40 s about its peak, each axis clipped at a third of that peak
-// (with --flags the device says where), held to the gyro as it was; --attitude runs the attitude method of the same
-// parameters over whole trials as they are. Prints errors at clipped samples, median / 90 % / 99 %, the share of the
-// raw error taken off and of errors within three deviations. Not a test: some seconds of one core a recording.
+// NAME=VALUE]... [--flags]
+//
+// The program tests hand-held bodies with saturated gyros. FILE.h5 is an imported recording with an optical reference,
+// which is scored as in `tumble score`. NUMBER is a trial of BROAD ("05"): the program uses 40 s about its peak, limits
+// each axis to a third of that peak (with --flags the device reports where) and compares the rates with the unlimited
+// gyro. --attitude runs the attitude method with the same parameters over whole unchanged trials. The program prints
+// median, 90 % and 99 % of the errors at saturated samples, the removed share of the raw error, and the share of errors
+// within three standard deviations. The program is no test: it needs some seconds of one core per recording.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]: the
-// same draws with IMUs of other rates, and with other numbers of a data sheet (`gyro_range_rad_s=8.7`; SCENARIO may be
-// the path of a file, with other devices). A line per method and rate: how many draws have a figure; the error (rate:
-// median at clipped samples; attitude: inclination; position: at the end; slam: ate_m), median and mean over the draws;
-// both against the scenario's own rate; pair by pair, the median over the draws of a draw's error against its own at
-// that rate, with its 95 % interval (BCa, statistics.md (S1) to (S4)); the same median of the oracle of that kind,
-// where it is among the methods: what the sensor allows; the share within three deviations (slam: of the draws whose
-// last pose lies within the 99.7 % of its NEES), that of the worst draw, and the CPU time against the length of the
-// recording. FOLDER keeps the recordings (of one set of numbers); --draws prints a line a draw too. Not a test: 2 to
-// 10 s a draw and rate.
+// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]
+//
+// The program simulates the same draws with IMUs of other rates, and with other numbers of a data sheet
+// (`gyro_range_rad_s=8.7`). SCENARIO may also be the path of a file, with other devices. Each method and rate has one
+// line with these columns: the number of draws with a result; median and mean over the draws of the error (rate: median
+// at saturated samples; attitude: inclination; position: at the end; slam: ate_m); both relative to the scenario's own
+// rate; the median over the draws of the ratio of a draw's error to its error at that rate, with its 95 % interval
+// (BCa, statistics.md (S1) to (S4)); the same median of the oracle of that kind, if the oracle is among the methods,
+// which shows the limit of the sensor; the share within three standard deviations (slam: of the draws whose last pose
+// lies within the 99.7 % of its NEES), and that of the worst draw; and the CPU time relative to the length of the
+// recording. FOLDER stores the recordings (of one set of numbers). --draws also prints a line per draw. The program is
+// no test: it needs 2 to 10 s per draw and rate.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -79,7 +81,8 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// The draw with the primary IMU's rate and numbers, those of a sphere's others too; 0: as the scenario has it.
+/// Returns the simulated run with the rate and numbers of the primary IMU, and of all IMUs of a sphere; 0 keeps the
+/// scenario's rate.
 scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request& request, std::uint64_t seed,
                                  double rate_hz, bool lidar) {
   scenarios::SimulatedDraw draw;
@@ -113,7 +116,7 @@ Metrics metrics_of(Kind kind) {
   return {"ate_m", "pose_nees"};
 }
 
-/// One method at one rate, over the draws.
+/// Pool contains the results of one method at one rate, over the simulated runs.
 struct Pool {
   std::map<std::uint64_t, double> error_of;  ///< by seed: of the draws that have one
   std::vector<double> coverage;
@@ -127,7 +130,7 @@ std::vector<double> errors(const Pool& pool) {
   return out;
 }
 
-/// Of each draw that has an error at both rates, the one against the other; median with its interval.
+/// Returns the median ratio, with its interval, of the errors at both rates, over the runs that have an error at both.
 scenarios::Interval paired(const Pool& pool, const Pool& own) {
   std::vector<double> ratios;
   for (const auto& [seed, error] : pool.error_of) {
@@ -172,7 +175,7 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
   std::printf("\n");
 }
 
-/// `oracle`: the oracle's median of pairs, NaN where there is none.
+/// `oracle` is the oracle's median of pairs, or NaN.
 void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own, double oracle) {
   const std::vector<double> error = errors(pool), own_error = errors(own);
   const double median = scenarios::quantile(error, 0.5);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// motion_distribution SCENARIO FIRST LAST: simulates the draws without lidar and prints a line each and how they are
-// spread, to be held against the published campaign. Not a test: it takes minutes.
+// motion_distribution SCENARIO FIRST LAST
+//
+// The program simulates the draws without lidar and prints a line per draw and their distributions, for comparison with
+// the published campaign. The program is no test, because it takes minutes.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -29,7 +31,7 @@ struct Spread {
   int rejected = 0;
 };
 
-/// Kinds of the surfaces that were touched: their names without the number.
+/// Returns the kinds of the touched surfaces: their names without the number.
 std::set<std::string> touched(const tumble::sim::Truth& truth) {
   std::set<std::string> kinds;
   for (const tumble::sim::ContactTruth& contact : truth.contacts) {

@@ -5,10 +5,9 @@
 
 namespace tumble::bench {
 
-/// Puts three people into a recording's lidar returns: upright cylinders of 0.5 m by 1.75 m that walk at 1.2 m/s on
-/// circles about the place where the robot starts, from the ground that is level with it. What a ray meets on them
-/// takes the place of what it met behind; the noise of the range stays. The truth is not changed: they are no surface
-/// of a map.
+/// Adds three people to the lidar returns of a recording: upright cylinders of 0.5 m by 1.75 m that walk at 1.2 m/s on
+/// circles around the robot's start, on the ground level with it. A hit on a person replaces the return behind it, and
+/// keeps the noise of the range. The truth is unchanged, because people are no surface of a map.
 void let_people_walk(const sim::Truth& truth, sim::Sensors& sensors);
 
 }  // namespace tumble::bench

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_detection [--no-flags] FILE...: what ClippingFinder makes of simulated recordings (.h5), of the first IMU's gyro
-// and accelerometer: elements that lost more than 1 % of the stated range to their rail, how many of them are called
-// clipped, how many of all called lost anything, and what it calls when it is given the unclipped twin, which has no
-// rail. Not a test.
+// rail_detection [--no-flags] FILE...
+//
+// The program runs ClippingFinder on the first IMU's gyro and accelerometer of simulated recordings (.h5). It prints
+// the number of elements that lost more than 1 % of the stated range to saturation, how many of them ClippingFinder
+// reports as saturated, and how many of all reported elements lost anything. It also prints what ClippingFinder reports
+// for the unsaturated readings of the same motion. The program is no test.
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +25,8 @@ struct Count {
   std::size_t deep = 0, found = 0, called = 0, right = 0, false_alarms = 0;
 };
 
-// Largest share of a range that is no loss: rounding, and the digits of the device.
+// A loss of at most kNothing (fraction of the range) counts as rounding and quantisation; a loss beyond kDeep counts as
+// deep.
 constexpr double kNothing = 2e-5, kDeep = 0.01;
 
 Eigen::Matrix3d rows_of(const std::vector<Eigen::Vector3d>& elements) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_measures AXIS RAIL FILE...: what a gyro does at its rail of RAIL rad/s on AXIS (x, y, z), a line a file: share
-// of rows that repeat the readings before; of the gyro's own readings those at the rail; how long they stay there; the
-// true rate there; how far the readings of one sign, inside of segments, scatter there, before and after a plane
-// through them. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is the cameras'. Not a test.
+// rail_measures AXIS RAIL FILE...
+//
+// The program measures a gyro at its saturation level of RAIL rad/s on AXIS (x, y, z), and prints a line per file. The
+// columns are the share of rows that repeat the readings before; the share of the gyro's own readings at the saturation
+// level; how long they stay there; the true rate there; and the scatter of the readings of one sign within segments,
+// before and after the fit of a plane. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is that
+// of the cameras. The program is no test.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -22,7 +25,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace tumble;
 
-/// The gyro's own readings, and the true rates beside them.
+/// Readings contains the gyro's distinct readings with the true rates.
 struct Readings {
   std::vector<double> time_s;
   std::vector<Vector3d> gyro, rate;
@@ -51,7 +54,7 @@ Readings simulated(const std::string& file) {
   return out;
 }
 
-/// The import leaves repeated readings out; how many there were the file tells.
+/// The import omits repeated readings, and the file states their number.
 Readings real(const std::string& file) {
   constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // columns
   std::ifstream stream(file);
@@ -77,7 +80,7 @@ Readings real(const std::string& file) {
   return out;
 }
 
-/// The plane of readings of one sign at the rail of `axis`.
+/// Plane is the plane of the readings of one sign at the saturation level of `axis`.
 struct Plane {
   std::size_t readings = 0;
   double before = std::nan(""), after = std::nan("");  ///< standard deviation of the axis, about its mean and the plane
@@ -105,8 +108,8 @@ Plane fit(const std::vector<Vector3d>& readings, int axis) {
   return out;
 }
 
-/// The plane of both signs: readings within 0.05 rad/s of it, between others of its sign that are, fitted until they
-/// stay the same. scenarios/certificate/real_rails.cpp has what it says of real gyros.
+/// Fits one plane to both signs: readings within 0.05 rad/s of it whose neighbours are too, iterated until the set is
+/// stable; scenarios/certificate/real_rails.cpp uses the result.
 void print_both_signs(const std::vector<Vector3d>& gyro, int axis, double rail_rad_s) {
   constexpr double kFirst_rad_s = 0.15, kSlab_rad_s = 0.05, kLeastShare = 0.9;
   const auto row = [&](std::size_t k) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]: what real
-// devices do besides clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a
-// gyro's window too long, a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together
-// (`hill_consumer`). Prints for each method of kind `rate` the error at clipped samples, the same against the first
-// row, the share of clipped axes within three reported deviations (all draws, the worst draw), their mean squared error
-// over variance, and of the elements from which the rail took more than 0.1 rad/s the share that the method calls
-// clipped, and of those it calls so the share from which it took anything. FOLDER keeps recordings; --draws prints a
-// line a draw too;
-// --ablation takes `hill_consumer` with one of its errors switched off at a time instead; with --learnt methods start
-// from what they have learnt in another tumble of the same rig and device, those that learn alone. Not a test: 2 to 3 s
-// of one core a draw and row.
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]
+//
+// The program tests errors of real devices besides saturation, one row each, on the same draws of `hill` without lidar:
+// a late accelerometer, a gyro window that is too long, a low-pass, scale errors, g-sensitivity, repeated readings, and
+// all of them together (`hill_consumer`). For each method of kind `rate` it prints the error at saturated samples, its
+// ratio to the first row, the share of saturated axes within three reported standard deviations (all draws, the worst
+// draw), and their mean squared error over variance. It also prints the share of elements that the method reports as
+// saturated, among elements that lost more than 0.1 rad/s, and the share of reported elements that lost anything.
+// FOLDER stores the recordings. --draws also prints a line per draw. --ablation uses `hill_consumer` with one of its
+// errors switched off at a time instead. With --learnt, only methods that learn run, from the calibration learnt in
+// another tumble of the same rig and device. The program is no test: it needs 2 to 3 s of one core per draw and row.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -56,7 +56,7 @@ const std::vector<Row>& rows() {
   return kRows;
 }
 
-// `hill_consumer` with one of its errors switched off at a time.
+// Returns `hill_consumer` with one of its errors switched off at a time.
 const std::vector<Row>& ablations() {
   using Changes = std::vector<std::pair<std::string, double>>;
   static const Changes kScale = {{"gyro_scale_error", 0.0}, {"accel_scale_error", 0.0}};
@@ -141,7 +141,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-// Draw `seed`; with `other`, its rig and device on the way of another draw.
+// Returns the recording of seed `seed`; with `other`, the rig and device of the seed with the motion of another seed.
 sim::Recording recording_of(const scenarios::DataRoot& data, const Row& row, std::size_t index, std::uint64_t seed,
                             const std::string& prefix, const std::filesystem::path& keep, bool other = false) {
   constexpr std::uint64_t kOther = 1'000'000;
@@ -172,7 +172,7 @@ double within(const std::vector<double>& normalised, std::size_t first = 0) {
   return static_cast<double>(count) / static_cast<double>(normalised.size() - first);
 }
 
-// Elements at their rails, as the truth and as a method has them.
+// Rails contains the elements at their saturation level, according to the truth and to a method.
 struct Rails {
   static constexpr double kDeep_rad_s = 0.1;
   double deep = 0.0, found = 0.0, called = 0.0, right = 0.0;
@@ -202,13 +202,13 @@ struct Rails {
   double right_share() const { return called > 0.0 ? right / called : 1.0; }
 };
 
-// One method over all draws of a row.
+// Figures contains the results of one method over all simulated runs of a row.
 struct Figures {
   double median = 0.0, p99 = 0.0, free = 0.0, share = 0.0, worst = 1.0, nees = 0.0, us = 0.0;
   Rails rails;
 };
 
-// What a method tells of a draw; `other`: in which it learns first, null where it does not.
+// Returns a method's estimate of a run; `other` is the recording from which it calibrates first, or null.
 scenarios::Estimate estimate_of(const scenarios::Method& method, const sim::Recording& recording,
                                 const sim::Recording* other) {
   if (other == nullptr)

@@ -13,8 +13,9 @@
 
 namespace tumble::bench {
 
-/// Errors of one method of kind `rate`, over many runs. Clipped, segment and contact as the scores define them
-/// (ClippingTruth; samples in a row with a clipped axis; any contact within the window of the sample).
+/// RatePool contains the errors of one method of kind `rate`, over many runs. Clipped samples, segments and contact are
+/// defined as in the scores (ClippingTruth; consecutive samples with a clipped axis; any contact within the window of
+/// the sample).
 class RatePool {
  public:
   struct Segment {
@@ -36,19 +37,19 @@ class RatePool {
 
   explicit RatePool(std::string name) : name_(std::move(name)) {}
 
-  /// Adds a run; samples that the estimate leaves out count as failed, with an infinite error.
+  /// Adds a run; samples without an estimate count as failed, with an infinite error.
   void add(std::uint64_t seed, const sim::Recording& recording, const scenarios::Estimate& estimate, double cpu_s);
 
   const std::string& name() const { return name_; }
   std::span<const double> clipped_rad_s() const { return clipped_; }
   std::span<const double> free_rad_s() const { return free_; }
-  /// The same, parted by whether the body touches the ground within the window of the sample.
+  /// Returns the errors of samples in which the body does not touch the ground.
   std::span<const double> flight_rad_s() const { return flight_; }
   std::span<const double> contact_rad_s() const { return contact_; }
-  /// Squared errors of clipped axes over their reported variances.
+  /// Returns squared errors of clipped axes divided by their reported variances.
   std::span<const double> normalised_flight() const { return normalised_flight_; }
   std::span<const double> normalised_contact() const { return normalised_contact_; }
-  /// Clipped samples that are neither called clipped nor doubted.
+  /// Counts the clipped samples that the method calls neither clipped nor suspect.
   std::size_t called_measured() const { return called_measured_; }
   std::span<const Segment> segments() const { return segments_; }
   std::span<const Run> runs() const { return runs_; }
@@ -63,16 +64,16 @@ class RatePool {
   double cpu_s_ = 0.0;
 };
 
-/// Quantiles of the pooled errors, and the median against that of the first pool.
+/// Prints quantiles of the pooled errors, and the median relative to that of the first pool.
 void print_errors(std::span<const RatePool> pools);
-/// Errors of clipped samples in flight and in contact.
+/// Prints the errors of clipped samples in flight and in contact.
 void print_contact(std::span<const RatePool> pools);
-/// Coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
+/// Prints the coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
 void print_honesty(std::span<const RatePool> pools);
-/// Runs worse than the first pool by more than the gyro's noise, offsets of segments, and every error as a multiple
-/// of that of the pool `tumble`.
+/// Prints runs that are worse than in the first pool by more than the gyro's noise, offsets of segments, and every
+/// error relative to that of the pool `tumble`.
 void print_runs(std::span<const RatePool> pools);
-/// The segments with the largest offsets.
+/// Prints the segments with the largest offsets.
 void print_worst(const RatePool& pool, std::size_t count);
 
 }  // namespace tumble::bench

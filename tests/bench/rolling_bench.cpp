@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Position of a rolling sphere, one sample on one core, 250 Hz, along an L with a spell of slip: the live filter, the
-// same as the online example runs it (text in, text out), and the smoother with a lag. `held_bytes` is what one
-// instance holds once it runs, `allocations` what the samples after the first asked for.
+// The program measures the position estimate of a rolling sphere, per sample on one core at 250 Hz, along an L-shaped
+// path with a period of slip. It runs the live filter, the same with the text input and output of the online example,
+// and the smoother with a lag. `held_bytes` is the memory of one running instance; `allocations` counts the allocations
+// after the first sample.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -20,7 +21,7 @@ namespace {
 std::size_t allocations = 0, held = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// the function is not inlined, so that the compiler does not report mismatched new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   held += size;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scoring_cost SCENARIO FIRST LAST METHOD...: seconds of processor, user and system, that the verdict and the scores of
-// an estimate take, beside those of the estimate itself, a line a draw and method, the medians and the mean in all. The
-// digest of the scores tells two builds whether they scored the same bits. A method's name as `tumble run` takes it.
+// scoring_cost SCENARIO FIRST LAST METHOD...
+//
+// The program measures the processor time (user and system) of the verdict and the scores of an estimate, and that of
+// the estimate. It prints a line per draw and method, the medians and the overall mean. Equal digests of the scores
+// show that two builds scored the same bits. The method's name has the form that `tumble run` accepts.
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -38,7 +40,7 @@ struct Cost {
   double estimate_s = 0, scoring_s = 0;
 };
 
-/// Of the verdict and the scores alone, bit by bit.
+/// Returns the digest of verdict and scores alone, bit by bit.
 std::string digest_of(const scenarios::Outcome& outcome, std::size_t first) {
   std::vector<std::string> lines = {to_string(outcome.status)};
   for (std::size_t k = first; k < outcome.scores.size(); ++k) {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method on draws as they are and on the same with wrong inputs
-// (units, axes, signs, clocks, mountings, sensors that die, dust, people), and holds what it says of itself against
-// what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES, which is chi-square over
-// six, beyond 25; rate, attitude: a tenth of the samples that turn, or move, are off by more than five, or half of them
-// by a fifth of their rate, or by 0.5 rad of tilt, unless it says `attitude_unknown_s`). Told: the status, `localised`,
-// or a key of its health that says so. Who tells of trouble may widen the covariance with it, and then is wrong no
-// more: rates are judged by the covariance before that as well, and a pose of slam by the root of chi-square beside
-// that of its mean. Prints a line per run and the two rates of a classifier by each of these: wrong runs that say so,
-// runs with inputs as they are that cry wolf. Not a test: a minute a draw for `slam`, seconds for `position`.
+// verdicts SCENARIO FIRST LAST METHOD [HARM]...
+//
+// The program runs a method on unchanged draws and on the same draws with wrong inputs (units, axes, signs, clocks,
+// mountings, failing sensors, dust, people), and compares the method's verdict with the truth. A run is wrong if its
+// end differs from the truth by more than five of its standard deviations (slam: pose NEES, which is chi-square over
+// six, beyond 25). A run of rate or attitude is wrong if a tenth of the turning or moving samples differ by more than
+// five standard deviations, or half of them by a fifth of their rate or by 0.5 rad of tilt, unless the method reports
+// `attitude_unknown_s`. A run reports trouble by its status, by `localised`, or by a key of its health. A method that
+// reports trouble may widen the covariance, after which the run is no longer wrong: rates are therefore also judged by
+// the covariance before the report, and a pose of slam by the root of chi-square as well as by its mean. The program
+// prints a line per run, and for each criterion the two rates of a classifier: wrong runs that report trouble, and
+// unchanged runs that report trouble. The program is no test: it needs a minute per draw for `slam`, and seconds for
+// `position`.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -70,8 +74,8 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-// Of the samples in which the body turns: the deviations that a tenth exceeds, and the median of the error as a share
-// of the rate.
+// Judges the samples in which the body turns: the deviations that a tenth exceeds, and the median error relative to the
+// rate.
 Judgement judge_rates(const sim::Recording& recording, const std::vector<RateState>& before,
                       const scenarios::Estimate& estimate) {
   constexpr double kTurns_rad_s = 1.0;
@@ -89,7 +93,7 @@ Judgement judge_rates(const sim::Recording& recording, const std::vector<RateSta
   return out;
 }
 
-// Of the samples in which the body moves: the deviations of the tilt that a tenth exceeds, and its median.
+// Judges the samples in which the body moves: the deviations of the tilt that a tenth exceeds, and their median.
 Judgement judge_attitudes(const sim::Recording& recording, const scenarios::Estimate& estimate) {
   const scenarios::TruthTrack truth(recording.truth, estimate.frame);
   std::vector<double> deviations, tilts;
@@ -126,7 +130,7 @@ Judgement judgement_of(const scenarios::Method& method, const sim::Recording& tr
   return judge_rates(truth, scenarios::testing::rates_before_doubt(estimate), estimate);
 }
 
-/// Leaves of rows at the times of `all_ns` those at the times of `kept_ns`, which are some of them in their order.
+/// Keeps the rows whose times, among `all_ns`, are in `kept_ns`, an ordered subset.
 template <class Row>
 void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::int64_t>& kept_ns,
                std::vector<Row>& rows) {
@@ -137,7 +141,7 @@ void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::i
   rows.resize(kept);
 }
 
-/// The two rates of a classifier, as counts.
+/// Tally contains the counts for the two rates of a classifier.
 struct Tally {
   int wrong = 0, wrong_told = 0, good = 0, good_told = 0;
 
@@ -158,7 +162,8 @@ struct Tallies {
   Tally reported, before, root_chi2;
 };
 
-/// What to score an answer to `given` by: of samples that are missing there the truth is missing too.
+/// Returns the run by which an estimate from `given` is scored: the truth also lacks the samples that are missing
+/// there.
 scenarios::SimulatedDraw scored_at_kept(const scenarios::SimulatedDraw& draw, const scenarios::SimulatedDraw& given) {
   scenarios::SimulatedDraw scored = scenarios::scored_by(draw, given);
   for (std::size_t i = 0; i < given.recording.sensors.imus.size(); ++i) {

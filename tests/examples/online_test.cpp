@@ -23,7 +23,7 @@ namespace {
 std::size_t allocations = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// the function is not inlined, so that the compiler does not report mismatched new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* memory = std::malloc(size);
@@ -42,7 +42,7 @@ namespace {
 
 const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
 
-/// The sphere along an L of 2 m with a spell of slip, as ideal sensors see it.
+/// Returns the sphere along an L of 2 m with a phase of slip, measured by ideal sensors.
 const testing::RollingTruth& truth() {
   static const testing::RollingTruth out =
       testing::roll({.velocity_m_s = testing::l_shape,
@@ -137,7 +137,7 @@ TEST(Online, RefusesBadParams) {
   EXPECT_THROW(online::Online{bad}, InvalidParams);
 }
 
-/// Runs the program with `arguments` on a file of `text`; its exit status, and what it wrote in `out`.
+/// Runs the program with `arguments` on a file of `text`; returns its exit status, with its output in `out`.
 int run(const std::string& arguments, const std::string& text, std::string& out) {
   const std::filesystem::path file =
       std::filesystem::path(::testing::TempDir()) / ("online_" + std::to_string(::getpid()) + ".txt");

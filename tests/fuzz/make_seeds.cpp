@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// fuzz_make_seeds FOLDER: writes the smallest good file of each kind into FOLDER/READER/, where the readers' own
-// writers know how; tests/fuzz/README.md says where the others come from.
+// fuzz_make_seeds FOLDER writes the smallest valid file of each kind into FOLDER/READER/, if the readers' own writers
+// can create it; tests/fuzz/README.md lists the sources of the other seeds.
 #include <hdf5.h>
 #include <zstd.h>
 
@@ -30,7 +30,7 @@ using namespace tumble;
 using namespace tumble::scenarios;
 using std::filesystem::path;
 
-/// Few readings of a body that turns slowly under gravity.
+/// Returns few readings of a body that rotates slowly under gravity.
 sim::Recording small_recording(int samples) {
   fixture::Numbers numbers;
   sim::Recording out = fixture::recording();
@@ -111,7 +111,8 @@ void write_broad(const path& file) {
   H5Fclose(out);
 }
 
-/// Bags in our format and in those of others, without checksums, which would reject most inputs of a fuzzer.
+/// Writes bags in the program's format and in other formats, without checksums, which would reject most inputs of a
+/// fuzzer.
 void write_mcaps(const path& folder, const sim::Recording& recording) {
   const StoredTruth truth = fixture::stored_truth(recording, folder);
   export_mcap(recording.sensors, {0, &truth}, folder / "small");

@@ -81,7 +81,7 @@ void mcap(const path& file) {
   import_mcap(file, some_bag());
 }
 
-/// A file of points, then the sweep that it is.
+/// Reads a file of points, then converts it to a sweep.
 void cloud(const path& file, const std::string& format) {
   read_cloud(file);
   SweepSource source;
@@ -171,7 +171,7 @@ void estimate(const path& place) {
 void estimate_tum(const path& file) {
   estimate(file);
 }
-/// The table beside an estimate.json that is good.
+/// Reads the table next to a valid estimate.json.
 void estimate_rates(const path& file) {
   const path json = file.parent_path() / "estimate.json";
   if (!std::filesystem::exists(json)) {
@@ -179,7 +179,7 @@ void estimate_rates(const path& file) {
   }
   estimate(file.parent_path());
 }
-/// The description beside a table that is good.
+/// Reads the description next to a valid table.
 void estimate_json(const path& file) {
   const path rates = file.parent_path() / "rates.csv";
   if (!std::filesystem::exists(rates)) {

@@ -6,23 +6,24 @@
 #include <string>
 #include <string_view>
 
-/// What reads files of strangers, and how it is held to "a clear error, never a crash".
+/// readers.hpp lists the readers of foreign files, which must give "a clear error, never a crash".
 namespace tumble::fuzz {
 
-/// A reader of one kind of file.
+/// Reader is a reader of one kind of file.
 struct Reader {
   std::string_view name;                            ///< also the folder of its seeds
   std::string_view file;                            ///< name that the file is given: some readers look at its ending
   void (*read)(const std::filesystem::path& file);  ///< BadInput is a refusal; whatever else it throws is a defect
 };
 
-/// All of them, in the order of registration: a new one is a function and a line in readers.cpp, and a folder of seeds.
+/// Returns all readers, in the order of registration; a new reader needs a function and a line in readers.cpp, and a
+/// folder of seeds.
 std::span<const Reader> readers();
-/// Null when none is called so.
+/// Returns null if no reader has this name.
 const Reader* find_reader(std::string_view name);
 
-/// Puts `bytes` into the reader's file in `folder`, reads it and says whether it was taken. Throws what the reader
-/// throws but for refusals.
+/// Writes `bytes` to the reader's file in `folder`, reads it and returns whether it was accepted. Throws the exceptions
+/// of the reader, except rejections.
 bool takes(const Reader& reader, std::string_view bytes, const std::filesystem::path& folder);
 
 }  // namespace tumble::fuzz

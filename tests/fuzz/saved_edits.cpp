@@ -25,7 +25,7 @@ void reseal(Bytes& bytes) {
   put_number(checksum(all.subspan(kHeader), checksum(all.first(kChecksumAt))), kChecksumAt, bytes);
 }
 
-/// Of numbers, lengths, flags and enumerations; the last ones are parameters within most bounds, and at their ends.
+/// Numbers, lengths, flags and enumerations; the last numbers are parameters within most bounds, and at their ends.
 constexpr std::uint64_t kNumbers[] = {0,
                                       1,
                                       2,

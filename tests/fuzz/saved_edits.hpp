@@ -11,23 +11,24 @@
 
 #include "scenarios/errors.hpp"
 
-/// Saved states, spoiled by what a file says: the edits are of states that are made here and not of files, so that a
-/// seed stays good when the states change.
+/// saved_edits.hpp corrupts saved states by edits from a file: the states are created at run time, so that a seed stays
+/// valid when they change.
 namespace tumble::fuzz {
 
 using Bytes = std::vector<std::byte>;
 
-/// A letter that says of which class, and then edits, six bytes each: what (modulo 5), where (4 bytes, little-endian,
+/// Edits contains a letter for the class, then edits of six bytes each: what (modulo 5), where (4 bytes, little-endian,
 /// modulo the size), by which byte.
 struct Edits {
   char letter = 0;                ///< the capital of what the file begins with
   bool use_saved_params = false;  ///< use the parameters stored in the bytes, after the edits
   std::string text;
 
-  /// Length and checksum are made to fit again, since no fuzzer would find them. BadInput where an edit is not whole.
+  /// Length and checksum are recomputed, because a fuzzer would never find them. Throws BadInput if an edit is
+  /// incomplete.
   Bytes spoil(Bytes saved) const;
 };
-/// BadInput where there is not even a letter.
+/// Throws BadInput if the file is empty.
 Edits read_edits(const std::filesystem::path& file);
 
 /// Loads a saved state with edits. Throws BadInput if the estimator rejects the state by a Status, or its parameters by

@@ -21,7 +21,7 @@ ImuSample sample_at(int k) {
   return out;
 }
 
-/// A floor and a wall.
+/// Returns points of a floor and a wall.
 std::vector<LidarPoint> some_points() {
   std::vector<LidarPoint> out;
   for (int k = 0; k < 400; ++k) {

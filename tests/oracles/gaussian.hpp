@@ -8,21 +8,22 @@
 
 namespace tumble::oracles {
 
-/// Gaussian noise for tests, the same bits on every machine: SplitMix64 and the Box-Muller transform.
+/// Gaussian generates Gaussian noise for tests, with the same bits on every machine: SplitMix64 and the Box-Muller
+/// transform.
 class Gaussian {
  public:
   explicit Gaussian(std::uint64_t seed) : state_(seed) {}
 
-  /// Uniform in (0, 1).
+  /// Returns a uniform number in (0, 1).
   double uniform() { return (static_cast<double>(next() >> 11) + 0.5) * 0x1p-53; }
-  /// Uniform between two bounds.
+  /// Returns a uniform number between two bounds.
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Normal, mean 0, standard deviation 1.
+  /// Returns a normal number with mean 0 and standard deviation 1.
   double operator()() {
     const double radius = std::sqrt(-2.0 * std::log(uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
-  /// Three independent normal numbers.
+  /// Returns three independent normal numbers.
   Eigen::Vector3d vector() {
     const double x = (*this)(), y = (*this)(), z = (*this)();
     return {x, y, z};

@@ -6,32 +6,34 @@
 
 namespace tumble::oracles {
 
-/// Rotation of a rigid body on which no torque acts, in closed form.
+/// TorqueFreeRotation is the closed-form rotation of a rigid body on which no torque acts.
 ///
-/// Body axes B are principal axes. The rate follows from Jacobi elliptic functions (Landau & Lifshitz, Mechanics,
+/// The body axes B are principal axes. The rate follows from Jacobi elliptic functions (Landau & Lifshitz, Mechanics,
 /// section 37); two angles of the attitude from the constant angular momentum; the third, the turn about the angular
-/// momentum, is an elliptic integral of the third kind, evaluated by Gauss-Legendre quadrature of the closed-form
-/// rate (converged to rounding), its whole half-periods counted and not integrated again.
+/// momentum, is an elliptic integral of the third kind, evaluated by Gauss-Legendre quadrature of the closed-form rate
+/// (converged to rounding), its whole half-periods counted and not integrated again.
 ///
-/// Any order of principal moments, equal ones included. Refuses (std::invalid_argument) moments that no rigid body
-/// has, and the separatrix, where the period is infinite (1 - k^2 < 1e-9), unless the spin is steady.
+/// The principal moments may be in any order, and moments may be equal. The constructor throws std::invalid_argument
+/// for moments that no rigid body has. Unless the spin is steady, it also throws on the separatrix, where the period is
+/// infinite (1 - k^2 < 1e-9).
 class TorqueFreeRotation {
  public:
-  /// Principal moments [kg m^2, any common scale], rate w_WB in B at t = 0 [rad/s], attitude q_WB at t = 0.
+  /// The arguments are the principal moments [kg m^2, any common scale], the rate w_WB in B at t = 0 [rad/s] and the
+  /// attitude q_WB at t = 0.
   TorqueFreeRotation(const Eigen::Vector3d& moments, const Eigen::Vector3d& w_WB_B_rad_s,
                      const Eigen::Quaterniond& q_WB = Eigen::Quaterniond::Identity());
 
-  /// w_WB in B at time t [rad/s]; t may be negative.
+  /// Returns the rate w_WB in B at time t [rad/s]; t may be negative.
   Eigen::Vector3d rate(double t_s) const;
-  /// Time derivative of the rate in B [rad/s^2], by Euler's equation.
+  /// Returns the time derivative of the rate in B [rad/s^2], computed by Euler's equation.
   Eigen::Vector3d acceleration(double t_s) const;
-  /// Attitude at time t, body to world.
+  /// Returns the attitude at time t, from body to world.
   Eigen::Quaterniond attitude(double t_s) const;
-  /// What an ideal accelerometer at p_BI (from the centre of mass, in B) measures in free flight, in B:
-  /// f = alpha x p + w x (w x p) [m/s^2].
+  /// Returns what an ideal accelerometer at p_BI (from the centre of mass, in B) measures in free flight, in B: f =
+  /// alpha x p + w x (w x p) [m/s^2].
   Eigen::Vector3d specific_force(double t_s, const Eigen::Vector3d& p_BI_m) const;
 
-  /// Time after which the rate repeats [s]; infinite for a steady spin.
+  /// Returns the time after which the rate repeats [s]; the time is infinite for a steady spin.
   double period_s() const;
   bool steady() const { return steady_; }
 
@@ -46,7 +48,7 @@ class TorqueFreeRotation {
   Eigen::Vector3d rate0_;
   Eigen::Quaterniond q_WB0_;
   bool steady_ = false;
-  // roles of the body axes: cn, sn and dn stand on axes_[0], axes_[1], axes_[2]
+  // the body axes axes_[0], axes_[1] and axes_[2] have the rates that follow cn, sn and dn
   int axes_[3] = {0, 1, 2};
   Eigen::Vector3d amplitude_ = Eigen::Vector3d::Zero();  // signed, by role
   double momentum_ = 0.0;

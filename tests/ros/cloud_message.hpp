@@ -11,7 +11,7 @@
 
 namespace tumble::test {
 
-/// A PointCloud2 in memory, with fields as a driver writes them.
+/// CloudMessage is a PointCloud2 message in memory, with fields as a driver writes them.
 struct CloudMessage {
   std::vector<ros::PointField> fields;
   std::vector<std::uint8_t> data;
@@ -22,7 +22,7 @@ struct CloudMessage {
   }
 };
 
-/// A field's name, its datatype, and the number that it has for a point.
+/// A Column contains a field's name, its datatype, and the function that gives its number for a point.
 struct Column {
   std::string name;
   std::uint8_t datatype;
@@ -51,7 +51,7 @@ inline void put(std::vector<std::uint8_t>& out, std::uint8_t datatype, double va
   }
 }
 
-/// Columns x, y and z as every driver has them.
+/// Returns the columns x, y and z, which every driver writes.
 inline std::vector<Column> xyz() {
   std::vector<Column> out;
   for (int axis = 0; axis < 3; ++axis)
@@ -72,7 +72,7 @@ inline CloudMessage cloud_message(const std::vector<LidarPoint>& points, std::ve
   return out;
 }
 
-/// Ouster's dialect: exact times.
+/// Returns a cloud in the format of Ouster's driver, whose point times are exact.
 inline CloudMessage ouster_cloud(const std::vector<LidarPoint>& points) {
   std::vector<Column> columns = xyz();
   columns.push_back({"t", 6, [](const LidarPoint& p) { return double(p.offset_ns); }});

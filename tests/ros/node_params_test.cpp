@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes declare each parameter once, with its description; poses, boxes and sheets are read or rejected by name.
+// The test checks that nodes declare each parameter once, with its description, and that poses, boxes and data sheets
+// are read or rejected by name.
 #include "tumble_ros/node_params.hpp"
 
 #include <gtest/gtest.h>

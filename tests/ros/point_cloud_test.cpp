@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point clouds in the fields and units of each driver give the same points, and damaged clouds are rejected.
+// The test checks that point clouds in the fields and units of each driver give the same points, and that damaged
+// clouds are rejected.
 #include "tumble_ros/point_cloud.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ using test::Column;
 
 constexpr TimeNs kStamp_ns = 1'732'700'000'123'456'789;  // in 2024
 
-/// 400 points over 0.1 s, out of order.
+/// Returns 400 points over 0.1 s, not sorted by time.
 std::vector<LidarPoint> some_points() {
   std::vector<LidarPoint> out;
   for (int i = 0; i < 400; ++i) {
@@ -48,7 +49,8 @@ struct Dialect {
   std::vector<Column> more = {};
 };
 
-/// float32 seconds have 7 ns at 0.1 s; float64 seconds since 1970 have 239 ns; float64 ns since 1970 have 256 ns.
+/// At 0.1 s, float32 seconds have a resolution of 7 ns; since 1970, float64 seconds have a resolution of 239 ns and
+/// float64 nanoseconds one of 256 ns.
 const std::vector<Dialect>& dialects() {
   const Column ring{"ring", 4, [](const LidarPoint& p) { return double(p.ring); }};
   const Column line{"line", 2, [](const LidarPoint& p) { return double(p.ring); }};
@@ -142,7 +144,7 @@ TEST(PointClouds, RowsMayHavePadding) {
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(sweep.points[i].offset_ns, points[i].offset_ns);
 }
 
-// A quarter of a thousandth of a sweep would be a whole sweep in the next larger unit.
+// A quarter of a thousandth of a sweep in one time unit would be a whole sweep in the next larger unit.
 TEST(PointClouds, TheUnitIsThatOfTheFirstWholeSweep) {
   const std::vector<LidarPoint> points = some_points();
   std::vector<LidarPoint> few;

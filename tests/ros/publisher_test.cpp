@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry of the base frame against the closed form and against sampled errors; deskewed points against the room.
+// The test compares the odometry of the base frame with the closed form and with sampled errors, and the deskewed
+// points with the room.
 #include "tumble_ros/publisher.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +50,8 @@ TEST(BaseOdometry, IsThePoseAndTwistOfTheBase) {
   const Eigen::Isometry3d T_OI = Eigen::Translation3d(imu.p_WA_m) * imu.q_WA;
   EXPECT_TRUE(odometry.T_OB.isApprox(T_OI * T_IB, 1e-12));
   EXPECT_EQ(odometry.stamp_ns, 7);
-  // the velocity of the base by a difference, 1e-9 exact over 20 us; then in axes of the base
+  // the velocity of the base comes from a difference over 20 us, which is exact to 1e-9; it is then turned into axes of
+  // the base
   constexpr double kStep_s = 1e-5;
   const auto moved = [&](double t_s) {
     return Eigen::Isometry3d(Eigen::Translation3d(imu.p_WA_m + t_s * imu.v_WA_m_s) *
@@ -63,7 +65,8 @@ TEST(BaseOdometry, IsThePoseAndTwistOfTheBase) {
   EXPECT_FALSE(odometry.twist_B.head<3>().isApprox(v_O, 0.1)) << "negative control: axes of the odometry frame";
 }
 
-// Draws errors of the inputs and compares the covariance of the resulting errors of the base, in ROS' order and axes.
+// The test draws errors of the inputs and compares the covariance of the resulting errors of the base, in ROS' order
+// and axes.
 TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
   std::mt19937 random(1);
   PoseState imu = some_pose();
@@ -87,7 +90,7 @@ TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
     PoseState wrong = imu;
     wrong.p_WA_m += error.head<3>();
     wrong.q_WA = so3::exp(error.tail<3>()) * imu.q_WA;
-    // the velocity's covariance is that in IMU axes, so the velocity turns with the attitude
+    // the velocity's covariance is stated in IMU axes, so the sampled velocity turns with the attitude
     const Eigen::Vector3d v_I = imu.q_WA.conjugate() * imu.v_WA_m_s + Eigen::Vector3d(draw(velocity_I));
     wrong.v_WA_m_s = wrong.q_WA * v_I;
     RateState wrong_rate = rate;
@@ -100,7 +103,7 @@ TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
     const Vector6 twist_off = drawn.twist_B - stated.twist_B;
     twist += twist_off * twist_off.transpose() / kDraws;
   }
-  // a sampled covariance of 20 000 draws is within 5 % of its norm with more than five deviations
+  // a sampled covariance of 20 000 draws lies within 5 % of its norm; that bound is more than five standard deviations
   EXPECT_TRUE(pose.isApprox(stated.pose_covariance, 0.05)) << pose << "\n\n" << stated.pose_covariance;
   EXPECT_TRUE(twist.isApprox(stated.twist_covariance, 0.05)) << twist << "\n\n" << stated.twist_covariance;
   EXPECT_FALSE(pose.isApprox(imu.covariance, 0.05)) << "negative control: the IMU's covariance is another one";

@@ -8,7 +8,7 @@
 
 namespace tumble::test {
 
-/// A publisher that keeps everything.
+/// RecordedOutputs is a publisher that keeps every message.
 struct RecordedOutputs : ros::Publisher {
   std::vector<ros::Odometry> sweeps, newest;
   std::vector<ros::RecoveredImu> rates;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RollingAdapter publishes the library's poses bit for bit.
+// The test checks that RollingAdapter publishes the library's poses bit for bit.
 #include "tumble_ros/rolling_adapter.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(RollingAdapter, PublishesTheLibrarysResultsBitForBit) {
       EXPECT_EQ(got.sweeps[k].T_OB.translation(), poses[k].pose.p_WA_m);
       EXPECT_EQ(got.sweeps[k].pose_covariance, poses[k].pose.covariance);
     }
-    // rolling without slip: the speed is that of the rotation
+    // the sphere rolls without slip, so its speed follows from its rotation
     const ros::Odometry& middle = got.sweeps[got.sweeps.size() / 2];
     EXPECT_NEAR(middle.twist_B.head<3>().norm(), test::kRadius_m * middle.twist_B.tail<3>().norm(), 0.02);
     EXPECT_GT(middle.twist_B.head<3>().norm(), 0.3) << "negative control: the sphere rolls";

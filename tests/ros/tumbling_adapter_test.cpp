@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingAdapter publishes the library's results bit for bit, for the base frame, also after a step of the clock.
+// The test checks that TumblingAdapter publishes the library's results bit for bit, for the base frame, also after a
+// step of the clock.
 #include "tumble_ros/tumbling_adapter.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,8 @@ TumblingAdapter::Params adapter_params(const ThrownBody& body) {
   return params;
 }
 
-/// Calls add_imu for each sample and add_sweep for each sweep when its last sample has arrived, `later_ns` later.
+/// Calls add_imu for each sample, and calls add_sweep for each sweep when its last sample has arrived, `later_ns`
+/// later.
 template <class AddImu, class AddSweep>
 void play(const ThrownBody& body, TimeNs later_ns, AddImu add_imu, AddSweep add_sweep) {
   const auto sweeps = body.sweeps();
@@ -86,7 +88,7 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
         if (odometry.newest_ns() != before && odometry.newest(pose).ok()) newest.push_back(pose);
       },
       [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
-        // the end of a sweep is its last point
+        // a sweep ends at its last point
         const auto last = std::max_element(points.begin(), points.end(),
                                            [](const auto& a, const auto& b) { return a.offset_ns < b.offset_ns; });
         odometry.add_sweep(start_ns, start_ns + last->offset_ns, points);
@@ -110,7 +112,7 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
     EXPECT_TRUE(same_bits(got.rates[k].rate.w_WI_I_rad_s, rates[k].w_WI_I_rad_s));
     EXPECT_TRUE(same_bits(got.rates[k].rate.covariance_rad2_s2, rates[k].covariance_rad2_s2));
   }
-  // every registered sweep but those without their points is published without its motion
+  // every registered sweep whose points are available is also published deskewed
   EXPECT_EQ(got.deskewed.size(), got.sweeps.size());
   EXPECT_EQ(got.maps.size(), 1u);  // every 5 s
   EXPECT_NEAR(double(got.health.size()), body.end_s, 1.0);
@@ -148,7 +150,7 @@ TEST(TumblingAdapter, RecoversTheSaturatedRate) {
   play_to(adapter, body, 0);
   std::vector<double> errors_rad_s, raw_errors_rad_s;
   for (const ros::RecoveredImu& imu : got.rates) {
-    // a sample is the mean over its window of 10 ms
+    // an IMU sample is the mean over its window of 10 ms, so it belongs to the middle of that window
     const Eigen::Vector3d truth = body.w_WI_I_rad_s(1e-9 * double(imu.rate.time_ns) - 0.005);
     if (imu.rate.clipped_axes == 0) continue;
     errors_rad_s.push_back((imu.rate.w_WI_I_rad_s - truth).norm());
@@ -163,7 +165,8 @@ TEST(TumblingAdapter, RecoversTheSaturatedRate) {
   EXPECT_GT(median(raw_errors_rad_s), 3.0);
 }
 
-// The velocity's covariance has the size of its error: the body rests, then flies at 2 m/s and more.
+// The test checks that the velocity's covariance has the size of its error: the body rests, then flies at 2 m/s and
+// more.
 TEST(TumblingAdapter, TheTwistHasItsStatedAccuracy) {
   const ThrownBody body;
   RecordedOutputs got;
@@ -194,7 +197,7 @@ TEST(TumblingAdapter, PublishesTheBaseFrame) {
   TumblingAdapter adapter(params, base);
   play_to(adapter, body, 0);
   ASSERT_FALSE(base.sweeps.empty());
-  // z of the IMU is up, so the base hangs upside down from it
+  // z of the IMU points up, so the base is upside down relative to the IMU
   const Eigen::Isometry3d first = base.sweeps.front().T_OB;
   const Eigen::Isometry3d T_OI = first * T_BI;
   EXPECT_NEAR(T_OI.translation().x(), 0.2, 0.02);
@@ -212,10 +215,10 @@ TEST(TumblingAdapter, ALevelBaseStartsAtTheOrigin) {
   TumblingAdapter adapter(params, got);
   play_to(adapter, body, 0);
   ASSERT_FALSE(got.sweeps.empty());
-  // levelled within 1 mrad, 0.5 m from the base
+  // levelling is accurate to 1 mrad, and the IMU is 0.5 m from the base
   EXPECT_LT(got.sweeps.front().T_OB.translation().norm(), 2e-3);
   EXPECT_TRUE(got.sweeps.front().T_OB.linear().isIdentity(5e-3));
-  // later poses are those of the base: of the IMU's known motion, turned by the mounting
+  // later poses of the base follow from the IMU's known motion, turned by the mounting
   const ros::Odometry& last = got.sweeps.back();
   const Eigen::Isometry3d truth = params.T_BI * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
   EXPECT_LT((last.T_OB.translation() - truth.translation()).norm(), 0.1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sanitizer must stop at: negative controls of the builds that watch memory, arithmetic and threads.
+// This program makes each fault that a sanitizer must report: these are negative controls of the builds that check
+// memory, arithmetic and threads.
 #include <cstdio>
 #include <limits>
 #include <string_view>

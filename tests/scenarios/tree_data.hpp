@@ -6,7 +6,7 @@
 
 namespace tumble::scenarios {
 
-/// The scenarios, suites and models of this checkout.
+/// Returns the scenarios, suites and models of this checkout.
 inline DataRoot tree_data() {
   return DataRoot{test::source_dir()};
 }

@@ -16,26 +16,29 @@ struct BroadTrial {
   std::vector<bool> moving;
 };
 
-/// Numbers of the trials at hand: the stand-in's ("00", tests/stand_ins) and the eight real ones where they are there.
+/// Returns the numbers of the available trials: the simulated one ("00", tests/stand_ins) and the eight real ones where
+/// they exist.
 std::vector<std::string> broad_trials();
 
-/// Folder of the real trials; empty when the shared data are not there.
+/// Returns the folder of the real trials, or an empty string when the shared data are absent.
 std::string broad_folder();
 
-/// Reads the trial whose file name begins with `number` ("05"). Throws std::runtime_error when it cannot.
+/// Reads the trial whose file name begins with `number` ("05"). Throws std::runtime_error when the trial cannot be
+/// read.
 BroadTrial read_broad_trial(const std::string& folder, const std::string& number);
 
 /// One of `broad_trials()`.
 BroadTrial read_broad_trial(const std::string& number);
 
-/// Root mean square errors in degrees as BROAD defines them, samples without reference left out.
+/// A BroadError contains root mean square errors in degrees as BROAD defines them; samples without reference are left
+/// out.
 struct BroadError {
   double inclination_motion_deg = 0.0;
   double heading_motion_deg = 0.0;
   double inclination_rest_deg = 0.0;
 };
 
-/// Errors of `q_WI`, one per sample, after its heading is aligned at the first sample with reference.
+/// Returns the errors of `q_WI`, one per sample, after its heading is aligned at the first sample with reference.
 BroadError score(const BroadTrial& trial, const std::vector<Eigen::Quaterniond>& q_WI);
 
 }  // namespace tumble::testing

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-/// A recording in the form of RepoIMU, made to the measure of the published ones, of a motion that is known.
+/// The functions here make a recording in the form of RepoIMU, similar to the published ones, of a known motion.
 namespace tumble::scenarios::fixture {
 
-/// A wand in a hand: it swings slowly and is twirled about x now and then, beyond the rail.
+/// A Wand is held in a hand: it swings slowly and is sometimes twirled about x, beyond the saturation level.
 struct Wand {
   double duration_s = 40.0;
   double log_hz = 100.0;
@@ -33,7 +33,7 @@ struct Wand {
   }
 };
 
-/// Attitudes q_WI every millisecond from -0.2 s on.
+/// WandAttitude gives attitudes q_WI every millisecond from -0.2 s on.
 class WandAttitude {
  public:
   explicit WandAttitude(double duration_s) {
@@ -62,7 +62,7 @@ inline Eigen::Vector3d clipped(const Wand& wand, Eigen::Vector3d w) {
   return w;
 }
 
-/// The last instant at which a sensor of that rate has spoken.
+/// Returns the last instant at which a sensor of that rate has given a reading.
 inline double held(double t, double rate_hz) {
   return rate_hz > 0.0 ? std::floor(t * rate_hz + 1e-9) / rate_hz : t;
 }

@@ -3,19 +3,23 @@
 
 #include <filesystem>
 
-/// One writer per source; each writes its files into an existing folder and throws std::runtime_error when it cannot.
+/// Each source has one writer, which writes its files into an existing folder and throws std::runtime_error when it
+/// cannot.
 namespace tumble::test {
 
-/// BROAD: 90 s of a sensor in a hand, still at the start, in the middle and at the end; markers hidden now and then.
+/// Writes a BROAD trial: 90 s of a sensor in a hand, still at the start, in the middle and at the end; the markers are
+/// sometimes hidden.
 void write_broad(const std::filesystem::path& folder);
-/// RepoIMU: two minutes of a wand that is twirled beyond the rail of its gyro about x.
+/// Writes a RepoIMU recording: two minutes of a wand that is twirled about x beyond its gyro's saturation level.
 void write_repoimu(const std::filesystem::path& folder);
-/// AirbrakesV2: a rocket that spins up to 38.9 rad/s; ten rows repeat a stamp, seven come long before the flight.
+/// Writes an AirbrakesV2 flight: a rocket that spins up to 38.9 rad/s; ten rows repeat a stamp, and seven come long
+/// before the flight.
 void write_airbrakes(const std::filesystem::path& folder);
-/// norlab's example: six sweeps of a lidar that glides and turns in a room, VTK as text, with reference poses and an
-/// odometry that errs by 5 mm.
+/// Writes norlab's example: six sweeps of a lidar that glides and turns in a room, VTK as text, with reference poses
+/// and an odometry that errs by 5 mm.
 void write_norlab(const std::filesystem::path& folder);
-/// The sphere's log: 30 s of pure rolling of 29 cm, its attitudes written by the published filter's code of 2021.
+/// Writes the sphere's log: 30 s of pure rolling with a sphere of 29 cm, whose attitudes come from the published
+/// filter's code of 2021.
 void write_sphere_log(const std::filesystem::path& folder);
 
 }  // namespace tumble::test

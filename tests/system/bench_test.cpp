@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stranger's function of Python and a program in C on a small bench: page, lines of JSON, what is refused.
+// The test runs a user's Python function and a C program on a small benchmark: page, lines of JSON, and rejected input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -45,7 +45,7 @@ class Bench : public ::testing::Test {
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// The report that `bench` recommends compares both methods, and each command on its page works.
+  /// Expects that the report which `bench` recommends compares both methods, and that each command on its page works.
   void expect_page_of(const std::string& database) const {
     ASSERT_EQ(run_program({"report", database, "-o", path("page.html")}).status, 0);
     const std::string page = read_file(folder_ / "page.html");
@@ -94,12 +94,12 @@ TEST_F(Bench, MethodsOfStrangersAreHeldBesideOurs) {
   EXPECT_EQ(value(2, "rate_coverage_3sigma"), value(1, "rate_coverage_3sigma"));
   EXPECT_GT(value(1, "rate_coverage_3sigma"), value(0, "rate_coverage_3sigma") + 0.2) << "it said how doubtful it was";
 
-  // asked for again nothing runs anew, and the line is the same, costs included
+  // a second request runs nothing again, and its line is the same, costs included
   ended = bench({"rate/raw", "doubtful.py"}, {"--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(lines_of(ended.out)[1]["draws"], lines[1]["draws"]);
 
-  // what others have published stands on the page, unless it is of another suite or simulation
+  // the page shows published results of others, unless they belong to another suite or simulation
   const auto beside = [&](const std::string& was, const std::string& is) {
     std::string text = read_file(folder_ / "lines.jsonl");
     const std::size_t at = text.find(was);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certificate as the program prints it. What the rows measure is tested beside them.
+// The test checks the certificate as the program prints it. Other tests cover the measurements of the rows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exports and imports of one recording: their clock, tables, and what the user states.
+// The test checks exports and imports of one recording: their clock, tables, and what the user states.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -94,7 +94,7 @@ TEST(Exchange, ExportsOfARecordingHaveOneClock) {
   }
 }
 
-// rates that somebody wrote at the stamps of the exported table
+// a user wrote rates at the stamps of the exported table
 TEST(Exchange, RatesAtTheStampsOfAnExportAreScored) {
   const fs::path folder = test_folder(), given = folder / "estimate";
   const fs::path rates = folder / "rates";

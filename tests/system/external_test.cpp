@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody else's command in run and sweep: what it answers is scored as ours is, and what goes wrong is an outcome.
+// The test runs an external command in run and sweep: its answers are scored like those of the project's methods, and
+// its faults are outcomes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -30,7 +31,7 @@ std::string describe(const fs::path& folder, const std::string& name, const std:
   return file.string();
 }
 
-/// Metric -> value, costs left out.
+/// Returns metric -> value, without costs.
 std::map<std::string, double> scores_of(const json& document, const std::string& method) {
   std::map<std::string, double> out;
   for (const json& row : document["scores"]) {
@@ -71,14 +72,14 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   EXPECT_EQ(status, (std::map<std::string, std::string>{
                         {"raw", "ok"}, {"crashes", "crashed"}, {"hangs", "timeout"}, {"silent", "failed"}}));
 
-  // another method under the name of one that the database has rows of
+  // another method has the name of one for which the database has rows
   describe(folder, "silent", "false");
   const Ended other = run_program(sweep, in_short_catalogue());
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("rate/silent"));
 }
 
-// whether the method hangs when it is imported or when it runs, nothing of it is left when the user has waited enough
+// whether the method hangs when it is imported or when it runs, no file of it remains after the user stops it
 TEST(External, AHangThatIsStoppedLeavesNoFolder) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "small.yaml") << "name: small\ndoc: a draw\nmethods: [rate/raw]\ntimeout_s: 600\n"
@@ -142,7 +143,7 @@ TEST(External, AGateHoldsItToItsAcceptedRun) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("give a FILE.yaml"));
 
-  // negative control: the command of that name has come to answer nothing
+  // negative control: the command of that name now answers nothing
   ended = run({"--method", describe(folder, "raw_python", "true")});
   EXPECT_EQ(ended.status, 1) << ended.err;
   EXPECT_EQ(json::parse(ended.out)["verdict"], "fail");

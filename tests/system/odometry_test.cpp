@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `tumble odometry` and `tumble doctor` on bags of other drivers, sound and with faults.
+// The test runs `tumble odometry` and `tumble doctor` on bags of other drivers, sound and with faults.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// A recording of `stroll`, seven seconds of 20, made once per process.
+/// Returns a recording of `stroll`, seven seconds of 20, made once per process.
 fs::path short_stroll() {
   static const fs::path recording = [] {
     std::string text = read_file(test::source_dir() / "scenarios/catalogue/stroll.yaml");
@@ -174,7 +174,7 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   const json& summary = document["summary"];
   EXPECT_EQ(summary["health"], "ok");
   EXPECT_GE(summary["sweeps_registered"].get<int>(), 65);
-  // after 1.5 to 2 s of rest and a smooth start, 1.1 to 1.4 m/s
+  // after 1.5 to 2 s of rest and a smooth start, the speed is 1.1 to 1.4 m/s
   EXPECT_GT(summary["path_m"].get<double>(), 2.0);
   EXPECT_LT(summary["path_m"].get<double>(), 8.0);
   const auto found = [&](const std::string& item) {

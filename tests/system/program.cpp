@@ -47,7 +47,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::function<
   setpgid(0, 0);  // a group of its own, as a shell gives it
   redirect(folder_ / "out", STDOUT_FILENO);
   redirect(folder_ / "err", STDERR_FILENO);
-  // a certificate measured by one test serves the others, and nothing is left in the home of whoever runs them
+  // a certificate measured by one test serves the others, and no file is written to the user's home
   setenv("TUMBLE_CACHE", test::certificates().c_str(), 1);
   if (prepare) prepare();
   const std::string program = test::program();

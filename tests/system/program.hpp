@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-/// The program as a user has it: a child process, its standard output and error in files, its exit status.
+/// The functions here run the program as a user does: as a child process, with its standard output and error in files,
+/// and its exit status.
 namespace tumble::system_test {
 
 struct Ended {
@@ -17,10 +18,10 @@ struct Ended {
   std::string out, err;
 };
 
-/// Runs the program in a child and waits. `prepare` runs in the child before the program (limits, signals).
+/// Runs the program in a child process and waits. `prepare` runs in the child before the program (limits, signals).
 Ended run_program(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
 
-/// A child that runs on, to be signalled.
+/// Running is a child process that runs on, so that the test can send it signals.
 class Running {
  public:
   explicit Running(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
@@ -38,21 +39,23 @@ class Running {
   int raw_status_ = 0;
 };
 
-/// An empty folder of the test that runs.
+/// Returns an empty folder for the running test.
 std::filesystem::path test_folder();
-/// What `tumble` takes for the scenario of that name where how well methods do is not asked: a file with less of it
-/// (`stand_ins/short_scenario.hpp`), made once per process.
+/// Returns the scenario that `tumble` uses under that name in tests that do not measure accuracy: a file of a shorter
+/// one (`stand_ins/short_scenario.hpp`), made once per process.
 std::string shared_scenario(const std::string& name);
-/// To prepare a child with: its data are this tree's, but `hill` and `roll` are the shared scenarios. In a folder of
-/// the process, with the same files in each, so that a certificate measured over one serves the others.
+/// Prepares a child whose data are this repository's, except that `hill` and `roll` are the shared scenarios. The data
+/// are in a folder of the process with the same files in each process, so that a certificate measured over one serves
+/// the others.
 std::function<void()> in_short_catalogue();
-/// The folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, made once per process. Not to be changed.
+/// Returns the folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, made once per process. Tests must not change the
+/// folder.
 std::filesystem::path shared_run(const std::string& scenario);
 
 std::string read_file(const std::filesystem::path& path);
-/// Standard output as JSON; a failure of the test when it is not.
+/// Returns standard output as JSON; output that is no JSON fails the test.
 nlohmann::json json_of(const Ended& ended);
-/// Number of lines, all ended.
+/// Returns the number of lines, which must all be terminated.
 std::size_t line_count(const std::string& text);
 
 }  // namespace tumble::system_test

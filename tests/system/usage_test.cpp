@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Help, names and listings: what a newcomer types first.
+// The test checks help, names and listings, which a newcomer uses first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -38,9 +38,9 @@ INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                                          "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
                                          "triage", "shrink", "export", "import", "odometry", "doctor"));
 
-/// OSMesa brings LLVM with it and PCL's readers VTK: both are loaded when they are asked for.
+/// OSMesa depends on LLVM, and PCL's readers depend on VTK: both are loaded only when they are needed.
 TEST(Program, BeginsWithoutTheLibrariesThatFewVerbsNeed) {
-  // the loader lists what it would load, and ends
+  // the loader lists the libraries that it would load, and ends
   const Ended listed = run_program({"--version"}, [] { setenv("LD_TRACE_LOADED_OBJECTS", "1", 1); });
   EXPECT_THAT(listed.out, HasSubstr("libmujoco"));
   for (const char* dear : {"libOSMesa", "libLLVM", "libpcl_io", "libvtk"})
@@ -178,7 +178,7 @@ TEST(FirstMinutes, HelpIsAVerbToo) {
 }
 
 TEST(FirstMinutes, JobsAreTheProcessors) {
-  // pinned to one processor, the default is one
+  // with one processor, the default number of processes is one
   const Ended one = run_program({"sweep", "--help"}, [] {
     cpu_set_t all, first;
     sched_getaffinity(0, sizeof all, &all);

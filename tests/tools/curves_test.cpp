@@ -85,7 +85,7 @@ TEST_F(CurvesTest, AreDrawnPerMethodOverTheValuesThatWereSet) {
   EXPECT_NEAR(points[2].quantile_75, 8.0, 1e-12);
   EXPECT_NEAR(points[2].worst_5, 9.6, 1e-12) << "type 7: 0.8 of the way from 8 to 10";
   EXPECT_EQ(points[2].failed, 0);
-  // Clopper and Pearson, 0 of 5: 1 - 0.025^(1/5)
+  // Clopper and Pearson's limit for 0 of 5 is 1 - 0.025^(1/5)
   EXPECT_NEAR(points[2].failed_share.high, 1.0 - std::pow(0.025, 0.2), 1e-9);
 }
 
@@ -192,7 +192,7 @@ TEST_F(CurvesTest, ReachThePageWithTheirNumbers) {
   PageContent content;
   content.curves = find_curves(results());
   const std::string page = page_html(content, "");
-  // what the page hands to Plotly, read back out of it
+  // the test reads the data that the page passes to Plotly
   const std::string open = "<script type=\"application/json\" id=\"figures\">";
   const std::size_t begin = page.find(open) + open.size();
   const auto figures = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));

@@ -60,9 +60,9 @@ TEST(MotionSpreads, PoolsTheClippedSamplesOfAllDraws) {
            spread.quantity == "share of the clipped samples with at least two clipped axes, over all draws";
   });
   ASSERT_NE(pooled, spreads.end());
-  // 10, 20, 30, 40 samples with shares of 0.2, 0.3, 0.4, 0.5
+  // there are 10, 20, 30 and 40 samples with shares of 0.2, 0.3, 0.4 and 0.5
   EXPECT_NEAR(pooled->median, 0.4, 1e-12);
-  // residuals -2, -2, 0, 4: 1.96 sqrt(24 x 4 / 3) / 100
+  // the residuals are -2, -2, 0 and 4: 1.96 sqrt(24 x 4 / 3) / 100
   EXPECT_NEAR(pooled->quantile_95, 0.4 + 1.96 * std::sqrt(32.0) / 100.0, 1e-12);
   EXPECT_NEAR(pooled->quantile_05, 0.4 - 1.96 * std::sqrt(32.0) / 100.0, 1e-12);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The palette stays apart for everybody: distances in CIELAB, as seen by normal, protan, deutan and tritan eyes.
+// The test checks that the palette's colours are distinguishable by everybody: the distances are in CIELAB, as seen by
+// normal, protan, deutan and tritan eyes.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -17,14 +18,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// sRGB to linear light (IEC 61966-2-1).
+/// Converts sRGB to linear light (IEC 61966-2-1).
 Vector3d linear(Colour colour) {
   const auto rgba = colour.rgba();
   const Vector3d srgb(rgba[0], rgba[1], rgba[2]);
   return srgb.unaryExpr([](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); });
 }
 
-/// CIELAB of linear sRGB under D65 (CIE 15).
+/// Converts linear sRGB to CIELAB under D65 (CIE 15).
 Vector3d lab(const Vector3d& rgb) {
   Matrix3d to_xyz;
   to_xyz << 0.4124564, 0.3575761, 0.1804375, 0.2126729, 0.7151522, 0.0721750, 0.0193339, 0.1191920, 0.9503041;
@@ -35,8 +36,9 @@ Vector3d lab(const Vector3d& rgb) {
   return {116.0 * f.y() - 16.0, 500.0 * (f.x() - f.y()), 200.0 * (f.y() - f.z())};
 }
 
-/// What eyes without red, without green, or without blue cones see of linear light (Machado, Oliveira, Fernandes, *A
-/// physiologically-based model for simulation of color vision deficiency*, IEEE TVCG 15:1291, 2009; severity 1).
+/// Returns what eyes without red, without green, or without blue cones see of linear light (Machado, Oliveira,
+/// Fernandes, *A physiologically-based model for simulation of color vision deficiency*, IEEE TVCG 15:1291, 2009;
+/// severity 1).
 std::array<Matrix3d, 4> eyes() {
   Matrix3d protan, deutan, tritan;
   protan << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998;
@@ -45,7 +47,7 @@ std::array<Matrix3d, 4> eyes() {
   return {Matrix3d::Identity(), protan, deutan, tritan};
 }
 
-/// Between the two that are nearest to each other, for the eyes that tell them apart worst.
+/// Returns the distance between the two nearest colours, for the eyes that distinguish them worst.
 double smallest_distance(const std::vector<Colour>& colours) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const Matrix3d& eye : eyes()) {
@@ -63,7 +65,7 @@ std::vector<Colour> palette() {
   return out;
 }
 
-/// Of the luminances (WCAG 2.2).
+/// Returns the contrast of the luminances (WCAG 2.2).
 double contrast(Colour a, Colour b) {
   const Vector3d weights(0.2126, 0.7152, 0.0722);
   const double first = weights.dot(linear(a)) + 0.05, second = weights.dot(linear(b)) + 0.05;
@@ -73,7 +75,7 @@ double contrast(Colour a, Colour b) {
 TEST(Cielab, IsThatOfTheTables) {
   EXPECT_LT((lab(linear({"#ffffff"})) - Vector3d(100.0, 0.0, 0.0)).norm(), 1e-3);
   EXPECT_LT((lab(linear({"#000000"}))).norm(), 1e-9);
-  // sRGB's red as colour tables have it
+  // colour tables give these values for sRGB's red
   EXPECT_LT((lab(linear({"#ff0000"})) - Vector3d(53.24, 80.09, 67.20)).norm(), 0.02);
   for (const Matrix3d& eye : eyes())
     EXPECT_LT((eye * Vector3d::Ones() - Vector3d::Ones()).norm(), 1e-4) << "grey stays";
@@ -81,7 +83,8 @@ TEST(Cielab, IsThatOfTheTables) {
 
 TEST(Palette, StaysApartForColourBlindEyesToo) {
   EXPECT_GT(smallest_distance(palette()), 30.0);
-  // negative controls: what it was before, two of its colours alike to deutan eyes, and one colour twice
+  // the negative controls are the earlier palette, of which two colours look alike to deutan eyes, and a palette with
+  // one colour twice
   const std::vector<Colour> before = {{"#009e73"}, {"#e69f00"}, {"#cc79a7"}, {"#0072b2"},
                                       {"#d55e00"}, {"#56b4e9"}, {"#f0e442"}};
   EXPECT_LT(smallest_distance(before), 20.0);

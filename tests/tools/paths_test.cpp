@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 constexpr std::int64_t kPeriodNs = 1000000;
 
-/// Rests for 0.5 s, then spirals upwards for 1 s while turning about its axis, then rests for 0.5 s.
+/// Returns a motion that rests for 0.5 s, then spirals upwards for 1 s while turning about its axis, then rests for 0.5
+/// s.
 sim::Truth spiral() {
   sim::Truth truth;
   truth.period_ns = kPeriodNs;
@@ -46,7 +47,7 @@ sim::Sensors sensors_of(const sim::Truth& truth) {
   return sensors;
 }
 
-/// The true IMU poses in a world of the estimator's own: elsewhere, and with another heading.
+/// Returns the true IMU poses in another world frame, at another position and heading.
 scenarios::Estimate perfect_estimate(const sim::Truth& truth, scenarios::Frame frame) {
   Isometry3d T_VW = Isometry3d::Identity();
   T_VW.linear() = AngleAxisd(1.2, Vector3d::UnitZ()).toRotationMatrix();
@@ -81,7 +82,7 @@ TEST(EstimatedPath, OfAPerfectEstimateLiesOnTheTruth) {
       const Path path = estimated_path(perfect_estimate(truth, frame), sensors, truth);
       ASSERT_EQ(path.points_W_m.size(), expected.points_W_m.size());
       for (std::size_t k = 0; k < path.points_W_m.size(); ++k) {
-        // rounding of coordinates of ten metres
+        // the tolerance is the rounding of coordinates of ten metres
         ASSERT_LT((path.points_W_m[k] - expected.points_W_m[k]).norm(), 1e-12) << to_string(frame) << " " << k;
       }
     }

@@ -7,7 +7,7 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// Summaries of two methods on two draws, for tests of pages and figures.
+/// The functions here make summaries of two methods on two draws, for tests of pages and figures.
 namespace tumble::tools {
 
 inline scenarios::MetricSummary metric(std::vector<double> values) {

@@ -25,7 +25,7 @@ using ::testing::Not;
 
 constexpr const char* kError = "rate_error_clipped_median_rad_s";
 
-/// A results database in the test's folder, empty.
+/// SummaryTest has an empty results database in the test's folder.
 class SummaryTest : public testing::Test {
  protected:
   SummaryTest()
@@ -54,7 +54,7 @@ class SummaryTest : public testing::Test {
 };
 
 TEST_F(SummaryTest, PairsDrawByDrawWithTheBaseline) {
-  // saave is better on 2 of the 4 draws: draw 4 failed and ranks behind every number, whatever it scored
+  // saave is better on 2 of the 4 draws: draw 4 failed and ranks behind every number, whatever its score
   store(2, Kind::rate, "saave", scenarios::OutcomeStatus::ok, {{kError, 0.5}});
   store(1, Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{kError, 2.0}});
   store(2, Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{kError, 3.0}});
@@ -119,7 +119,7 @@ TEST_F(SummaryTest, VerdictsGiveTheirShareAndNotTheirMedian) {
   const MetricSummary* metric = summary.sections.front().find("icp")->find("map_failed");
   ASSERT_NE(metric, nullptr);
   EXPECT_NEAR(metric->centre.value, 0.1, 1e-12);
-  // Clopper and Pearson, 1 of 10: [0.0025, 0.4450] (their table)
+  // Clopper and Pearson's interval for 1 of 10 is [0.0025, 0.4450] (their table)
   EXPECT_NEAR(metric->centre.low, 0.0025, 1e-4);
   EXPECT_NEAR(metric->centre.high, 0.4450, 1e-4);
 }

@@ -9,15 +9,16 @@
 #include "tools/examples/example.hpp"
 #include "tools/pictures/paths.hpp"
 
-/// Plots of one simulated run that apply to every robot.
+/// draw_plots.hpp contains plots of one simulated run that apply to every robot.
 namespace tumble::tools {
 
 /// Returns the indices of the methods to plot, in increasing order. If there are more methods than colours, methods
 /// marked `first` are chosen before other methods, each group in order, until the colours are used up.
 std::vector<std::size_t> drawn_of(const std::vector<bool>& first);
 
-/// The estimated paths that the pictures of a run show. Methods that receive the truth are left out, because their path
-/// would cover the true path. If there are more paths than colours, the baseline and our methods are chosen first.
+/// RunPaths contains the estimated paths that the pictures of a run show. Methods that receive the truth are left out,
+/// because their path would cover the true path. If there are more paths than colours, the baseline and the methods of
+/// tumble are chosen first.
 struct RunPaths {
   std::vector<std::string> methods;  ///< for example "slam/icp"
   std::vector<Path> paths;           ///< parallel to `methods`
@@ -26,7 +27,7 @@ struct RunPaths {
 };
 RunPaths paths_of(const scenarios::RunResult& run);
 
-/// Rounds to five significant digits: finer than a plot can show, and the page stays small.
+/// Rounds to five significant digits, which is finer than a plot can show and keeps the page small.
 double significant(double value);
 
 /// Plots the rate about the sensor axis that clips most, while the body moves: the truth, the gyro and each rate

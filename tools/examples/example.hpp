@@ -7,14 +7,15 @@
 #include <utility>
 #include <vector>
 
-/// An example is one simulated run with pictures and plots. A sweep creates examples and stores them next to its
-/// results database; the report displays the examples without further computation.
+/// An example is one simulated run with pictures and plots. A sweep over scenarios creates examples and stores them
+/// next to its results database; the report displays them without further computation.
 namespace tumble::tools {
 
-/// Colour index of the truth. All other indices select the colour of a method (pictures/colours.hpp).
+/// kTruthColour is the colour index of the truth. All other indices select the colour of a method
+/// (pictures/colours.hpp).
 inline constexpr int kTruthColour = -1;
 
-/// One line of a plot. `x` and `y` are parallel; NaN marks a gap.
+/// PlotLine is one line of a plot. `x` and `y` are parallel; NaN marks a gap.
 struct PlotLine {
   std::string name;
   int colour = kTruthColour;
@@ -66,8 +67,8 @@ std::filesystem::path examples_folder(const std::filesystem::path& database);
 std::string to_json(const Example& example);
 
 /// Writes the files of an example to FOLDER/.unfinished: pictures SCENARIO-SEED-NAME.png, the animation
-/// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` moves them to FOLDER. Throws
-/// BadInput.
+/// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` moves these files to FOLDER.
+/// Throws BadInput.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
 /// Removes the files in FOLDER/.unfinished.
@@ -76,8 +77,8 @@ void discard_unfinished(const std::filesystem::path& folder);
 /// Returns the file name of the replay of an example.
 std::string replay_file(const Example& example);
 
-/// Joins the results of `to_json` into the list of the folder and moves the unfinished files into place. Then removes
-/// files that the previous list named and the new list does not name. Throws BadInput.
+/// Joins the results of `to_json` into the list of the folder and moves the unfinished files into place. The function
+/// then removes files that the previous list named and the new list does not name. Throws BadInput.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
@@ -86,8 +87,8 @@ struct FoundExamples {
   std::vector<std::string> unreadable;  ///< path and reason for each part of the list that cannot be read
 };
 /// Reads the examples of a folder; the result is empty if the folder has no list. An unreadable example does not affect
-/// other examples. Reported errors: the list has the wrong format or is truncated (examples that end before the cut are
-/// returned), a picture is missing, or a name leads out of the folder.
+/// other examples. read_examples reports these errors: the list has the wrong format or is truncated (examples that end
+/// before the cut are returned), a picture is missing, or a name leads out of the folder.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
 /// Copies a list that is damaged or truncated to examples.json.damaged, so that the next list does not overwrite the

@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// Time limit for simulation and rendering in addition to the methods, in units of one method's time limit.
+/// kOtherTimeouts is the time limit for simulation and rendering in addition to the methods, in units of one method's
+/// time limit.
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The draw with the median score of its scenario";
 constexpr const char* kFailed = "The draw on which most methods failed";
@@ -30,8 +31,8 @@ constexpr const char* kAlsoFailed = "A draw on which methods failed";
 
 enum class Extent { whole, of_failure };
 
-/// An example that a process is generating. Only the first example has an animation, because a report shows only one
-/// animation. `text` is what the process has printed so far, or the text of an existing example.
+/// Making is an example that a process is generating. Only the first example has an animation, because a report shows
+/// only one animation. `text` is what the process has printed so far, or the text of an existing example.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -62,13 +63,13 @@ std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Ou
   return found;
 }
 
-/// Returns the rows to show for a run with failures: the failed methods, and our methods of these kinds.
+/// Returns the rows to show for a run with failures: the failed methods, and tumble's methods of these kinds.
 std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> rows) {
   std::set<scenarios::Kind> kinds;
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // our method of each kind is called `tumble` (docs/design.md, "Scenarios and methods by name")
+  // the method of tumble is called `tumble` in each kind (docs/design.md, "Scenarios and methods by name")
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });
@@ -88,7 +89,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // simulate lidars only if the sweep simulated lidars, so that the digest of the recording agrees with the rows
+    // lidars are simulated only if the sweep simulated them, so that the digest of the recording agrees with the rows
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -143,8 +144,8 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   return others;
 }
 
-/// Generates the example in its own process, so that a crash affects only this example. The process writes the example,
-/// or the reason why there is no example, to `fd`.
+/// Generates the example in a separate process, so that a crash affects only this example. The process writes the
+/// example, or the reason why there is no example, to `fd`.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
     const scenarios::RunResult run =
@@ -235,7 +236,7 @@ class Makers {
   std::list<Worker> workers_;
 };
 
-/// Removes unfinished files, and the folder if it is empty.
+/// Unfinished removes unfinished files, and the folder if it is empty.
 class Unfinished {
  public:
   explicit Unfinished(const fs::path& folder) : folder_(folder) { discard_unfinished(folder_); }

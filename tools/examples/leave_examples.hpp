@@ -19,7 +19,7 @@ struct LeaveOptions {
   std::function<void(std::string_view)> note;  ///< receives progress messages; may be empty
 };
 
-/// Generates examples next to the results of a sweep (see `examples_folder`), each in its own process.
+/// Generates examples next to the results of a sweep (see `examples_folder`), each in a separate process.
 /// - Typical runs of the suite's scenarios (`choose_examples`) are repeated with the methods that succeeded on these
 ///   runs.
 /// - Among the runs on which methods failed (`choose_failures`), the first run is repeated with all methods that
@@ -27,8 +27,8 @@ struct LeaveOptions {
 ///   (`failure_example_of`).
 ///
 /// Existing examples that show the rows of the results, or that belong to scenarios outside the suite, are kept. A run
-/// that cannot be shown is reported in a note. Does nothing for recordings. Returns false if the generation was
-/// stopped. Throws BadInput if the folder cannot be written.
+/// that cannot be shown is reported in a note. The function does nothing for recordings. Returns false if the
+/// generation was stopped. Throws BadInput if the folder cannot be written.
 bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const std::filesystem::path& database, const LeaveOptions& options);
 

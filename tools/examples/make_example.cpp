@@ -36,7 +36,7 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
   }
 }
 
-/// Shows the map of the baseline next to the map of our method.
+/// Shows the map of the baseline next to the map of tumble's method.
 void add_maps(const scenarios::RunResult& run, Example& example) {
   if (!run.surface) return;
   std::vector<ErrorMap> maps;
@@ -59,7 +59,7 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
        sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-/// Length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
+/// kMoving_s is the length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
 constexpr double kMoving_s = 2.0;
 
 void add_moving(const Scene& scene, Example& example) {

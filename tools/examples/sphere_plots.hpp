@@ -4,8 +4,8 @@
 #include "scenarios/sweep/run_situation.hpp"
 #include "tools/examples/example.hpp"
 
-/// Plots that correspond to the published figures of the rolling sphere. Each plot shows the truth, and either all
-/// attitude methods or, for each origin, the first position method that does not need the truth.
+/// sphere_plots.hpp contains plots that correspond to the published figures of the rolling sphere. Each plot shows the
+/// truth, and either all attitude methods or, for each origin, the first position method that does not need the truth.
 namespace tumble::tools {
 
 /// Plots the path from above, with equal scales on both axes.
@@ -16,7 +16,8 @@ Plot sphere_speed_plot(const scenarios::RunResult& run);
 /// Plots the height of the centre relative to its start over time.
 Plot sphere_height_plot(const scenarios::RunResult& run);
 /// Plots the tilt relative to its mean over the longest standstill, in the direction in which the tilt varies most. The
-/// plot shows jitter and drift. The plot has no lines without attitude methods or without a standstill.
+/// standstill plot shows jitter and drift of the attitude. The plot has no lines without attitude methods or without a
+/// standstill.
 Plot sphere_standstill_plot(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-/// Helpers for text in HTML pages. All text that comes from a file or a database must pass through `escaped`.
+/// html.hpp contains helpers for text in HTML pages. All text that comes from a file or a database must pass through
+/// `escaped`.
 namespace tumble::tools::html {
 
-/// Replaces & < > " ' by entities. The result is safe in text and in quoted attributes.
+/// Replaces & < > " ' by entities. The escaped text is safe in text and in quoted attributes.
 std::string escaped(const std::string& text);
 
 /// Escapes each "<" of a JSON text, so that the text can be embedded in a script element without ending the element.

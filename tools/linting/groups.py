@@ -24,7 +24,7 @@ _TEST = re.compile(r"(?:TYPED_TEST|TEST|MATCHER|INSTANTIATE_TEST_SUITE|TYPED_TES
 class Source:
     name: str
     text: str
-    words: list[str]  # arguments of its compilation
+    words: list[str]  # arguments of the source's compilation
     own: set[str]     # names in its unnamed namespaces, which other sources may also use
     tests: set[str]   # names of its tests, which no other source of a group may use
 
@@ -86,7 +86,7 @@ def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
     for at, source in enumerate(group):
         renamed = source.own & taken
         taken |= source.own
-        # leaves members and qualified names unchanged, because they belong to other classes or namespaces
+        # members and qualified names stay unchanged, because they belong to other classes or namespaces
         pattern = re.compile(r"(?<![.>:\w])(" + "|".join(sorted(renamed)) + r")\b") if renamed else None
         depth = 0  # depth of preprocessor conditions; an include within a condition is not moved
         for number, line in enumerate(source.text.splitlines(), 1):

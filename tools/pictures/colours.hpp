@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-/// The palette that plots, pictures and replays share.
+/// colours.hpp defines the palette that plots, pictures and replays share.
 namespace tumble::tools {
 
 struct Colour {
@@ -12,7 +12,7 @@ struct Colour {
   std::array<float, 4> rgba() const;
 };
 
-/// Number of methods with different colours. Further methods use these colours again.
+/// kMethodColours is the number of methods with different colours. Further methods use these colours again.
 inline constexpr std::size_t kMethodColours = 6;
 
 /// Returns the colour of the truth, and of the method with an index. Colour-blind readers can distinguish the colours.

@@ -21,7 +21,7 @@ constexpr int kScaleHeight = 14, kPictureMargin = 6;
 constexpr double kFocal = 1.7;  ///< focal length in units of half the picture's smaller side: about 60 degrees of view
 constexpr double kElevation_rad = 0.6;
 
-/// Camera that looks at the middle of the true path, across the direction of travel.
+/// Camera looks at the middle of the true path, across the direction of travel.
 class Camera {
  public:
   Camera(const sim::Truth& truth, int width, int height) : width_(width), height_(height) {

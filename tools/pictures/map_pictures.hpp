@@ -12,13 +12,13 @@
 #include "sim/recording.hpp"
 #include "sim/render/renderer.hpp"
 
-/// Pictures of maps whose points are coloured by their distance to the true surface.
+/// map_pictures.hpp draws maps whose points are coloured by their distance to the true surface.
 namespace tumble::tools {
 
-/// Errors of this size or larger have the last colour of the scale [m].
+/// Errors of at least kMapErrorMax_m have the last colour of the scale [m].
 inline constexpr float kMapErrorMax_m = 1.0f;
 
-/// A map in world axes, aligned with the truth by position and heading at the start, as for the scores.
+/// ErrorMap is a map in world axes, aligned with the truth by position and heading at the start, as for the scores.
 struct ErrorMap {
   std::string name;  ///< for example "slam/icp_raw"
   std::vector<Eigen::Vector3f> points_W_m;
@@ -26,8 +26,8 @@ struct ErrorMap {
   double share_within(float limit_m) const;
 };
 
-/// Computes the error of each map point. Points that are not finite are left out. The result is empty if the estimate
-/// has no map, or no pose within the time of the truth.
+/// Computes the error of each map point. Non-finite points are left out. The error map is empty if the estimate has no
+/// map, or no pose within the time of the truth.
 ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estimate, const sim::Truth& truth,
                       const sim::Surface& surface);
 

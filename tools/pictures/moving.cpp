@@ -12,11 +12,10 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at the mean position of the robot over this time, so that the camera follows without shaking at
-/// impacts.
+/// The camera looks at the mean position of the robot over kFollow_s, so that it follows without shaking at impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
-/// Duration of the last frame before the animation restarts.
+/// kPause_ms is the duration of the last frame before the animation restarts.
 constexpr int kPause_ms = 700;
 
 double step_ns(const MovingOptions& options) {

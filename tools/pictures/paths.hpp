@@ -9,11 +9,11 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
+/// paths.hpp computes paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
 namespace tumble::tools {
 
-/// Path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass of another
-/// robot.
+/// Path is the path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass
+/// of another robot.
 struct Path {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> points_W_m;
@@ -33,8 +33,8 @@ bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const s
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
 
 /// Returns the path of an estimate, aligned with the truth at the estimate's first pose by position and yaw, as for the
-/// scores. The result is empty if the estimate has no poses, or if the frame of the poses belongs to a sensor that the
-/// recording lacks.
+/// scores. The returned path is empty if the estimate has no poses, or if the frame of the poses belongs to a sensor
+/// that the recording lacks.
 Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth& truth);
 
 /// Returns `path` up to the first point outside of the surroundings of `truth`. The surroundings are the bounding box
@@ -42,8 +42,9 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
 /// estimate would fill the whole picture.
 Path near_truth(const Path& path, const Path& truth);
 
-/// First and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval is widened by
-/// `margin_s` on each side and limited to the time of the truth. Without motion, the interval is the whole truth.
+/// Span contains the first and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval is
+/// widened by `margin_s` on each side and limited to the time of the truth. Without motion, the interval is the whole
+/// truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

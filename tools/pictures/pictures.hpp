@@ -13,7 +13,7 @@
 
 namespace tumble::tools {
 
-/// Input of pictures. Only the first member is required.
+/// Scene is the input of pictures. Only the first member of Scene is required.
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
   const sim::Sensors* sensors = nullptr;  ///< needed with `truth` to draw the robot along the true path

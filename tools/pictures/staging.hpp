@@ -10,7 +10,7 @@
 #include "sim/render/renderer.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// Viewpoints, instants and paths that still pictures and animations share.
+/// staging.hpp provides viewpoints, instants and paths that still pictures and animations share.
 namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);

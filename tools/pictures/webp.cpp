@@ -19,7 +19,7 @@ struct WebpAnimation::Impl {
 
 namespace {
 
-/// RAII wrapper of libwebp's picture.
+/// WebpPicture is an RAII wrapper of libwebp's picture.
 class WebpPicture {
  public:
   explicit WebpPicture(const sim::Picture& picture) {

@@ -9,7 +9,8 @@
 
 namespace tumble::tools {
 
-/// Encodes pictures as an animated WebP file that repeats (libwebp, lossy). Equal pictures give equal bytes.
+/// WebpAnimation encodes pictures as an animated WebP file that repeats (libwebp, lossy). Equal pictures give equal
+/// bytes.
 class WebpAnimation {
  public:
   /// Takes the size of each picture, from 1 to 16383 pixels per side, and the `quality` from 0 (small) to 100. Throws
@@ -22,7 +23,7 @@ class WebpAnimation {
   /// duration is below 1 ms, and std::runtime_error if compression fails.
   void add(const sim::Picture& picture, int duration_ms);
 
-  /// Returns the file; no picture may be added afterwards. Throws std::logic_error if there is no picture.
+  /// Returns the WebP file; no picture may be added afterwards. Throws std::logic_error if there is no picture.
   std::vector<std::uint8_t> bytes();
 
  private:

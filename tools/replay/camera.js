@@ -1,4 +1,4 @@
-// A camera around a point. It follows a robot or stays; the reader can rotate, zoom and move it.
+// A camera around a point. The camera follows a robot or stays; the reader can rotate, zoom and move it.
 class Camera {
   constructor(target, distance_m, azimuth_rad) {
     this.target = target.slice();

@@ -9,11 +9,12 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Motion of the body by the truth or by an estimate, in one common world frame.
+/// motion.hpp computes the motion of the body by the truth or by an estimate, in one common world frame.
 namespace tumble::tools {
 
-/// Poses of the body B in W at increasing instants. Positions are interpolated linearly and attitudes by slerp. The
-/// pose is undefined outside the samples, and in gaps of more than half a second or four usual steps.
+/// Motion contains poses of the body B in W at increasing instants. Between samples, positions are interpolated
+/// linearly and attitudes by slerp. The pose is undefined outside the samples, and in gaps of more than half a second
+/// or four usual steps.
 class Motion {
  public:
   Motion() = default;
@@ -23,7 +24,7 @@ class Motion {
   bool empty() const { return time_ns_.empty(); }
   std::int64_t begin_ns() const { return time_ns_.front(); }
   std::int64_t end_ns() const { return time_ns_.back(); }
-  /// Returns the interpolated pose. The cost is O(log N).
+  /// Returns the interpolated pose. Cost: O(log N).
   std::optional<Eigen::Isometry3d> at(std::int64_t time_ns) const;
 
  private:
@@ -33,15 +34,15 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// Samples the truth at instants `step_ns` apart. The result is empty if the truth has no positions. Throws BadInput if
-/// the truth is inconsistent.
+/// Samples the truth at instants `step_ns` apart. The returned motion is empty if the truth has no positions. Throws
+/// BadInput if the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
 /// Converts an estimate to poses of the body, by the mounting that the estimator received. If there is a truth, the
 /// motion is aligned with the truth as for the scores: position and heading at the first pose within the time of the
-/// truth. Otherwise it is aligned with `reference` in the same way. An estimate that has no common time with the
-/// reference is not moved. The result is empty without poses, or if the frame of the poses belongs to a sensor that the
-/// recording lacks. `truth` may be null.
+/// truth. Without a truth, the motion is aligned with `reference` in the same way. An estimate that has no common time
+/// with the reference is not moved. The returned motion is empty without poses, or if the frame of the poses belongs to
+/// a sensor that the recording lacks. `truth` may be null.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

@@ -23,7 +23,7 @@ constexpr int kErrorSteps = 254;
 constexpr std::uint8_t kNoError = 255;
 constexpr int kColourLevels = 64;
 
-/// Appends arrays to the bytes and describes each array in the head.
+/// Arrays appends arrays to the bytes and describes each array in the head.
 class Arrays {
  public:
   template <typename Number>

@@ -7,7 +7,7 @@
 
 #include "tools/replay/replay.hpp"
 
-/// The data of a replay page as bytes (README.md describes every field).
+/// packed.hpp converts a replay to the bytes of a page (README.md describes every field).
 namespace tumble::tools {
 
 struct PackedReplay {

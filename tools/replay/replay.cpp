@@ -63,7 +63,7 @@ ReplayTrack sampled(const Motion& motion, std::int64_t end_ns, std::int64_t step
   return track;
 }
 
-/// Finds the interval with motion, by the truth or else by the gyro. Without motion, the interval is the whole
+/// Finds the interval with motion, by the truth or otherwise by the gyro. Without motion, the interval is the whole
 /// recording.
 void find_motion(const ReplayInput& input, Replay& replay) {
   replay.to_ns = replay.end_ns;
@@ -109,7 +109,7 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
   return actors;
 }
 
-/// The result is parallel to the actors.
+/// The list of motions is parallel to the actors.
 std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
   std::vector<Motion> motions;
   if (input.truth != nullptr) motions.push_back(true_motion(*input.truth, step_ns));
@@ -173,7 +173,7 @@ void add_tracks(const std::vector<Motion>& motions, const ReplayLimits& limits, 
       std::count_if(motions.begin(), motions.end(), [](const Motion& motion) { return !motion.empty(); }));
   const std::size_t room = limits.bytes / kTracksShare / (kPoseBytes * tracks);
   const auto poses = static_cast<std::int64_t>(std::max<std::size_t>(std::min(limits.poses, room), 2));
-  // whole microseconds, the page's unit of time
+  // the step is a multiple of whole microseconds, the page's unit of time
   replay.pose_step_ns = std::max(kStep_ns, (replay.end_ns / (poses - 1) / 1000 + 1) * 1000);
   for (std::size_t i = 0; i < motions.size(); ++i)
     replay.actors[i].track = sampled(motions[i], replay.end_ns, replay.pose_step_ns);
@@ -215,7 +215,7 @@ Replay replay_of(const ReplayInput& input, const ReplayLimits& limits) {
   replay.title = input.title;
   replay.facts = input.facts;
   const std::vector<Motion> motions = motions_of(input, input.truth == nullptr ? 0 : input.truth->period_ns);
-  // at least 1 ns, even if there is only one pose
+  // the end is at least 1 ns, even if there is only one pose
   replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);
   replay.actors = actors_of(input);
   add_rates(input, limits, replay);

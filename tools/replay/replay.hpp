@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 #include "sim/render/world_mesh.hpp"
 
-/// Content of a replay, independent of the page and of its binary format.
+/// replay.hpp defines the content of a replay, independent of the page and of its binary format.
 namespace tumble::tools {
 
 struct ReplayEstimate {
@@ -21,7 +21,7 @@ struct ReplayEstimate {
   const scenarios::Estimate* estimate = nullptr;
 };
 
-/// Input of a replay. Only the sensors and one motion (truth or estimate) are required.
+/// ReplayInput is the input of a replay. Only the sensors and one motion (truth or estimate) are required.
 struct ReplayInput {
   std::string title;                                       ///< for example "hill, seed 6"
   std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of name and value
@@ -32,13 +32,13 @@ struct ReplayInput {
   std::vector<ReplayEstimate> estimates;       ///< in the order of their colours
 };
 
-/// How many of the available items are shown.
+/// Shown states how many of the available items are shown.
 struct Shown {
   std::size_t shown = 0, of = 0;
 };
 
-/// Poses of the body at multiples of `Replay::pose_step_ns` from time 0. Unknown poses have a position that is not
-/// finite.
+/// ReplayTrack contains poses of the body at multiples of `Replay::pose_step_ns` from time 0. Unknown poses have a
+/// non-finite position.
 struct ReplayTrack {
   std::vector<Eigen::Vector3d> p_WB_m;
   std::vector<Eigen::Quaterniond> q_WB;
@@ -58,7 +58,7 @@ struct ReplayActor {
                                             ///< unknown; may be empty
 };
 
-/// Returns of the first lidar in order of time.
+/// ReplayPoints contains returns of the first lidar in order of time.
 struct ReplayPoints {
   std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes by the given calibration
   std::vector<std::int64_t> time_ns;
@@ -70,7 +70,7 @@ struct ContactSpan {
   sim::ContactLabel label = sim::ContactLabel::grip;
 };
 
-/// Readings of the primary gyro.
+/// ReplayStrip contains readings of the primary gyro.
 struct ReplayStrip {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3f> gyro_rad_s;
@@ -96,7 +96,7 @@ struct Replay {
   ReplayStrip strip;
 };
 
-/// Upper limits of the size of a replay.
+/// ReplayLimits contains upper limits of the size of a replay.
 struct ReplayLimits {
   std::size_t bytes = 2'100'000;  ///< total of all arrays; the points use what the other arrays leave
   std::size_t points = 120'000;

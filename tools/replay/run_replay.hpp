@@ -9,7 +9,7 @@
 
 namespace tumble::tools {
 
-/// Maximum number of methods in a replay of a run: the number of colours.
+/// kRunReplayMethods is the maximum number of methods in a replay of a run: the number of colours.
 inline constexpr std::size_t kRunReplayMethods = kMethodColours;
 
 /// Returns the indices, in increasing order, of the methods that the replay of a run shows. Candidates are methods that

@@ -36,7 +36,7 @@ bool truth_tells_clipping(const sim::Sensors& sensors, const sim::Truth* truth) 
   return truth->imus.front().rate_rad_s.size() == sensors.imus.front().time_ns.size();
 }
 
-/// Returns the entry of a sorted list that is nearest in time.
+/// Returns the rate in a sorted list that is nearest in time.
 std::size_t nearest(const std::vector<RateState>& rates, std::int64_t time_ns) {
   const auto after = std::lower_bound(rates.begin(), rates.end(), time_ns,
                                       [](const RateState& rate, std::int64_t t) { return rate.time_ns < t; });
@@ -72,7 +72,7 @@ void mark_clipping(const sim::Sensors& sensors, const sim::Truth* truth, const s
   }
 }
 
-/// For a rig, only contact is distinguished; slip and slide are defined for spheres.
+/// For a rig, the replay distinguishes only contact, because slip and slide are defined for spheres.
 std::vector<ContactSpan> contact_spans(const sim::Sensors& sensors, const sim::Truth& truth) {
   std::vector<ContactSpan> spans;
   const auto label_at = [&](std::size_t k) {

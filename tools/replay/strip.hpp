@@ -5,12 +5,12 @@
 
 #include "tools/replay/replay.hpp"
 
-/// Readings of the primary gyro, and the rate about the gyro's axes by the truth and by estimates.
+/// strip.hpp provides readings of the primary gyro, and the rate about the gyro's axes by the truth and by estimates.
 namespace tumble::tools {
 
 /// Selects at most `most` samples of the primary IMU: all samples, or the fastest of each group of equal size. Clipped
 /// axes come from the truth (scenarios/scoring/clipping.hpp), else from the device's flags if the device sets any
-/// flags, else from the first estimate with rates. The result is empty without an IMU. `truth` may be null.
+/// flags, else from the first estimate with rates. The strip is empty without an IMU. `truth` may be null.
 ReplayStrip strip_of(const sim::Sensors& sensors, const sim::Truth* truth, const std::vector<ReplayEstimate>& estimates,
                      std::size_t most);
 
@@ -18,7 +18,7 @@ ReplayStrip strip_of(const sim::Sensors& sensors, const sim::Truth* truth, const
 std::vector<Eigen::Vector3f> true_rates(const ReplayStrip& strip, const sim::Sensors& sensors, const sim::Truth& truth);
 
 /// Returns the rates of an estimate at the samples of the strip. A rate is NaN if the estimate has no rate within one
-/// IMU period. The result is empty if the estimate has no rates.
+/// IMU period. The list is empty if the estimate has no rates.
 std::vector<Eigen::Vector3f> estimated_rates(const ReplayStrip& strip, const sim::Sensors& sensors,
                                              const scenarios::Estimate& estimate);
 

@@ -48,7 +48,7 @@ MeshPart thinned_field(const MeshPart& field, const AlignedBox3f& near, float co
   return out;
 }
 
-/// Reduces the resolution until the field fits.
+/// Reduces the resolution of a height field until it fits into the page.
 MeshPart fitting_field(const MeshPart& field, const AlignedBox3f& near, std::size_t most) {
   MeshPart out = thinned_field(field, near, 1.0f);
   for (float coarser = 1.5f; triangle_count(out) > most && coarser < 100.0f; coarser *= 1.5f)
@@ -62,7 +62,7 @@ AlignedBox3f box_of(const MeshPart& part) {
   return box;
 }
 
-/// Apparent size of a part as seen from the robot.
+/// Returns the apparent size of a part as seen from the robot.
 float prominence(const MeshPart& part, const AlignedBox3f& near) {
   const AlignedBox3f box = box_of(part);
   if (box.isEmpty()) return 0.0f;

@@ -7,7 +7,7 @@
 
 namespace tumble::tools {
 
-/// Text of a badge, and whether the verdict is good.
+/// Badge contains the text of a badge, and whether the verdict is good.
 struct Badge {
   enum class Colour { good, open, bad };
   std::string label, message;

@@ -9,28 +9,29 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// The headline of a report: the best method of each section, its margin, and the statistical certainty.
+/// contests.hpp computes the headline of a report: the best method of each section, its margin, and the statistical
+/// certainty.
 namespace tumble::tools {
 
-/// Statistical significance of a difference.
+/// Certainty is the statistical significance of a difference.
 enum class Certainty {
   corrected,  ///< significant in the signed-rank test, corrected for all comparisons of the page
   interval,   ///< the BCa interval of the difference excludes 0, but the corrected test is not significant
   open        ///< not significant by either criterion
 };
 
-/// Result of one section: the best method (needs no truth, is not the baseline), paired with the baseline by the first
-/// headline metric that both methods have.
+/// ContestResult is the result of one section: the best method (needs no truth, is not the baseline), paired with the
+/// baseline by the first headline metric that both methods have.
 struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
   bool better = false;  ///< the difference favours the method; may be chance if `certainty` is `open`
-  /// Difference as a percentage of the baseline's median, with its interval. NaN if the median is 0 or not finite, or
+  /// Difference as a percentage of the baseline's median, with its interval; NaN if the median is 0 or not finite, or
   /// if the difference is not finite. An end of the interval is infinite if one run of a pair failed.
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
   /// Baseline's median divided by the method's median, for metrics where a lower value is better; NaN otherwise.
   double times = std::numeric_limits<double>::quiet_NaN();
-  /// The interval alone is not sufficient, because the method was chosen as the best of several methods on these
+  /// The interval alone is insufficient, because the method was chosen as the best of several methods on these
   /// simulated runs.
   bool won() const { return better && certainty == Certainty::corrected; }
   bool lost() const { return !better && certainty == Certainty::corrected; }
@@ -40,7 +41,7 @@ struct ContestResult {
 /// method, because attitude describes the motion least. Sections that contain only the baseline are left out.
 std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
 
-/// Counts of contests by result.
+/// Tally contains counts of contests by result.
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
   std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval, or on every draw

@@ -10,19 +10,19 @@
 
 namespace tumble::tools {
 
-/// Cost of one method on one scenario.
+/// CostRow is the cost of one method on one scenario.
 struct CostRow {
   std::string scenario, method;  ///< method: KIND/NAME
   double cpu_s = 0.0;            ///< median CPU time of one estimate
-  /// Median over the draws of the recording's duration over the CPU time; above 1 the method is faster than real time
-  /// on one processor. NaN if the results contain no durations.
+  /// Median over the simulated runs of the recording's duration divided by the CPU time; above 1, the method is faster
+  /// than real time on one processor. NaN if the results contain no durations.
   double real_time_factor = 0.0;
 };
 
-/// Returns one row per scenario, kind and method that has a CPU time. O(values * log(draws)).
+/// Returns one row per scenario, kind and method that has a CPU time. Cost: O(values * log(draws)).
 std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<const scenarios::DrawValues> draws);
 
-/// Returns the rows as a folded table.
+/// Returns the cost rows as a folded table.
 std::string costs_html(const std::vector<CostRow>& rows);
 
 }  // namespace tumble::tools

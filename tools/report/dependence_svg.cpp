@@ -19,7 +19,7 @@ constexpr double kWidth = 150.0, kHeight = 44.0, kPlotMargin = 3.0;
 constexpr double kLeastWidth = 3.0;  // minimum width of a class, for a class that contains a single number
 constexpr double kDecade = 10.0;
 
-/// Maps values to pixels between two ends of the picture.
+/// Axis maps values to pixels between two ends of the picture.
 struct Axis {
   double low = 0.0, high = 0.0;        ///< values, or their logarithms
   double at_low = 0.0, at_high = 0.0;  ///< pixels

@@ -63,7 +63,7 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// Hatchings, selected by how often all colours were used (`colour_round`).
+/// kHatchings lists hatchings, selected by how often all colours were used (`colour_round`).
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
 /// Returns histograms of one quantity, one per scenario.

@@ -10,7 +10,8 @@
 #include "tools/report/plots.hpp"
 #include "tools/tables/table.hpp"
 
-/// Distributions of the simulated motions, compared with the published campaign of the tumbling rig.
+/// distributions.hpp shows distributions of the simulated motions, compared with the published campaign of the tumbling
+/// rig.
 namespace tumble::tools {
 
 using scenarios::Spread;

@@ -23,7 +23,7 @@ std::string failure_html(const ShownExample& shown);
 /// Returns the id of the element that shows a run; other parts of the page link to this element.
 std::string example_id(const std::string& scenario, std::uint64_t seed);
 
-/// Placeholder element of a plot.
+/// Returns the placeholder element of a plot.
 std::string plot_html(const Figure& figure, bool tall = false);
 
 }  // namespace tumble::tools

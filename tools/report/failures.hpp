@@ -10,10 +10,10 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Simulated runs on which methods failed, with commands to reproduce them.
+/// failures.hpp lists simulated runs on which methods failed, with commands to reproduce them.
 namespace tumble::tools {
 
-/// Maximum number of failed runs on the page.
+/// kFailedDrawsShown is the maximum number of failed runs on the page.
 inline constexpr std::size_t kFailedDrawsShown = 60;
 
 struct FailedRun {
@@ -23,7 +23,7 @@ struct FailedRun {
   std::string command;  ///< command that runs it again (run_again.hpp)
 };
 
-/// A run with the methods that failed on it.
+/// FailedDraw is a run with the methods that failed on it.
 struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

@@ -15,7 +15,7 @@ namespace {
 
 using html::escaped;
 
-/// This number of failed runs is open; further failed runs are folded.
+/// The first kOpenDraws failed runs are open; further failed runs are folded.
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {

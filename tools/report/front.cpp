@@ -21,9 +21,9 @@ using scenarios::Interval;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// This number of contests is open; further contests are folded.
+/// The first kShownContests contests are open; further contests are folded.
 constexpr std::size_t kShownContests = 6;
-/// Maximum number of scenarios that the first sentence names.
+/// kNamedScenarios is the maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
 
 /// Returns for example "hill, roll and slip", or the count if there are many.

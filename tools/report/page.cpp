@@ -25,7 +25,7 @@ using html::escaped;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// A section of the page with an entry in the table of contents.
+/// Part is a section of the page with an entry in the table of contents.
 struct Part {
   const char* id;
   const char* title;

@@ -29,7 +29,7 @@ struct ShownExample {
 /// Name and value.
 using Fact = std::pair<std::string, std::string>;
 
-/// Content of a report page. `page_html` adds only markup.
+/// PageContent is the content of a report page. The function `page_html` adds only markup.
 struct PageContent {
   std::string title;
   bool recorded = false;  ///< results of recordings instead of simulated draws

@@ -61,7 +61,7 @@ bool wants_log(const json& traces) {
   return low > 0.0 && high > 10.0 * low;
 }
 
-/// Box plots of one metric: one box per method, in groups.
+/// Boxes contains box plots of one metric: one box per method, in groups.
 class Boxes {
  public:
   Boxes(const std::string& metric, const Palette& palette)
@@ -83,7 +83,7 @@ class Boxes {
     }
   }
 
-  /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise the axis starts at 0 if
+  /// Uses a logarithmic axis if values are positive and span more than a decade. A linear axis starts at 0 if
   /// `from_zero` is set, or at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
@@ -101,7 +101,7 @@ class Boxes {
   }
 
  private:
-  /// Failed runs of one box.
+  /// Failures contains the failed runs of one box.
   struct Failures {
     std::string method, group;
     std::size_t count;
@@ -195,7 +195,7 @@ const char* dash_of(const PlotLine& line) {
   return dash_of_round(line.colour < 0 ? 0 : colour_round(static_cast<std::size_t>(line.colour)));
 }
 
-/// NaN marks a gap.
+/// NaN marks a gap in the line.
 json coordinates(const std::vector<double>& values) {
   json out = json::array();
   for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());

@@ -14,7 +14,7 @@
 
 namespace tumble::tools {
 
-/// A Plotly figure as page.js passes it to Plotly; page.js sets the colours of text and grid.
+/// Figure is a Plotly figure as page.js passes it to Plotly; page.js sets the colours of text and grid.
 struct Figure {
   std::string id;       ///< id of its HTML element, unique within the page
   std::string caption;  ///< one or two sentences
@@ -26,21 +26,21 @@ struct Figure {
 /// Sets traces and layout of a figure; without traces the figure stays empty. Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
-/// Maximum number of runs of a box that are drawn as points.
+/// kBoxPoints is the maximum number of runs of a box that are drawn as points.
 inline constexpr std::size_t kBoxPoints = 1000;
 
-/// Rounds to five significant digits: finer than a plot can show, and the page stays small.
+/// Rounds to five significant digits, which is finer than a plot can show and keeps the page small.
 double five_digits(double value);
 
 /// Escapes & < > as entities, because Plotly interprets some tags and these entities in texts.
 std::string plot_text(const std::string& text);
 
 /// Reduces a list to `most` (at least 2) values: the smallest, the largest, and values at equal steps of rank between
-/// them, sorted. The quantiles of the reduced list are close to those of all values. O(n log n).
+/// them, sorted. The quantiles of the reduced list are close to those of all values. Cost: O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
-/// Assigns one colour index to each method of a page, in order of first `add`. Methods of different kinds with one name
-/// share their colour.
+/// Palette assigns one colour index to each method of a page, in order of first `add`. Methods of different kinds with
+/// one name share their colour.
 class Palette {
  public:
   /// `method` is a name, or KIND/NAME. Keeps the index of a known method; uses `wanted` if it is free.
@@ -52,14 +52,14 @@ class Palette {
   std::map<std::string, std::size_t> indices_;
 };
 
-/// Returns the title of an axis in the metric's display unit: for example "attitude rmse [°]". A
-/// varied key of a scenario stays as it is.
+/// Returns the title of an axis in the metric's display unit: for example "attitude rmse [°]". A varied key of a
+/// scenario stays unchanged.
 std::string axis_title(const std::string& metric);
 
-/// Plots every run as a point next to a box of the quartiles. There is one box per method and scenario, with at most
-/// `kBoxPoints` points. Failed runs are points of the box on the line "failed", beyond the worst value, so that the
-/// quartiles count failed runs as in the tables. The axis is logarithmic if values are positive and span more than a
-/// decade.
+/// Plots every run as a point next to a box of the quartiles. The figure has one box per method and scenario, with at
+/// most `kBoxPoints` points. Failed runs are points of the box on the line "failed", beyond the worst value, so that
+/// the quartiles count failed runs as in the tables. The axis is logarithmic if values are positive and span more than
+/// a decade.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption, const Palette& palette = {});
 

@@ -58,7 +58,7 @@ std::vector<Fact> listed_methods(const Summary& summary) {
   return out;
 }
 
-/// Returns true if a sweep by this build, with the data found on this machine, would continue these results.
+/// Returns whether a sweep by this build, with the data found on this machine, would continue these results.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
   return (made_by.empty() || made_by == scenarios::build_id()) &&

@@ -12,7 +12,7 @@
 
 namespace tumble::tools {
 
-/// Input of a report page.
+/// ReportInput is the input of a report page.
 struct ReportInput {
   const scenarios::Results* results = nullptr;
   const scenarios::Summary* summary = nullptr;
@@ -31,8 +31,8 @@ struct ReportOptions {
   std::string made_at;  ///< date and time as shown on the page
 };
 
-/// Computes the content of the page from the results and from the examples that a sweep stored next to the results.
-/// Nothing is simulated or estimated. Without examples, the page states the command that creates examples, or the
+/// Computes the content of the page from the results and from the examples that a sweep stored next to the results. The
+/// report simulates and estimates nothing. Without examples, the page states the command that creates examples, or the
 /// required build or data.
 PageContent report_content(ReportInput input, const ReportOptions& options);
 

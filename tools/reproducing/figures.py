@@ -52,7 +52,7 @@ def read_scores(folder):
 
 
 def cell(scores, scenario, column, method):
-    """Returns value of a cell and its number of draws. A draw without an estimate counts as infinite in a median and as one failure."""
+    """Returns the value of a cell and its number of simulated runs. A draw without an estimate counts as infinite in a median and as one failure."""
     draws = [entry for (of, _, by), entry in scores.items() if of == scenario and by == method]
     if column["statistic"] == "failures":
         return sum(status != "ok" for status, _ in draws), len(draws)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the pages of docs/papers: tables with the paper's numbers next to ours. Also finds stale cells."""
+"""Writes the pages of docs/papers: tables with the paper's numbers next to those of this project. The module also finds stale cells."""
 from __future__ import annotations
 
 import math
@@ -25,7 +25,7 @@ class Table:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Returns a number rounded to significant digits; `-` for a missing number, `lost` if the median draw failed."""
+    """Returns a number rounded to significant digits; `-` for a missing number, `lost` if the median simulated run failed."""
     if math.isnan(value):
         return "-"
     if math.isinf(value):

@@ -17,7 +17,7 @@ from .runs import Runs, Scores
 
 RAW, PUBLISHED, TUNED, BATCH, LAG = RATES = ("rate/raw", "rate/saave", "rate/saave at 10.0", "rate/tumble", "rate/tumble_lag")
 SWEPT = (RAW, PUBLISHED, BATCH, LAG)
-# the saturation limits of our gyros differ by one percent between devices and axes; 10.0 rad/s is below all limits
+# the saturation limits of the simulated gyros differ by one percent between devices and axes; 10.0 rad/s is below all limits
 DEFAULT_THRESHOLD_RAD_S = 10.45  # the program's default, for a nominal saturation limit of 10.5 rad/s
 THRESHOLD = "saturation_point_rad_s=10.0"
 MAPS = dict(zip(RATES, ("slam/icp_raw", "slam/published", f"slam/published slam/published.{THRESHOLD}", "slam/tumble", "slam/tumble_lag")))
@@ -229,7 +229,7 @@ def draw_density(recordings: dict[int, Recording], path: pathlib.Path) -> None:
     figure, axes = pictures.panels(1, 1, 7.5, 4.6)
     panel = axes[0, 0]
     _, _, _, mesh = panel.hist2d(force, speed, bins=(np.linspace(0, 250, 63), np.linspace(0, 42, 64)),
-                                norm=LogNorm(vmin=0.1), cmap="Greys")  # one sample is visible
+                                norm=LogNorm(vmin=0.1), cmap="Greys")  # a single sample stays visible
     figure.colorbar(mesh, label=f"samples at 100 Hz, {len(recordings)} draws of hill").ax.set_ylim(bottom=1)
     panel.plot([0, 30.7, 30.7], [4.7, 4.7, 0], color="tab:purple", lw=1.8, label="highest of other data sets, printed in the paper")
     panel.plot([157.8], [18.6], "*", color="tab:red", ms=12, label="highest of the paper's rig")

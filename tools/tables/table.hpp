@@ -7,8 +7,8 @@
 
 namespace tumble::tools {
 
-/// A table of text: title, header and rows. Columns are as wide as their widest cell, counted in characters. Columns
-/// are left-aligned by default, and cells are never truncated.
+/// Table is a table of text: title, header and rows. Each column is as wide as its widest cell, counted in characters.
+/// Columns are left-aligned by default, and cells are never truncated.
 class Table {
  public:
   Table(std::string title, std::vector<std::string> header);
@@ -23,7 +23,8 @@ class Table {
   bool empty() const { return rows_.empty(); }
   /// Returns title, header, rule and rows; lines have no trailing spaces.
   std::string text() const;
-  /// The table in formats for documents. Cells are escaped, so that their content is never interpreted as markup.
+  /// These functions return the table in formats for documents. Cells are escaped, so that their content is never
+  /// interpreted as markup.
   std::string markdown() const;  ///< a GitHub Markdown table
   std::string csv() const;       ///< RFC 4180; the title is a comment line, "# title"
   std::string tex() const;       ///< a LaTeX `tabular` with the rules of `booktabs`
@@ -36,7 +37,7 @@ class Table {
   bool wrapped_ = false;
 };
 
-/// Length of the lines of a table with `wrap_last`; the last column has at least a third of this width.
+/// kLineMax is the length of the lines of a table with `wrap_last`; the last column has at least a third of this width.
 inline constexpr std::size_t kLineMax = 160;
 
 /// Formats a number with four significant digits; "-" if the number is not finite.

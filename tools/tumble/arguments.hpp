@@ -14,8 +14,8 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/session.hpp"
 
-/// Parses command-line arguments and prepares output files. All functions throw scenarios::BadInput with a one-line
-/// message.
+/// arguments.hpp parses command-line arguments and prepares output files. All functions of arguments.hpp throw
+/// scenarios::BadInput with a one-line message.
 namespace tumble::tools {
 
 /// Parses a seed: an unsigned decimal integer below 2^64.
@@ -23,7 +23,7 @@ std::uint64_t parse_seed(const std::string& text);
 /// Parses a range of seeds, "7" or "1..40"; both ends are included.
 std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text);
 
-/// One of several parts of the work: "2/8" is the second of eight parts.
+/// Shard is one of several parts of the work: "2/8" is the second of eight parts.
 struct Shard {
   std::uint64_t index = 1, count = 1;
 };
@@ -47,8 +47,8 @@ void note_time_limits(const Session& session, std::span<const std::string> names
 /// Returns the named metric of the method's kind, or the first metric of the kind if `name` is empty.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 
-/// Parses the seed. If `text` is empty, returns the seed of a named case; for other scenarios, an empty seed is an
-/// error.
+/// Parses the random seed. If `text` is empty, returns the seed of a named case; for other scenarios, an empty seed is
+/// an error.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
 /// Returns a check that rejects names that are neither a scenario of the catalogue nor a scenario file. The check runs
@@ -57,7 +57,7 @@ std::function<void(const std::string&)> a_scenario(const Session& session);
 /// Returns a check that rejects names that are neither a suite, a suite file nor a scenario.
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// Refuses a missing file and a file that is no recording, before CLI11 reports missing options.
+/// Rejects a missing file and a file that is no recording, before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
 /// Returns the number of processors that this process may use.
@@ -65,8 +65,8 @@ int available_processors();
 
 /// Creates a folder and its parent folders.
 void make_folder(const std::filesystem::path& folder);
-/// Creates the folder of an output file. Throws BadInput if the output is one of the inputs. Called before the
-/// computation starts.
+/// Creates the folder of an output file. Throws BadInput if the output is one of the inputs. Call this function before
+/// the computation starts.
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 /// Throws BadInput if the extension of an output is not one of `endings`, so that a file of another kind is never
@@ -78,7 +78,7 @@ void require_ending(const std::filesystem::path& output, std::span<const std::st
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
                   const std::vector<std::string_view>& endings);
 
-/// Extensions of a recording that the program writes.
+/// kRecordingEndings lists the extensions of a recording that the program writes.
 inline const std::vector<std::string_view> kRecordingEndings = {".h5", ".hdf5"};
 
 }  // namespace tumble::tools

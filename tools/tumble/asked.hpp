@@ -8,18 +8,19 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/session.hpp"
 
-/// Parses questions about two methods from the command line. All functions throw scenarios::BadInput with a one-line
-/// message.
+/// asked.hpp parses questions about two methods from the command line. All functions of asked.hpp throw
+/// scenarios::BadInput with a one-line message.
 namespace tumble::tools {
 
-/// Parses a margin: "0.05" in the metric's unit, or "10%" of the other method's value. Messages start with `option`.
+/// Parses a margin: "0.05" in the metric's unit, or "10%" of the other method's value. Error messages start with
+/// `option`.
 scenarios::Margin parse_margin(const std::string& option, const std::string& text);
 
 /// Parses "A:B:METRIC" or "A:B:METRIC:MARGIN". The question covers the scenarios and seeds of a suite with methods A
 /// and B.
 scenarios::Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite);
 
-/// Returns one row per scenario.
+/// Returns a table with one row per scenario.
 Table table_of(const std::vector<scenarios::Answer>& answers, const scenarios::Question& question);
 nlohmann::json json_of(const std::vector<scenarios::Answer>& answers, const scenarios::Question& question);
 

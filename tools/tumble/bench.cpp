@@ -65,8 +65,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
   return suite;
 }
 
-/// The name depends on suite, methods and build. A stopped run therefore continues in its database, while a changed
-/// method or build starts a new database.
+/// The name of the database depends on suite, methods and build. A stopped run therefore continues in its database,
+/// while a changed method or build starts a new database.
 fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& options, const scenarios::Suite& suite,
                      const std::vector<scenarios::MethodPointer>& methods) {
   if (!options.database.empty()) return options.database;
@@ -141,7 +141,7 @@ std::string sweep_command(const BenchOptions& options, const scenarios::Suite& s
 }
 
 /// Writes a database with the measured and the stored results for `report`. The measured database stays free of stored
-/// results, because a sweep would take them for runs that are done. Returns the database to report.
+/// results, because a sweep would take them for completed runs. Returns the database to report.
 fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
   std::vector<BenchResult> others = page.stored;
   std::erase_if(others, [&](const BenchResult& stored) {

@@ -20,7 +20,7 @@ using scenarios::BenchResult;
 constexpr const char* kCost = "estimate_cpu_s";
 constexpr std::size_t kVersionShown = 40;
 
-/// Returns all methods on the page, the methods of this run first.
+/// MethodRow is a method on the page; the methods of this run come first.
 struct MethodRow {
   const BenchResult* result;
   std::string label;

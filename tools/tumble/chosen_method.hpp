@@ -7,13 +7,14 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// Selects and runs one method on a recording, without the truth.
+/// chosen_method.hpp selects and runs one method on a recording, without the truth.
 namespace tumble::tools {
 
 /// Returns the method with this name that can run on this recording without the truth. Throws BadInput.
 scenarios::MethodPointer chosen_method(const std::string& name, const scenarios::Subject& subject);
 
-/// Runs the method. Converts a failure of an external command to BadInput. `on_sweep`: scenarios::OracleInput.
+/// Runs the method on the sensor data. A failure of an external command becomes a BadInput. `on_sweep` is that of
+/// scenarios::OracleInput.
 scenarios::Estimate run_method(const scenarios::Method& method, const sim::Sensors& sensors,
                                std::function<void(std::size_t done, std::size_t all)> on_sweep = {});
 

@@ -36,7 +36,7 @@ struct CompareOptions {
   double risk = 0.05, power = 0.8;
 };
 
-/// Compares with the baseline, or with the last method if several are named.
+/// The comparison is with the baseline, or with the last method if several are named.
 scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
@@ -60,7 +60,7 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// Builds the cells of a row together with the column titles.
+/// ComparisonRow builds the cells of a row together with the column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 

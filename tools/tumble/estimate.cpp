@@ -37,7 +37,7 @@ struct EstimateOptions {
   PriorMapOptions prior_map;
 };
 
-/// Health counters that the table shows; --json and estimate.json contain all counters.
+/// ShownCounter is a health counter that the table shows; --json and estimate.json contain all counters.
 struct ShownCounter {
   const char *name, *meaning, *unit;
 };
@@ -108,10 +108,10 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
-  // printed also after a failure, because a sensor fault may be the cause
+  // the health is printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;
-  // the estimate is kept for inspection; the cause is in the recording
+  // the estimate is kept for inspection, because the cause of the error is in the recording
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + failure_reason(estimate.status, sensors));
 }

@@ -30,7 +30,7 @@ std::string format_of(const ExportOptions& options) {
   return format_name;
 }
 
-/// Reports what was written, and where.
+/// Reports what the export wrote, and where.
 int said(const Session& session, const ExportOptions& options, const std::string& what, const std::string& name) {
   Table table("", {"recording", what, "written to"});
   table.add_row({options.recording.string(), name, options.out.string()});

@@ -9,11 +9,11 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/importing.hpp"
 
-/// Reports what `odometry` detected in a recording, and completes properties that neither the recording nor the user
-/// states.
+/// found.hpp reports what `odometry` detected in a recording, and completes properties that neither the recording nor
+/// the user states.
 namespace tumble::tools {
 
-/// One detected or assumed property.
+/// FoundItem is one detected or assumed property.
 struct FoundItem {
   std::string item;
   std::string found;   ///< value, with evidence or with the effect of an assumption
@@ -21,8 +21,8 @@ struct FoundItem {
   std::string option;  ///< option that changes the item
 };
 
-/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a stated pose. Stores them
-/// in the recording. Returns all detected properties.
+/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a stated pose. The function
+/// stores the detected properties in the recording and returns them.
 ///
 /// @param own_body_L  Box around the robot in lidar axes; returns inside are dropped. For display only.
 std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,

@@ -33,7 +33,7 @@ scenarios::Suite suite_of(const scenarios::Scenario& named) {
   return suite;
 }
 
-/// Each expectation of a case with its outcome.
+/// Reached contains each expectation of a case with its outcome.
 using Reached = std::vector<std::pair<scenarios::Expectation, scenarios::Outcome>>;
 
 Reached reached(const scenarios::Results& results, const scenarios::Scenario& named) {

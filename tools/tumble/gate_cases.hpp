@@ -8,10 +8,10 @@
 #include "scenarios/data_root.hpp"
 #include "tools/tumble/session.hpp"
 
-/// Gate of the named cases in scenarios/regressions.
+/// gate_cases.hpp implements the gate of the named cases in scenarios/regressions.
 namespace tumble::tools {
 
-/// Command-line word that selects all named cases of the source tree.
+/// kAllCases is the command-line word that selects all named cases of the source tree.
 inline constexpr const char* kAllCases = "regressions";
 
 /// Returns true for the word `kAllCases` and for the name of a case.
@@ -28,7 +28,7 @@ struct CaseGate {
 };
 
 /// Runs the cases and compares the outcomes with the expectations (scenarios/cases/hold_case.hpp). Returns the exit
-/// status.
+/// status of the program.
 int hold_cases(const Session& session, const scenarios::DataRoot& data, const CaseGate& gate);
 
 }  // namespace tumble::tools

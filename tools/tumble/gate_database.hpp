@@ -14,7 +14,7 @@
 
 namespace tumble::tools {
 
-/// A temporary database that is removed afterwards, unless the caller named a file.
+/// GateDatabase is a temporary database that is removed afterwards, unless the caller named a file.
 class GateDatabase {
  public:
   explicit GateDatabase(const std::filesystem::path& named) : path_(named), own_(named.empty()) {

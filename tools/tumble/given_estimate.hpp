@@ -7,10 +7,10 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Reads an estimate that the command line names in addition to the recording.
+/// given_estimate.hpp reads an estimate that the command line names in addition to the recording.
 namespace tumble::tools {
 
-/// Returns the frame of the poses in a TUM file: the frame that the user names, else the first IMU, else the body if
+/// Returns the frame of the poses in a TUM file: the frame that the user names, otherwise the first IMU, or the body if
 /// there is no IMU. Throws BadInput that suggests the nearest known frame.
 scenarios::Frame frame_of(const std::string& name, bool has_imu);
 

@@ -51,7 +51,7 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   return found;
 }
 
-/// Detects the format from the first line.
+/// Detects the format of a CSV file from its first line.
 std::string format_of_csv(const std::filesystem::path& file) {
   if (scenarios::is_repoimu(file)) return "repoimu";
   if (scenarios::is_airbrakes(file)) return "airbrakes";

@@ -10,8 +10,8 @@
 #include "tools/tumble/session.hpp"
 #include "tools/tumble/verb_options.hpp"
 
-/// Options of `tumble import`, and their conversion for the library. All functions throw BadInput with a one-line
-/// message.
+/// import_options.hpp declares the options of `tumble import`, and converts them for the library. All functions of
+/// import_options.hpp throw BadInput with a one-line message.
 namespace tumble::tools {
 
 struct ImportOptions {

@@ -54,7 +54,7 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
-/// Sets an option that the user did not set. Returns false for an option that is already set, or another option.
+/// Sets an option that the user did not set. Returns false if the option is already set or is another option.
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};
@@ -66,7 +66,7 @@ bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   return false;
 }
 
-/// Refuses options that do not apply to a recording of this program; sheet and mounting of its first sensors can be
+/// Rejects options that do not apply to a recording of this program; sheet and mounting of its first sensors can be
 /// set.
 void require_own_options(ImportOptions options) {
   for (std::string* name : {&options.device, &options.lidar}) name->clear();

@@ -11,7 +11,7 @@
 #include "tools/tumble/import_options.hpp"
 #include "tools/tumble/session.hpp"
 
-/// Reads a recording of any format for `import`, `odometry` and `doctor`.
+/// importing.hpp reads a recording of any format for `import`, `odometry` and `doctor`.
 namespace tumble::tools {
 
 /// Imports a recording of one format with the notes of the reader and of the checks. `rotation` receives the comparison
@@ -19,13 +19,13 @@ namespace tumble::tools {
 scenarios::Imported import_recording(const Session& session, const ImportOptions& options, const std::string& format,
                                      scenarios::LidarRotationCheck& rotation);
 
-/// An option that was set automatically, and the error without the option.
+/// Repair is an option that was set automatically, with the error that occurs without it.
 struct Repair {
   scenarios::ImportOption option;
   std::string cause;
 };
 
-/// A recording that is ready for an estimator, with all points in memory.
+/// OpenRecording is a recording that is ready for an estimator, with all points in memory.
 struct OpenRecording {
   ImportOptions options;  ///< as given, with the repairs
   std::string format;     ///< format of the import, or "recording" for a recording of this program
@@ -36,8 +36,8 @@ struct OpenRecording {
 };
 
 /// Opens a recording of this program, or any file that `tumble import` reads. If an error names an option that repairs
-/// the reading, and the user did not set the option, the recording is read again with the option. Of several topics,
-/// faulty topics are left out. Throws BadInput.
+/// the reading, and the user did not set the option, the recording is read again with the option. If a bag has several
+/// topics, faulty topics are left out. Throws BadInput.
 OpenRecording open_recording(const Session& session, ImportOptions options);
 
 }  // namespace tumble::tools

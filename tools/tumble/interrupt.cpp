@@ -7,7 +7,7 @@ namespace tumble::tools {
 
 namespace {
 
-// a signal handler may only access static storage
+// a signal handler may access only static storage
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 

@@ -6,10 +6,10 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// Formats intervals for people (text) and for programs (JSON).
+/// intervals.hpp formats intervals for people (text) and for programs (JSON).
 namespace tumble::tools {
 
-/// Formats the two ends; "[-]" if neither is known.
+/// Formats the two ends of an interval; "[-]" if neither is known.
 std::string interval_text(const scenarios::Interval& interval);
 /// Returns null for values that are not finite, because JSON cannot represent such values.
 nlohmann::json finite(double value);

@@ -10,16 +10,16 @@
 
 namespace tumble::tools {
 
-/// Option --learnt: a file with the calibration of the rig from earlier runs. After the run, the file contains the
-/// calibration of this run.
+/// LearntFile implements the option --learnt: a file with the calibration of the rig from earlier runs. After the run,
+/// the file contains the calibration of this run.
 class LearntFile {
  public:
   /// An empty path means that the option is not used. A missing file means that there is no calibration yet. Throws
   /// BadInput if the file cannot be read.
   explicit LearntFile(std::filesystem::path path);
 
-  /// Throws BadInput if the file cannot be written, and leaves no file behind. The check runs before the run, after the
-  /// folder of the file was created.
+  /// Throws BadInput if the file cannot be written, and leaves no file behind. require_place is called before the run,
+  /// after the folder of the file was created.
   void require_place() const;
 
   /// Compares the lever arm in the file with the lever arm of the recording; returns a warning if the file belongs to
@@ -31,11 +31,11 @@ class LearntFile {
   static std::string learning_methods();
 
   /// Returns `method` with a start from the calibration in the file. Returns `method` unchanged if the method does not
-  /// calibrate or if there is no file. The result refers to this object.
+  /// calibrate or if there is no file. The returned method refers to this object.
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Writes the calibration. If the run produced no calibration, the file is unchanged and a note states the reason.
-  /// Throws BadInput if writing fails.
+  /// Writes the calibration to the file. If the run produced no calibration, the file is unchanged and a note states
+  /// the reason. Throws BadInput if writing fails.
   void keep(const Session& session) const;
 
  private:

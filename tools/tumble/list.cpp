@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A listing as tables for people and as JSON.
+/// Listing is a listing as tables for people and as JSON.
 struct Listing {
   std::vector<Table> tables;
   json document = json::array();

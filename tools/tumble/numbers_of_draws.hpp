@@ -8,7 +8,7 @@
 #include "scenarios/summary/sensitivity.hpp"
 #include "tools/tumble/session.hpp"
 
-/// The random numbers of the simulated runs in a results database, by scenario.
+/// numbers_of_draws.hpp provides the random numbers of the simulated runs in a results database, by scenario.
 namespace tumble::tools {
 
 using NumbersByScenario = std::map<std::string, scenarios::NumbersOfDraws>;

@@ -81,7 +81,7 @@ void require_both_sensors(const std::filesystem::path& path, const sim::Sensors&
                                                     : "Add IMU readings with --imu FILE.csv"));
 }
 
-/// Runs the method, with a progress bar on a terminal. Returns the duration of the run [s].
+/// Runs the method, with a progress bar on a terminal. Returns the duration of the run in seconds.
 double run_with_progress(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors,
                          Estimate& estimate) {
   using Clock = std::chrono::steady_clock;
@@ -104,7 +104,8 @@ double run_with_progress(const Session& session, const scenarios::Method& method
   return since(start);
 }
 
-/// Length of the path through the ends of the sweeps [m]. The poses between the ends add noise to the length.
+/// Returns the length of the path through the ends of the sweeps [m]. The poses between the ends of the sweeps would
+/// add noise to the length.
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)

@@ -8,7 +8,7 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/verb_options.hpp"
 
-/// Options with which a verb localises a run in the map of an earlier run.
+/// prior_map_options.hpp declares the options with which a verb localises a run in the map of an earlier run.
 namespace tumble::tools {
 
 struct PriorMapOptions {

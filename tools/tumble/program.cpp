@@ -90,7 +90,7 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// Shown when `tumble` is called without arguments.
+/// Shows the text of `tumble` without arguments.
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
@@ -141,7 +141,7 @@ int dispatch(int argc, const char* const* argv) {
     options->add_flag("--quiet", session.quiet, "suppresses notes and progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
-    // for some verbs --format is the format of a recording
+    // for some verbs, --format is the format of a recording
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);

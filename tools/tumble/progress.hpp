@@ -18,7 +18,7 @@ std::string duration_text(double seconds);
 /// (2 diverged, 1 timeout)  0 rejected  left 1 min 10 s". The bar has `bar_width` cells; a width of 0 omits the bar.
 std::string progress_line(const scenarios::SweepProgress& progress, int bar_width);
 
-/// Progress of an estimator over the lidar sweeps of one recording.
+/// RegistrationProgress is the progress of an estimator over the lidar sweeps of one recording.
 struct RegistrationProgress {
   std::size_t done = 0, all = 0;
   double elapsed_s = 0.0;  ///< since the first sweep of this pass
@@ -27,8 +27,8 @@ struct RegistrationProgress {
 /// Formats the progress, for example "[####------]  40/100 lidar sweeps  87 sweeps/s".
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
-/// Shows the progress of a sweep or of an estimator: on a terminal in one line that is overwritten, elsewhere in a new
-/// line every ten seconds.
+/// ProgressDisplay shows the progress of a sweep or of an estimator: on a terminal in one line that is overwritten,
+/// elsewhere in a new line every ten seconds.
 class ProgressDisplay {
  public:
   using Write = std::function<void(std::string_view)>;
@@ -38,7 +38,7 @@ class ProgressDisplay {
 
   void show(const scenarios::SweepProgress& progress) { show_line(progress, progress.elapsed_s); }
   void show(const RegistrationProgress& progress) { show_line(progress, progress.elapsed_s); }
-  /// Shows and ends the last line.
+  /// Shows the last progress line and ends it.
   void finish(const scenarios::SweepProgress& progress) { finish_line(progress); }
   void finish(const RegistrationProgress& progress) { finish_line(progress); }
 

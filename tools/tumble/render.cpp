@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// Owner of all data to which a scene refers.
+/// RenderContent owns all data to which a scene refers.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -126,10 +126,10 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// Maximum number of video frames: more would take minutes to render and to watch.
+/// kFramesMax is the maximum number of video frames, because more would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// Interval of progress lines for long renderings.
+/// kSayEvery_s is the interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {

@@ -29,7 +29,7 @@ struct ReplayOptions {
   std::size_t points = ReplayLimits{}.points;
 };
 
-/// Owner of all data to which a replay refers.
+/// ReplayContent owns all data to which a replay refers.
 struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;

@@ -125,7 +125,7 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// Maximum number of simulated runs per scenario that the sensitivity section of a page uses.
+/// kSensitivityDraws is the maximum number of simulated runs per scenario that the sensitivity section of a page uses.
 constexpr std::size_t kSensitivityDraws = 2000;
 
 /// Adds the sensitivity of each method for one score and for failures, with a limited number of simulated runs. The

@@ -68,7 +68,7 @@ const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
 }
 
-/// Selects the baseline and our method for each kind in which both methods apply to this scenario.
+/// Selects the baseline and tumble's method for each kind in which both apply to this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
@@ -84,7 +84,8 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// Suggests further commands. `sweep` takes scenarios of the catalogue only, and a suite may have the same name.
+/// Suggests further commands to the user. `sweep` takes scenarios of the catalogue only, and a suite may have the same
+/// name.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();

@@ -59,11 +59,11 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
 }
 
 constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
-// below these limits, hardly more than the alignment pose would be compared
+// below these limits, the comparison would include hardly more than the alignment pose
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
-/// Temporal coverage and alignment of an external trajectory relative to the truth.
+/// Standing contains temporal coverage and alignment of an external trajectory relative to the truth.
 struct Standing {
   double first_s = 0, last_s = 0, end_s = 0;  ///< first and last pose within the time of the truth; end of the truth
   std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth, and of all poses
@@ -92,9 +92,9 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. With wrong stamps, only the first few
-/// poses, far apart, would overlap with the recording and be scored. A trajectory that is longer than the recording and
-/// contains it has denser poses or another length.
+/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. With wrong time stamps, only the first
+/// few poses, far apart, would overlap with the recording and be scored. A trajectory that is longer than the recording
+/// and contains it has denser poses or another length.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -166,7 +166,7 @@ nlohmann::json to_json(const Standing& standing) {
             {"translation_m", {t.x(), t.y(), t.z()}}}}};
 }
 
-/// Adds the coverage below the scores.
+/// Adds the temporal coverage below the scores.
 void add_cover(const Standing& standing, Table& table) {
   table.add_row({"covered_share", number_text(standing.share())});
   table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
@@ -183,7 +183,7 @@ scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
 }
 
-/// The estimate to be scored.
+/// Claim is the estimate to be scored.
 struct Claim {
   scenarios::RecordingInfo info;
   sim::Sensors sensors;

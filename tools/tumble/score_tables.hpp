@@ -22,7 +22,7 @@ nlohmann::json score_rows(std::span<const scenarios::Outcome> outcomes);
 /// Returns kind, method, status, message and digest of every outcome.
 nlohmann::json outcome_rows(std::span<const scenarios::Outcome> outcomes);
 
-/// Returns `ok` if every outcome is ok; else the first other status.
+/// Returns `ok` if every outcome is ok; otherwise the first other status.
 std::string overall_status(std::span<const scenarios::Outcome> outcomes);
 
 }  // namespace tumble::tools

@@ -12,13 +12,13 @@
 
 namespace tumble::tools {
 
-/// Exit statuses of the program (docs/design.md, "The program").
+/// ExitStatus lists the exit statuses of the program (docs/design.md, "The program").
 enum ExitStatus { kDone = 0, kCheckFailed = 1, kBadInput = 2, kDefect = 3 };
 
-/// Output format of tables: for the terminal, for documents, or for other programs.
+/// TableFormat is the output format of tables: for the terminal, for documents, or for other programs.
 enum class TableFormat { text, markdown, csv, tex };
 
-/// Context of every verb: output options and the location of the project's files.
+/// Session is the context of every verb: output options and the location of the project's files.
 class Session {
  public:
   bool json = false;   ///< tables as JSON

@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Defaults: each example costs one more simulated run, and its pictures.
+/// The constants are defaults of `tumble sweep`; each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -76,7 +76,7 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
     throw scenarios::BadInput("--data does not apply, because suite '" + suite.name + "' has no recordings");
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
-    // refuses an unknown name before the sweep starts
+    // an unknown name must be rejected before the sweep starts
     for (const std::string& name : options.methods) scenarios::find_methods(name);
     suite.methods = options.methods;
   }
@@ -188,7 +188,7 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// Removes a database that a rejected sweep created, unless the database contains runs.
+/// NewDatabase removes a database that a rejected sweep created, unless it contains runs.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -261,7 +261,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // creates an empty database, so that all shards can be merged
+    // the call creates an empty database, so that all shards can be merged
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();

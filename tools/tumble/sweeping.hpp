@@ -14,8 +14,8 @@ scenarios::SweepProgress sweep_with_progress(const Session& session, const scena
                                              const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
                                              scenarios::SweepOptions options);
 
-/// Sweeps until the question is answered for all its scenarios, or until the seeds are used up. The question is
-/// evaluated after fixed numbers of seeds, when all runs with these seeds are complete and no later run has started.
+/// AskedSweep sweeps until the question is answered for all its scenarios, or until the seeds are used up. The question
+/// is evaluated after fixed numbers of seeds, when all runs with these seeds are complete and no later run has started.
 /// The content of the database therefore does not depend on the number of jobs or on interruptions.
 struct AskedSweep {
   scenarios::SweepProgress progress;  ///< of all steps; `draws_total` counts the draws up to the last evaluation

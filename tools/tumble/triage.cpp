@@ -34,7 +34,7 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-/// "cures" if the original run failed and the run with this true input does not.
+/// The verdict is "cures" if the original run failed and the run with this true input succeeds.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
   return row.fails ? "" : "cures";
@@ -105,7 +105,7 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// Refuses a name that is neither a suite's nor a scenario's, before CLI11 reports missing options. The content of a
+/// Rejects a name that is neither a suite's nor a scenario's, before CLI11 reports missing options. The content of a
 /// file is checked when all options are known.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
@@ -113,7 +113,7 @@ std::function<void(const std::string&)> known_name(const Session& session) {
   };
 }
 
-/// True if a seed or a named case is given; otherwise the name is a suite.
+/// Returns whether a seed or a named case is given; otherwise the name is a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());

@@ -7,7 +7,7 @@
 #include "scenarios/sweep/suite_triage.hpp"
 #include "tools/tumble/session.hpp"
 
-/// Triage over all simulated runs of a suite.
+/// triage_suite.hpp runs the triage over all simulated runs of a suite.
 namespace tumble::tools {
 
 struct SuiteTriage {
@@ -19,7 +19,8 @@ struct SuiteTriage {
   std::filesystem::path database;  ///< if not empty: only draws on which the method failed in this database
 };
 
-/// Runs the triage, prints the effect of each input and names the most important input. Returns the exit status.
+/// Runs the triage, prints the effect of each input and names the most important input. Returns the exit status of the
+/// program.
 int run_suite_triage(const Session& session, SuiteTriage asked);
 
 }  // namespace tumble::tools

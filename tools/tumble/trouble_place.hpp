@@ -9,7 +9,7 @@
 namespace tumble::tools {
 
 /// Locates the reason why a method refused a recording: the longest gap, or the first reading of an IMU that is not
-/// finite, out of range or out of order. Returns an empty text if no reading is the cause. O(N).
+/// finite, out of range or out of order. Returns an empty text if no reading is the cause. Cost: O(N).
 std::string trouble_place(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

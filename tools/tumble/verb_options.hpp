@@ -9,11 +9,11 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// Declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, because CLI11's headers add
-/// seconds of compile time to every source.
+/// verb_options.hpp declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, because
+/// CLI11's headers add seconds of compile time to every source.
 namespace tumble::tools {
 
-/// Further properties of an option or argument that was just declared.
+/// VerbOption contains further properties of an option or argument that was just declared.
 class VerbOption {
  public:
   explicit VerbOption(CLI::Option& option) : option_(&option) {}
@@ -28,7 +28,7 @@ class VerbOption {
   VerbOption check(std::function<void(const std::string&)> refuse);
   /// Rejects an empty word.
   VerbOption filled();
-  /// Takes exactly `count` words.
+  /// The option takes exactly `count` words.
   VerbOption words(int count);
   /// The option takes one word each time it occurs; the next word belongs to another option.
   VerbOption one_at_a_time();
@@ -41,7 +41,7 @@ class VerbOption {
   CLI::Option* option_;
 };
 
-/// The options of one verb.
+/// VerbOptions contains the options of one verb.
 class VerbOptions {
  public:
   explicit VerbOptions(CLI::App& app) : app_(&app) {}

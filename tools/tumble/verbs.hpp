@@ -9,10 +9,10 @@
 
 namespace tumble::tools {
 
-/// Runs a verb after the verb's options were parsed; returns the exit status.
+/// Action runs a verb after its options were parsed, and returns the exit status.
 using Action = std::function<int()>;
 
-/// A verb of the program. The declaration adds the verb's options to `verb` and returns the verb's action. The session
+/// Verb is a verb of the program. The declaration adds the verb's options to `verb` and returns its action. The session
 /// outlives the action.
 struct Verb {
   const char* name;

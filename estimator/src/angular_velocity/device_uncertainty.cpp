@@ -13,12 +13,13 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// Weight of the readings' likelihood in the decision between a device that matches its data sheet and an uncalibrated
-// device. The weight of the decision is ten times kEvidenceWeight, the weight in estimates of sensor errors. With full
-// weight and an uncertain calibration, the decision would classify half of the matching devices as uncalibrated.
+// kOddsEvidenceWeight weights the likelihood of the readings in the decision between a calibrated and an uncalibrated
+// device. kOddsEvidenceWeight is ten times kEvidenceWeight, which weights the same readings in estimates of sensor
+// errors. With full weight and an uncertain calibration, half of the calibrated devices would be classified as
+// uncalibrated.
 constexpr double kOddsEvidenceWeight = 0.3;
 
-// Computes I + share U L U, with the information matrix L made symmetric.
+// Computes the matrix I + share U L U; L is the information matrix of the sensor errors, made symmetric.
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
@@ -28,7 +29,8 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
   }
 }
 
-// Computes the log odds of a device: rate_stream.md (R102). If the information matrix is indefinite, the result is NaN.
+// Computes the log odds that a device matches its data sheet: rate_stream.md (R102). Returns NaN if the information
+// matrix is indefinite.
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
   set_system(evidence, deviation, kOddsEvidenceWeight, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
@@ -37,14 +39,14 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// Computes the second moment cov_i + m_i m_i' of one device: rate_stream.md (R102). If the information matrix is
-// indefinite, returns false.
+// Computes the second moment of one device's sensor errors, cov_i + m_i m_i': rate_stream.md (R102). Returns false if
+// the information matrix is indefinite.
 bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // The correction of sensor errors leaves scale and misalignment unchanged, because errors of the flight model look
-  // like scale and misalignment errors.
+  // The correction leaves scale and misalignment unchanged, because errors of the flight model look like scale and
+  // misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

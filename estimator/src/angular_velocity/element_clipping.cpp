@@ -11,33 +11,33 @@ namespace tumble {
 
 namespace {
 
-// A cross-axis sensitivity with a standard deviation below kDeterminedSlopeSigma counts as known. A cross-axis
-// sensitivity counts as zero if its magnitude is below kNil within its uncertainty.
+// A cross-axis sensitivity counts as known if its standard deviation is below kDeterminedSlopeSigma. A cross-axis
+// sensitivity counts as zero if its magnitude is below kNil, within its uncertainty.
 constexpr double kDeterminedSlopeSigma = 2e-3, kNil = 3e-3;
 // Maximum relative difference between positive and negative saturation level of a device that clips its digital output.
 constexpr double kLopsidedShare = 1e-4;
 // `kUprightSigma` is the standard deviation of a saturation plane's tilt if the device clips its digital output.
 // `kSlopeSigmaMin` is the minimum standard deviation of a cross-axis sensitivity, due to residual misalignment.
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// Maximum distance of a partly saturated sample from the saturation level, as a fraction of the preceding step between
-// samples.
+// kEdgeOfStep is the largest distance of a partly saturated sample from the saturation level, as a fraction of the
+// preceding step.
 constexpr double kEdgeOfStep = 0.5;
 
-// Returns the sign of the saturation level at which element j is saturated.
+// Returns the sign of the saturation level that sensing element j has reached.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Returns whether sensing element j of a sample is saturated. The criteria are the saturation plane of the element,
-// rails.md (R55), and the device's flag.
+// Returns whether sensing element j of a sample is saturated. An element is saturated if its reading is on the
+// saturation plane, rails.md (R55), or if the device flags the sample.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
          rail.holds(reading, 1);
 }
 
-// Returns whether a sample between a clipped sample and the sample `outside` was saturated for a part of its window.
-// The criterion is the distance of the readings from the saturation level, rails.md (R54).
+// Returns whether a sample next to a clipped sample was saturated for a part of its averaging window. The test compares
+// the distance of the two readings from the saturation level, rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.margin_rad_s(reading_of(now, triad), sign);
   if (depth > kNearRailRatio * rail.distance_rad_s) return false;
@@ -46,15 +46,16 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeOfStep * (before - depth);
 }
 
-// Returns whether the positive and the negative saturation level differ. The levels differ if the device subtracts the
-// element's offset after clipping.
+// Returns whether the positive and the negative saturation level differ. The positive and negative level differ if the
+// device subtracts the element's offset after clipping.
 bool lopsided(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two plane finders. The first finder uses the stated range, or the range of the axis-aligned saturation levels
-// if no range is stated. The second finder searches without a range.
+// Returns two finders of saturation planes, one with and one without a stated range. The first of the two plane finders
+// uses the stated range, or the range of the axis-aligned saturation levels if the data sheet states none. The second
+// plane finder searches for saturation planes without a range.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;
@@ -83,7 +84,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     const double plateau = rails.channels[first_channel(triad) + j].rail;
     if (rail && lopsided(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // on a tilted saturation plane, most clipped samples would have different readings
+      // on a tilted saturation plane, most clipped samples would have unequal readings
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });
@@ -159,7 +160,7 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
   }
 }
 
-// Computes cross-axis sensitivities with the covariance of the saturation planes: rails.md (R59).
+// Computes the cross-axis sensitivities and their covariance from the saturation planes: rails.md (R59).
 std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool upright, int element,
                                                 const Eigen::Matrix2d& before) {
   if (upright) {

@@ -13,8 +13,8 @@ namespace tumble {
 
 namespace {
 
-// Minimum duration of flight for the detection of a half-scale gyro. With doubled rates, hand-held motion can look like
-// flight for 0.05 s. Real flights last longer.
+// kHalfScaleRun_s is the minimum duration of flight for the detection of a gyro that reports half the rate. If all
+// rates are doubled, hand-held motion can look like flight for 0.05 s. Real flights last longer than 0.05 s.
 constexpr double kHalfScaleRun_s = 0.08;
 constexpr double kAcross = 0.05;    // minimum squared lever arm across a saturated axis, as a fraction
 constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
@@ -33,7 +33,7 @@ constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, 
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
-/// Conversion of readings under a hypothesis about sign, axis order or scale of a sensor.
+/// Sense is a hypothesis about the sign, axis order or scale of a sensor, with the matching conversion of readings.
 struct Sense {
   Axes force, rate;
   const char* name;
@@ -59,9 +59,8 @@ constexpr std::array<Sense, FlightSignCheck::kAlternatives> kSensors = {{
     {kAsRead, kTwice, "flight time in s that a gyro with half the true scale explains"},
 }};
 
-/// Converts a reading to the reading of a sensor with the hypothetical sign, axis order or scale: imu_merge.md (I32).
-/// `known` is true if the centripetal equation |w x t|^2 = -f t determines the rate of a saturated axis, beyond the
-/// saturation level.
+/// Converts a reading as if the sensor had the hypothetical sign, axis order or scale: imu_merge.md (I32). `known` is
+/// true if the centripetal equation |w x t|^2 = -f t gives a rate of the saturated axis beyond the saturation level.
 FlightSignCheck::Reading as_read(const FlightSignCheck::Reading& reading, const Sense& sense,
                                  const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;
@@ -85,8 +84,8 @@ FlightSignCheck::Reading as_read(const FlightSignCheck::Reading& reading, const 
   return out;
 }
 
-/// Returns whether the middle reading of three agrees with flight under a hypothesis about the sensor: imu_merge.md
-/// (I31).
+/// Returns whether the middle one of three readings agrees with flight, under a hypothesis about the sensor:
+/// imu_merge.md (I31).
 bool flies(const Sense& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
            const FlightSignCheck::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
@@ -100,8 +99,8 @@ bool flies(const Sense& sense, const std::array<FlightSignCheck::Reading, 3>& re
   return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
 }
 
-/// Returns whether the body's motion allows the test of a hypothesis about the sensor. For a body that may be
-/// hand-held, FlightSignCheck tests only the clearest hypotheses.
+/// Returns whether the motion of the body allows the test of a hypothesis about the sensor. FlightSignCheck tests only
+/// the clearest hypotheses if the body may be hand-held.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSignCheck::Body::thrown || sense == kSound || sense == kFlippedForce ||
@@ -146,7 +145,8 @@ FlightSignCheck::Reading FlightSignCheck::reading_of(const ImuSample& mean, doub
   return out;
 }
 
-/// Classifies the reading before `now`. The neighbouring readings determine the angular acceleration at that reading.
+/// Classifies the previous reading as flight or not. The previous reading's angular acceleration follows from its two
+/// neighbours.
 void FlightSignCheck::process_reading(const Reading& now, State& state) const {
   const auto [first, middle] = state.before;
   state.before = {middle, now};

@@ -17,16 +17,16 @@ constexpr double kRotating_rad_s = 0.3;  // change of another gyro axis that ind
 constexpr double kPushed_m_s2 = 1.0;     // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
-// Limits for a body at rest: rate of another axis, and change of the specific force.
+// A body is at rest if the rate of another axis and the change of the specific force are below these limits.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
-// Largest reading of a working axis at rest, caused by bias and gravity.
+// kRestMost_rad_s and kRestMost_m_s2 are the largest readings of a working axis at rest, caused by bias and gravity.
 constexpr double kRestMost_rad_s = 1.0, kRestMost_m_s2 = 15.0;
 
 constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }
 
-/// Returns the k-th of the two other channels in the triad of `channel`.
+/// Returns the k-th of the two channels that belong to the same triad as `channel`.
 constexpr std::size_t other(std::size_t channel, std::size_t k) {
   return channel / 3 * 3 + (channel + 1 + k) % 3;
 }
@@ -48,7 +48,7 @@ void begin_repeat(std::size_t channel, const std::array<double, 6>& now, TimeNs 
   }
 }
 
-/// Returns whether all axes except `channel` have readings of a body at rest, close to their readings in `before`.
+/// Returns whether the readings of all axes except `channel` indicate a body at rest and are close to `before`.
 bool others_rest(std::size_t channel, const std::array<double, 6>& now, const std::array<double, 6>& before) {
   for (std::size_t k = 0; k < now.size(); ++k) {
     if (k == channel) continue;
@@ -112,8 +112,8 @@ void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 
     }
   }
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
-  // No motion keeps the rate vector exactly on one axis for `rail_stationary_s`. The test therefore ignores the update
-  // rate of the other axes.
+  // No motion keeps the rate vector exactly on one axis for `rail_stationary_s`. The test therefore ignores how often
+  // the other axes change.
   const bool at_its_rail = at_rail(channel, axis);
   const bool of_no_motion = axis.stationary_s >= params_.rail_stationary_s ||
                             (axis.repeated_s >= params_.rail_repeated_s && others_move(channel, 0.0, axis));
@@ -129,13 +129,14 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kRailShare * stated) return true;
-  // A flag shows that the device saturated. The flag does not show that the repeated value is the saturation level.
+  // A saturation flag of the device shows only that the device saturated. The flag does not show that the repeated
+  // reading is the saturation level.
   if (axis.device_flagged && size >= kExtremeShare * stated) return true;
   return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
-/// Returns whether the other axes of the triad change by far more than a quantum of the tested axis. The other axes
-/// must change in at least the fraction `changing_share` of the samples.
+/// Returns whether the other axes of the triad change by far more than one quantisation step of the tested axis. The
+/// test needs changes of the other axes in at least a fraction `changing_share` of the samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.smallest_change);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -172,7 +173,7 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
 
 namespace {
 
-/// Appends an interval for each axis that is frozen at `time_ns`, or extends the axis' last interval.
+/// Appends an interval for each axis that is frozen at `time_ns`, or extends the last interval of the axis.
 void extend(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -8,17 +8,18 @@ namespace tumble {
 
 namespace {
 
-// `kStruckRate_rad_s` is the minimum rate of a moving body. `kCorrelationMin` is the minimum correlation for an
-// accepted delay. `kStruckSigma` is the standard deviation of the delay, as a fraction of the slower triad's period.
+// `kStruckRate_rad_s` is the minimum angular rate of a moving body. `kCorrelationMin` is the minimum correlation
+// between rate change and specific force for an accepted delay. `kStruckSigma` is the standard deviation of the delay,
+// as a fraction of the slower sensor's sample period.
 constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
 constexpr double kStruckMin = 30.0;
 // `kStroke_m_s2` is the minimum specific force of an impact. `kFlying_m_s2` is the maximum specific force of free
-// flight. `kFlyingShareMin` is the minimum fraction of intervals in flight. A body with impacts that never flies is
+// flight. `kFlyingShareMin` is the minimum fraction of the time in flight. A body that has impacts but never flies is
 // hand-held.
 constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
 constexpr double kStrokesMin = 10.0;
 
-// Returns the correlation between the change of rate and the mean specific force: rate_smoother.md (R45).
+// Returns the correlation between the change of the rate and the mean specific force: rate_smoother.md (R45).
 double correlation(const ImpactSums& sums, int i) {
   const double n = sums.intervals, x = sums.acceleration_sum, xx = sums.acceleration_squared;
   const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];
@@ -26,7 +27,7 @@ double correlation(const ImpactSums& sums, int i) {
   return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
 }
 
-// Returns the correlation. If the body has no impacts or no flight, returns 0.
+// Returns the correlation between rate change and specific force. Returns 0 if the body has no impacts or no flight.
 double score(const ImpactSums& sums, int i) {
   if (sums.impacts[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
   return correlation(sums, i);

@@ -16,14 +16,14 @@ namespace tumble {
 namespace {
 
 constexpr double kTrust = 4.0;
-// Standard deviation of the change of a gyro's cross-axis sensitivity between runs. In six runs of a hand-held device,
-// the cross-axis sensitivity was 0.017 to 0.021.
+// kElementDrift is the standard deviation of the change of a gyro's cross-axis sensitivity between runs. In six runs of
+// a hand-held device, the cross-axis sensitivity ranged from 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
-// Standard deviation of the change of an accelerometer's cross-axis sensitivity between runs, equal to the gyro's.
+// kSlopeDrift is the same standard deviation for an accelerometer.
 constexpr double kSlopeDrift = 2e-3;
-// Planes with lower log-odds are not saved, because a peak of the motion can resemble a saturation plane.
+// Planes with lower log odds are not saved, because a peak of the motion can resemble a saturation plane.
 constexpr double kSureLogOdds = 10.0;
-// Lower bound of the standard deviation of a cross-axis sensitivity, equation (R59) of rails.md.
+// kSlopeSigmaMin is the smallest standard deviation of a cross-axis sensitivity: rails.md (R59).
 constexpr double kSlopeSigmaMin = 3e-4;
 
 std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
@@ -34,13 +34,13 @@ std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
   return out;
 }
 
-// Readings within this fraction of the saturation level count as saturated. Saturation levels are stable to 0.05 %, but
-// their offset drifts with the bias.
+// A reading counts as saturated if it is within the fraction kToleranceShare of the saturation level. Saturation levels
+// are stable to 0.05 %, but the offset of the readings drifts with the bias.
 constexpr double kToleranceShare = 2e-3;
 
-// Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
-// If two elements only clip together, the cross-axis sensitivity between the two elements is unknown. The intercept of
-// the plane is then unknown too.
+// Returns whether the intercept of a saturation plane is known to two standard deviations within the next run's
+// tolerance. If two sensing elements only clip together, the readings do not determine the cross-axis sensitivity
+// between them. The intercept of the saturation plane is then unknown too.
 bool reported_level(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
@@ -62,7 +62,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kSureLogOdds) {
-      // The covariance of the plane's cross-axis sensitivities is also increased.
+      // The covariance of the plane's cross-axis sensitivities grows as well.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -83,7 +83,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Stores cross-axis sensitivities and intercepts of an element whose plane is certain.
+// Stores the cross-axis sensitivities and intercepts of a sensing element whose saturation plane is certain.
 void take_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
@@ -184,7 +184,7 @@ void start_from_calibration(const CalibratedRig& rig, RateSmoother::Params& para
   covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
-  // Limits the covariance to the default prior.
+  // Limits the covariance of the calibration to the default prior.
   const RigConstants::Matrix floor = (1.0 - 1.0 / kTrust) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();

@@ -11,12 +11,12 @@ namespace tumble {
 namespace {
 
 // For a reading close to a saturation level, the test uses the steps to `kReach` neighbouring readings on each side.
-// `kRoundShare` is the fraction of the saturation level by which a gyro's filter can lower the edges of a plateau. On
-// one hand-held wand, the readings were up to 2 % below the saturation level while the rate exceeded the level.
+// `kRoundShare` is the fraction of the saturation level by which a gyro's filter can lower the ends of a plateau. One
+// hand-held wand reported readings up to 2 % below the saturation level while the rate exceeded the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundShare = 0.03;
 
-// readings without repetitions, in time order
+// gyro readings in time order, without repetitions
 using Rates = std::span<const Eigen::Vector3d>;
 
 double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
@@ -27,7 +27,7 @@ double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::In
   return out;
 }
 
-// Returns the axes that may be partly saturated, as a bit mask: rails.md (R76).
+// Returns a bit mask of the axes that may be partly saturated: rails.md (R76).
 std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;

@@ -10,15 +10,14 @@
 
 namespace tumble {
 
-/// Finds readings that may have been saturated for a part of their window. Cost: O(N). Bit j of a sample is set if the
-/// reading of the gyro's sensing element j is unsaturated, but not certainly a full measurement. A reading is suspect
-/// if its distance below the saturation level is smaller than its larger step to a neighbour. Within 3 % of the
-/// saturation level, the largest step within two readings replaces the step to a neighbour, see rails.md (R76). Sides
-/// without an observed saturation level are excluded, so that all bits are zero without clipping. Repeated readings
-/// count once.
+/// Finds readings that may have been saturated for a part of their averaging window. Cost: O(N). Bit j of a sample is
+/// set if gyro element j is unsaturated but may have been saturated for a part of the window. A reading is suspect if
+/// it is closer to the saturation level than to one of its neighbours. Within 3 % of the saturation level, the test
+/// uses the largest step within two readings on each side, see rails.md (R76). The test excludes signs without an
+/// observed saturation level, so all bits are zero without clipping. A repeated reading counts once.
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
-/// Checks one reading of a stream, from the steps to its neighbours (null at the ends). Cost: O(1).
+/// Checks one reading of a stream by the steps to its neighbouring readings (null at the ends). Cost: O(1).
 std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
                             const RailPlanes& planes);
 

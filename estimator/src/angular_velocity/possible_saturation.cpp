@@ -10,18 +10,18 @@ namespace tumble {
 
 namespace {
 
-// `kUnseenTilt` is the maximum tilt between the saturation planes of two elements, in addition to kNearRailRatio.
-// `kUnseenOfStep` is the saturation deficit of a few samples at a saturation level, as a fraction of the step to the
-// neighbouring reading.
+// `kUnseenTilt` is the maximum tilt between the saturation planes of two sensing elements, in addition to
+// kNearRailRatio. `kUnseenOfStep` is the saturation deficit of a few saturated samples, as a fraction of the step to
+// the neighbouring reading.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
 // A reading is at the top of a segment if it is within the fraction `kTopShare` of the segment's largest reading. A
-// tilt of kUnseenTilt changes a reading by this fraction if the rate on the other axes is a sixth of the saturation
-// level. `kElementsApart` is the maximum difference between the saturation levels of two elements, in standard
-// deviations.
+// tilt of kUnseenTilt changes a reading by the fraction kTopShare if the rate about the other axes is a sixth of the
+// saturation level. `kElementsApart` is the maximum difference between the saturation levels of two sensing elements,
+// in standard deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
-// Returns the lowest known saturation level. If no level is known, returns 0.
+// Returns the lowest known saturation level, or 0 if no level is known.
 double lowest_rail(const RailPlanes& planes) {
   double rail = 0.0;
   for (const auto& element : planes.element) {
@@ -30,22 +30,22 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// Returns how far a motion may rise above a flat maximum of `count` readings. The result is the height at which
-// straight lines with the slopes before and after the maximum meet: rails.md (R74).
+// Returns how far a motion may rise above a flat maximum that `count` readings show. The rise is the height at which
+// two straight lines meet, with the slopes before and after the maximum: rails.md (R74).
 double hidden_rise(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// Returns the rate on the axes other than `axis`. At a saturation level, the reading changes by the tilt of the
-// saturation plane times the rate on the other axes.
+// Returns the magnitude of the angular rate about the axes other than `axis`. A tilted saturation plane changes the
+// saturated reading by the tilt times the rate about the other axes.
 double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
 
 }  // namespace
 
-// Stores the smallest saturation level that the readings allow: rails.md (R75).
+// Stores the smallest saturation level that is compatible with the readings: rails.md (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// possible_saturation.hpp finds readings at a saturation level that has too few samples for detection.
+// possible_saturation.hpp finds readings that may be saturated although too few saturated samples exist to detect the
+// level.
 #pragma once
 
 #include <span>
@@ -10,18 +11,17 @@
 
 namespace tumble {
 
-/// Marks readings of a sensing element without a known saturation level if the readings are near the levels of other
-/// elements. Marking is needed because few saturated samples do not reveal a saturation plane. The possible saturation
-/// deficit of a marked reading is its step to the neighbours. Readings that `least` excludes as saturation levels are
-/// not marked. The function resets RateObservation::isolated_high_axes.
+/// Marks readings of a sensing element with unknown saturation level if they are near the known levels of other
+/// elements. Marking is needed because a few saturated samples do not reveal a saturation plane. The possible
+/// saturation deficit of a marked reading is the step to its neighbouring readings. Readings below the smallest
+/// possible saturation level `least` remain unmarked. The function resets RateObservation::isolated_high_axes.
 void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// Marks whole segments of readings near a maximum, which may hide a peak between the slopes before and after the
-/// segment. Cost: O(N). `offset_share` is the difference between sensing elements as a fraction of the saturation level
-/// (RailPlaneFinder::Params). The function has no effect if the device flags clipping or no saturation level is known.
-/// The function also has no effect if the sensing element has read far higher values. The function sets
-/// RateObservation::suspect.
+/// Marks flat maxima of the readings that may hide a saturated peak. Cost: O(N). `offset_share` is the difference
+/// between sensing elements as a fraction of the saturation level (RailPlaneFinder::Params). The function has no effect
+/// if the device flags clipping, or if no saturation level is known. The function also has no effect if the sensing
+/// element has reported far higher readings. The function sets RateObservation::suspect.
 void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_share,
                              double noise_rad_s, std::span<RateObservation> observations);
 

@@ -40,11 +40,11 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
       if (channel.digit == 0.0 || change < channel.digit) channel.digit = change;
-      // a smaller reading ends a plateau of saturated readings
+      // a smaller reading ends a plateau of equal saturated readings
       if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
     }
     channel.peak = std::max(channel.peak, magnitude);
-    // a larger reading shows that the plateau is not a saturation level
+    // a larger reading shows that the plateau is below the saturation level
     if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.disagreement_share)) channel.rail = 0.0;
     if (!continues) {
       channel.entry = channel.run_length > 0 ? change : 0.0;
@@ -99,7 +99,8 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
     if (const std::optional<double> level = rail(state, c)) {
       const double share = channel.clipped ? params_.leave_share : params_.enter_share;
       clipped = clipped || std::abs(value) >= *level * (1.0 - share);
-      // A change from one saturation level to the opposite level within one sample is a numeric overflow, not a motion.
+      // A change from the positive to the negative saturation level within one sample is a numeric overflow, not a
+      // motion.
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
     }
     if (flipped) {

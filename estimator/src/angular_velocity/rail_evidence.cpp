@@ -16,36 +16,34 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood
-// ratio of long segments.
+// kConstantShare is the prior fraction of segments in which the rate is constant (spins, turntables). The fraction
+// limits how much a long segment of equal readings supports saturation.
 constexpr double kConstantShare = 0.05;
-// Minimum ratio of `bend` to `flat` in SegmentShape. If `bend / flat` is smaller, a flat segment does not indicate
-// saturation.
+// A flat segment indicates saturation only if the ratio of `bend` to `flat` in SegmentShape is at least kBend.
 constexpr double kBend = 3.0;
-// Range of possible constant rates, as a fraction of the largest reading of the axis.
+// kLevelShare is the range of possible constant rates, as a fraction of the largest reading of the axis.
 constexpr double kLevelShare = 0.2;
-// The noise estimate uses the residuals of a parabola in windows of kNoiseWindow readings. `kNoiseQuantile` is the
-// quantile of the windows that determines the noise.
+// The noise estimate uses the residuals of a parabola fit in windows of kNoiseWindow readings. `kNoiseQuantile` selects
+// the window whose residuals determine the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// Maximum log-likelihood of a kink at the end of a segment, if the other axes move smoothly at this time.
+// kKinkAlone is the maximum log-likelihood of a kink at the end of a segment if the other axes move smoothly.
 constexpr double kKinkAlone = 2.5;
-// Minimum change of the other axes around the end of a segment, in standard deviations, for the test of a kink.
+// The test of a kink needs a change of the other axes by at least kMoving standard deviations around the end of a
+// segment.
 constexpr double kMoving = 10.0;
-// If a segment scatters less than noise with a log-likelihood above kThinAlone, the shape of the segment's ends does
-// not matter.
+// If a segment scatters far less than noise (log-likelihood above kThinAlone), the shape of its ends is ignored.
 constexpr double kThinAlone = 8.0;
-// Degrees of freedom that the scatter of a segment loses: two to the fitted straight line and two to the partly
-// saturated ends.
+// A segment loses kThinTaken degrees of freedom: two to the fitted straight line and two to the partly saturated ends.
 constexpr std::size_t kThinTaken = 4;
-// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance for
-// readings at a saturation level is at most the fraction kAtRailShareMax of the level.
+// A reading is at the saturation level if it is within kAtRail standard deviations of the saturation plane. The
+// tolerance for readings at a saturation level is at most the fraction kAtRailShareMax of the level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// `kBeyond` is the penalty on the log odds of a saturation plane for each reading beyond the plane. `kStray` is the
-// fraction of readings that may be beyond the plane without a penalty.
+// `kBeyond` is the amount by which each reading beyond a saturation plane decreases the log odds of the plane. `kStray`
+// is the fraction of readings that may be beyond the plane without effect on the log odds.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
-// Returns the noise of a reading, from the root mean square of third differences: rails.md (R56).
+// Returns the noise of a reading, computed from the root mean square of third differences: rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double squares = 0.0;
   const std::size_t count = window.size() - 3;
@@ -62,17 +60,17 @@ struct Segment {
   std::size_t size() const { return last - first + 1; }
 };
 
-// Returns the segment of neighbouring inliers that starts at `at`. On return, `at` is the first inlier after the
-// segment.
+// Returns the next segment of consecutive inliers, starting at index `at`. The function moves `at` to the first inlier
+// after the segment.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// Returns a log-likelihood ratio that is positive if the readings of a segment scatter less than noise about a straight
-// line: rails.md (R65). Readings of a rate contain sensor noise. Readings at a saturation level contain no noise if the
-// device clips after the noise is added. If quantisation hides the noise, the log-likelihood ratio is zero.
+// Returns a log-likelihood ratio that is positive if the readings scatter about a straight line less than noise:
+// rails.md (R65). Readings of an angular rate contain sensor noise. Saturated readings contain no noise if the device
+// clips after the noise is added. The ratio is zero if quantisation hides the noise.
 double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -97,19 +95,19 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// `bend` is the height that a rounded maximum would have within a segment. `flat` is the spread of the segment's
-// readings.
+// `bend` is the height that a rounded maximum would have within a segment of readings. `flat` is the difference between
+// the largest and the smallest reading of the segment.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBend * flat; }
 };
 
-// Computes the shape of a segment. The result is empty for a single reading, and for a segment close to either end of
-// the recording.
+// Computes the shape of a segment of consecutive readings. The shape is empty for a single reading, and for a segment
+// close to either end of the recording.
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // `depth` is the smaller distance of the second readings before and after the segment from the saturation level
+  // `depth` is the distance of the readings next to the segment from the saturation level
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -119,13 +117,14 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // a parabola through the neighbours of a segment has this height within the segment: rails.md (R61)
+  // a parabola through the readings next to a segment has this height within the segment: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// Returns the log-likelihood of a kink at one end of a segment: rails.md (R64). The test compares the second difference
-// of the clipped axis with the second differences of the other axes. An impact would cause a kink on all axes.
+// Returns the log-likelihood that the readings have a kink at one end of a segment: rails.md (R64). The test compares
+// the second difference of the clipped axis with those of the other axes. An impact would cause a kink on all axes,
+// saturation only on one.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -161,7 +160,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
     out.peak = out.peak.cwiseMax(y.cwiseAbs());
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
       const double change = std::abs(y[j] - out.rates.back()[j]);
-      // the rounding error of a floating-point sum is not a quantum of the sensor
+      // the rounding error of a floating-point sum is smaller than any quantisation step of a sensor
       if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.digit[j] = std::min(out.digit[j], change);
     }
     out.rates.push_back(y);
@@ -195,30 +194,30 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const Segment s = next_segment(inliers, at);
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
-    // the readings of a motion scatter at least by the gyro's noise
+    // the readings of a moving gyro scatter at least by the gyro's noise
     const double thin = thinness(readings, facet, s);
     if (!shape->bends() && thin < kThinAlone) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // The log odds increase with the flatness of a segment (R62). The log odds also increase if segments have similar
-    // mean readings (R63): rails.md.
+    // The log odds of saturation increase with the flatness of a segment: rails.md (R62). The log odds also increase if
+    // several segments have similar mean readings: rails.md (R63).
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
-  // no reading should be beyond a saturation level
+  // readings beyond a saturation level contradict the level
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  // A reading counts as saturated if its distance from the saturation level is within the noise. The reading also
-  // counts as saturated if the distance is within the error of the plane.
+  // A reading counts as saturated if its distance from the saturation plane is within the noise or the error of the
+  // plane.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // The Occam factor is the ratio of prior to posterior volume: rails.md (R66). The factor penalises the free choice of
-  // saturation level and cross-axis sensitivities.
+  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The factor penalises the free
+  // choice of saturation level and cross-axis sensitivities.
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -7,20 +7,20 @@
 
 namespace tumble {
 
-/// DistinctReadings contains the readings of a gyro without repetitions (sample and hold), and properties of the gyro
-/// derived from the readings.
+/// DistinctReadings contains the readings of a gyro without repetitions (sample and hold), and the gyro's noise and
+/// quantisation.
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
   Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< noise of a reading, from the slowest motion [rad/s]
   Eigen::Vector3d digit = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();   ///< largest magnitude of each axis [rad/s]
 };
-/// Computes the properties of a gyro from its readings in time order, and stores the distinct readings in `rates`.
-/// `noises` is a buffer.
+/// Computes noise and quantisation of a gyro from its readings in time order, and stores the distinct readings in
+/// `rates`. `noises` is a work buffer.
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// RailFacet is a plane that limits the readings, sign * row . y = level, with the readings in the slab at the plane.
+/// RailFacet is a plane that limits the readings, sign * row . y = level, with the readings close to the plane.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -29,9 +29,10 @@ struct RailFacet {
   int segments = 0;  ///< number of runs of inliers that no rounded maximum explains
 };
 
-/// Returns the log likelihood ratio of the facet's samples: saturation against maxima of a motion or constant rates.
-/// The function counts the segments of `facet`. `slope_information` is the prior information of the cross-axis
-/// sensitivities. `inliers` contains ascending indices of the facet's readings in DistinctReadings::rates.
+/// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for
+/// the readings of a facet. The function counts the segments of consecutive readings on `facet`. `slope_information` is
+/// the prior information about the cross-axis sensitivities. `inliers` contains the indices of the facet's readings in
+/// DistinctReadings::rates, in ascending order.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

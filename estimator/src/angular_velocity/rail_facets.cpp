@@ -16,12 +16,12 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
-// `kSlabDeviations` is the half thickness of a slab around a saturation plane, in standard deviations of the readings.
-// The half thickness of a slab is between the fractions kSlabShareMin and kSlabShareMax of the saturation level.
+// `kSlabDeviations` is half the thickness of the layer of readings around a saturation plane, in standard deviations.
+// The half thickness is limited to fractions between kSlabShareMin and kSlabShareMax of the saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
 
-// Collects the readings within `slab` of the largest value, for any cross-axis sensitivity up to `steepest`. Returns
-// the smallest value of the collected readings.
+// Collects the readings that are within `slab` of the largest value, for any cross-axis sensitivity up to `steepest`.
+// Returns the smallest value of the collected readings.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -44,9 +44,9 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
   }
 }
 
-// Fits the cross-axis sensitivities and the saturation level to the inliers, by least squares with the prior of the
-// sensitivities. Computes the standard deviation of the readings about the plane. The fit uses Cauchy weights, because
-// partly saturated windows are below the plane: rails.md (R58).
+// Fits the saturation level and cross-axis sensitivities to the inliers, by least squares with a prior on the
+// sensitivities. The function also computes the standard deviation of the readings about the fitted plane. The fit uses
+// Cauchy weights, because partly saturated windows are below the plane: rails.md (R58).
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;
@@ -59,7 +59,7 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
   const double weight = 1.0 / (deviation * deviation);
   for (const std::size_t k : workspace.inliers) {
     const Vector3d& y = readings.rates[k];
-    // linear model: level = sign * (y_j + slopes . others)
+    // linear model of the saturation level: level = sign * (y_j + slopes . others)
     Vector3d A;
     A << -facet.sign * others(y, axis), 1.0;
     const double off = level > 0.0 ? (facet.sign * row.dot(y) - level) / deviation : 0.0;

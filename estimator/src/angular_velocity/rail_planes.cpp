@@ -27,21 +27,22 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// Initial standard deviations of the robust fit, as fractions of the slab thickness. The small initial value suits a
-// thin plane with a few readings below the plane. The large initial value suits a thick plane.
+// kStarts contains initial standard deviations of the robust fit, as fractions of the layer thickness. The small
+// initial value suits a thin layer of readings with a few partly saturated readings below it. The large initial value
+// suits a thick layer of readings.
 constexpr double kStarts[] = {0.5, 0.02};
-// Usual relative difference between the saturation levels of one device's sensing elements. If a reading of another
-// axis exceeds a saturation level by a larger fraction, the log odds of the level decrease.
+// kSiblingShare is the usual relative difference between the saturation levels of one device's sensing elements. A
+// reading of another axis that exceeds a saturation level by a larger fraction decreases the log odds of the level.
 constexpr double kSiblingShare = 0.04;
-// The log odds of a saturation level change by `kNearSibling` near the level of another sensing element. The log odds
-// change by `kNearStated` near a stated range, and by `kOtherSignAgrees` near the level of the opposite sign. For an
-// impossible level, the log odds change by `kImpossible`.
+// `kNearSibling` increases the log odds of a saturation level that is near the level of another sensing element.
+// `kNearStated` applies near a stated range, and `kOtherSignAgrees` near the level of the opposite sign. `kImpossible`
+// applies to an impossible saturation level.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
 // `kNearKnown` increases the log odds of a saturation level near the level of an earlier run. `kKnownShare` is the
-// standard deviation of the difference between the levels of two runs, as a fraction of the level. Far from the earlier
-// level, the log odds change by `kFarFromKnown`, since the device may have been replaced.
+// standard deviation of the difference between the levels of two runs, as a fraction of the level. `kFarFromKnown`
+// decreases the log odds of a level far from the earlier level, since the device may have been replaced.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
-// Standard deviation of the change of a cross-axis sensitivity between two runs.
+// kKnownSlopeSigma is the standard deviation of the change of a cross-axis sensitivity between two runs.
 constexpr double kKnownSlopeSigma = 2e-3;
 
 double log_normal_ratio(double value, double sigma) {
@@ -77,7 +78,8 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// Combines the planes of both signs of one sensing element: rails.md (R53). One of the planes may be missing.
+// Combines the positive and the negative saturation plane of one sensing element: rails.md (R53). One of the two planes
+// may be missing.
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -95,7 +97,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     for (const Vector3d& y : readings.rates) {
       if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
       if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_from)) continue;
-      // linear model of the saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59)
+      // linear model of a saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59)
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
       H += weight * A * A.transpose();
@@ -109,8 +111,8 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // If two sensing elements always clip together, one cross-axis sensitivity is undetermined. The linear system is then
-  // badly conditioned.
+  // If two sensing elements always clip together, the readings do not determine one cross-axis sensitivity. The normal
+  // equations are then badly conditioned.
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);
@@ -134,7 +136,7 @@ struct SideSearch {
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // Returns the plane with the highest log odds, rails.md (R60), near the known cross-axis sensitivities.
+  // Returns the saturation plane with the highest log odds near the known cross-axis sensitivities: rails.md (R60).
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
@@ -154,7 +156,7 @@ struct SideSearch {
 
   // Searches the saturation plane of one sign of a sensing element. The search starts near the element's sensing
   // direction if the direction is known. If the direction is unknown, the search starts near zero cross-axis
-  // sensitivities or near the sensitivities of an earlier run.
+  // sensitivities, or near the sensitivities of an earlier run.
   Side look(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -167,7 +169,7 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // the device may be the device of the earlier run or a different device
+    // the device may be that of the earlier run or a different device
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -175,8 +177,9 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches the saturation plane of sign `i` of a sensing element, given the planes in `found`. Returns whether `pair`
-  // contains a plane of sign `i`. `kept` states whether the previous search accepted the plane of sign `i`.
+  // Searches the saturation plane of sign `i` of a sensing element, with the planes in `found` as prior knowledge.
+  // Returns whether `pair` contains a plane of sign `i`. `kept` states whether the previous search accepted the plane
+  // of the sign.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = look(axis, sign, found);
@@ -186,13 +189,13 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // the test may accept both signs of a sensing element together, although the test rejects each sign alone
+    // the test may accept both saturation planes of an element together although it rejects each plane alone
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
     const Side other = look(axis, -sign, supposed);
-    // the prior odds of the saturation level count once for both signs: rails.md (R68)
+    // the prior odds of the saturation level count once for both planes of an element: rails.md (R68)
     if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
     pair[i] = side;
     pair[1 - i] = other;
@@ -230,8 +233,8 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return merge_with_known_planes(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // Each accepted plane changes the odds of the planes that are still missing. The loop therefore repeats until no
-  // plane is added.
+  // Each accepted saturation plane changes the odds of the planes that are still missing. The search therefore repeats
+  // until a round finds no new plane.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

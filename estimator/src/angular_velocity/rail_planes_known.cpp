@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Known saturation planes: classification of readings, and planes from an earlier run.
+// rail_planes_known.cpp classifies readings by known saturation planes, and uses planes of an earlier run.
 #include <cmath>
 
 #include "tumble/angular_velocity/rail_planes.hpp"
@@ -13,12 +13,12 @@ using Eigen::Vector3d;
 // A reading contradicts a saturation plane if the reading exceeds the plane by kBeyondTolerance times the tolerance.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kContradicting = 2;
-// Maximum relative difference between saturation levels of one device in two runs.
+// kSameShare is the maximum relative difference between saturation levels of one device in two runs.
 constexpr double kSameShare = 0.003;
 
 }  // namespace
 
-// Adds saturation planes of an earlier run, for planes that the current readings do not show.
+// Adds saturation planes of an earlier run where the current readings show none.
 RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
                                                     std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;
@@ -28,7 +28,7 @@ RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
     if (!earlier) continue;
     if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
     for (const int sign : {-1, 1}) {
-      // the saturation levels of both runs are close enough to belong to one device
+      // the saturation levels of both runs are close enough to come from one device
       if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
       const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
       const std::size_t i = sign > 0 ? 1 : 0;
@@ -59,7 +59,7 @@ SensingDirections sensing_directions(const RailPlanes& planes, double unknown_si
   return out;
 }
 
-// Classifies which sensing elements are saturated: rails.md (R54), (R55).
+// Classifies which sensing elements of a sample are saturated: rails.md (R54), (R55).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
   ElementClipping out;
   for (std::size_t j = 0; j < 3; ++j) {

@@ -12,16 +12,16 @@ namespace tumble {
 
 namespace {
 
-// Alternative initial contact thresholds, as multiples of the parameter. The smoother tries the alternatives if the
-// fraction of clipped samples in flight is below kFlightShareExpected.
+// kRestartThresholds contains alternative initial contact thresholds, as multiples of the parameter. The smoother tries
+// the alternative thresholds if few clipped samples are in flight (below kFlightShareExpected).
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// The iteration converges if no linear combination of unknowns changes by more than kStepDeviations standard
-// deviations: rate_smoother.md (R30). At convergence, an almost unobservable rate may still change by a large amount.
+// The iteration has converged when no combination of unknowns changes by more than kStepDeviations standard deviations:
+// rate_smoother.md (R30). At convergence, a rate that the data hardly determine may still change by a large amount.
 constexpr double kStepDeviations = 0.1;
 
-// Computes the flight weight and contact force of each sample: rate_smoother.md (R16) to (R19).
+// Computes the flight weight and contact force at each sample: rate_smoother.md (R16) to (R19).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double threshold_factor, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
@@ -31,7 +31,7 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // if the gyro measures all axes, no unobserved rate can explain a residual
+    // if the gyro measures all axes, an error of the rate cannot explain a residual
     const int clipped = observations[k].unmeasured_axes();
     model.compute_flight_weight(observations[k], rig, rig_covariance, clipped != 0 ? threshold_factor : 1.0,
                                 std::min(before, after), estimates[k]);
@@ -39,7 +39,8 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
   }
 }
 
-// Runs Gauss-Newton from the initial values. Returns false if a system is not positive definite.
+// Runs the Gauss-Newton optimisation from the initial values. Returns false if the normal equations are not positive
+// definite.
 bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
              double threshold_factor, RateSolution& solution, RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
@@ -82,8 +83,8 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   return true;
 }
 
-// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). The sum over
-// the samples is larger for a better local minimum. `share` receives the fraction of flight samples among the samples
+// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). A better
+// local minimum has a larger sum over the samples. `share` receives the fraction of flight samples among the samples
 // with an unmeasured rate.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
@@ -100,7 +101,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// Eliminates the samples from the normal equations, starting with the first sample: rate_smoother.md (R26).
+// Eliminates the samples from the normal equations in time order: rate_smoother.md (R26).
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -119,7 +120,8 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// Computes g' H^-1 g, block by block: rate_smoother.md (R30). After elimination, the blocks contain L^-1 g.
+// Computes the predicted decrease of the cost, g' H^-1 g, block by block: rate_smoother.md (R30). After the
+// elimination, the blocks contain L^-1 g.
 double RateIteration::decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -144,7 +146,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// Computes the derivatives of the solution by the sensor errors, and the information about the sensor errors:
+// Computes the derivatives of the solution with respect to the sensor errors, and the information about them:
 // rate_smoother.md (R37), (R38), (R39).
 RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
                                                     const RigConstants& rig) const {
@@ -156,7 +158,7 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
     const bool last = k + 1 == blocks_.size();
     arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    // subtracts the part of the sensor errors that the unknowns of the sample explain
+    // subtracts the part of the sensor errors that the unknowns of the sample can explain
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }

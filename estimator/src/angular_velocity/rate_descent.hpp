@@ -17,10 +17,10 @@ class RateIteration {
 
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the solution step, limited to step_max. Returns the largest change of a rate.
+  /// Adds the solution step, limited to step_max. Returns the largest change of an angular rate.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for the last factorisation, from the last sample to the first sample.
+  /// Calls use(k, conditional) for each sample of the last factorisation, from the last sample to the first.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -30,9 +30,9 @@ class RateIteration {
     }
   }
 
-  /// Moved contains the derivative of all unknowns by the sensor errors. Moved also contains the information of the
-  /// readings about the sensor errors, after all unknowns are optimised. The derivatives refer to the last
-  /// factorisation, with its `estimates` and `rig`, before apply().
+  /// Moved contains the derivatives of all unknowns with respect to the sensor errors. Moved also contains the
+  /// information of the readings about the sensor errors, after optimisation of all unknowns. The derivatives hold for
+  /// the last factorisation, with its `estimates` and `rig`, before apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
@@ -41,8 +41,8 @@ class RateIteration {
   Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the predicted decrease of the cost, for the last factorisation. The result is also the square of the
-  /// largest change of any combination of unknowns, in standard deviations.
+  /// Returns twice the decrease of the cost that the last factorisation predicts. The decrement is also the square of
+  /// the largest change of any combination of unknowns, in standard deviations.
   double decrement() const;
 
  private:
@@ -60,10 +60,10 @@ struct RateSolution {
   RateIteration iteration;
 };
 
-/// Runs the optimisation. If most clipped samples are classified as contact, solve() repeats the optimisation with
-/// larger and smaller contact thresholds. The repetition is needed because with a wrong lever arm, the first
-/// optimisation may end in a minimum without flight. Returns false if the normal equations are not positive definite.
-/// The function sets iterations, restarts, convergence and Mahalanobis distance in `health`.
+/// Optimises all rates and the calibration. If most clipped samples are classified as contact, solve() repeats the
+/// optimisation with larger and smaller contact thresholds. With a wrong lever arm, the first optimisation may end in a
+/// local minimum without flight. Returns false if the normal equations are not positive definite. The function stores
+/// iterations, restarts, convergence and Mahalanobis distance in `health`.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Returns the products S_i v with the matrices S_i of RigConstants::inertia_basis, as columns. Explicit formulas reduce
-// the cost, because basis_times() runs for each sample.
+// Returns the products of the matrices S_i of RigConstants::inertia_basis with v, as columns. The formulas are written
+// out because basis_times() runs for each sample.
 Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -43,7 +43,8 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// Derivatives of the angular jerk. The derivatives are separate from the jerk, because most calls need only the jerk.
+// JerkDerivatives contains the derivatives of the angular jerk. The derivatives are a separate type because most calls
+// need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, by_acceleration;
   Eigen::Matrix<double, 3, 5> by_inertia;
@@ -61,7 +62,7 @@ JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
   return out;
 }
 
-// Propagates the knot back in time by `delay_s`, with Euler's equation without torque: rate_smoother.md (R12).
+// Propagates the motion back in time by `delay_s`, with Euler's equation without torque: rate_smoother.md (R12).
 RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
   const double half = 0.5 * delay_s * delay_s;
   return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
@@ -70,7 +71,8 @@ RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 
 }  // namespace
 
-// Residual of the gyro, rate_smoother.md (R6). The state may refer to an earlier time: rate_smoother.md (R7).
+// Computes the residual of the gyro: rate_smoother.md (R6). The motion state may belong to an earlier time than the
+// reading: rate_smoother.md (R7).
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
@@ -80,7 +82,7 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   return f;
 }
 
-// Residual of each gyro element along its sensing direction: rate_smoother.md (R8), rails.md (R52).
+// Computes the residual of each gyro element along its sensing direction: rate_smoother.md (R8), rails.md (R52).
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
@@ -97,12 +99,12 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   return f;
 }
 
-// Residual of the specific force in flight: rate_smoother.md (R10).
+// Computes the residual of the specific force in flight: rate_smoother.md (R10).
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   RateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
-  // derivative of w x (w x t) = w (w.t) - t (w.w) by the rate: rate_smoother.md (R10)
+  // derivative of w x (w x t) = w (w.t) - t (w.w) with respect to the rate: rate_smoother.md (R10)
   f.jacobian_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<3>(0) =
@@ -111,7 +113,7 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   return f;
 }
 
-// Residual of the specific force in flight, for a delayed accelerometer: rate_smoother.md (R12).
+// Computes the residual of the specific force in flight for a delayed accelerometer: rate_smoother.md (R12).
 RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                                  double delay_s, Vector3d* jacobian_delay) {
   const Jerk jerk = jerk_of(knot, rig);
@@ -130,7 +132,7 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
   return f;
 }
 
-// Flight residual of a delayed accelerometer, with the derivatives by the calibration only: rate_smoother.md (R12).
+// Computes the same residual with its derivatives with respect to the calibration only: rate_smoother.md (R12).
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Vector3d& reading_m_s2, double delay_s) {
   RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
@@ -138,7 +140,7 @@ RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigCo
   return f;
 }
 
-// Second time derivative of the specific force in flight: rate_smoother.md (R13).
+// Computes the second time derivative of the specific force in flight: rate_smoother.md (R13).
 Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
@@ -147,7 +149,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
-// Residual of Euler's equation without torque: rate_smoother.md (R14).
+// Computes the residual of Euler's equation without torque: rate_smoother.md (R14).
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   const Matrix3d J = rig.inertia_matrix();

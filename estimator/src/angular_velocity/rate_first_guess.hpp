@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-/// Computes the initial values of RateSmoother: the published estimate (Saave), limited by the lower bounds of clipped
-/// readings, and smoothed. The caller must have checked the samples.
+/// Computes initial rates for RateSmoother: the estimate of the publication (Saave), limited by clipped readings, and
+/// smoothed. The caller must have validated the samples.
 std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
                                       const RateModel& derived, double gap_max_s);
 

@@ -46,15 +46,15 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// Standard deviation [rad/s] that an impact within the window adds to the saturation deficit of a partly clipped
-// reading.
+// kSubsampleInContact is the standard deviation [rad/s] that an impact adds to the saturation deficit of a partly
+// clipped reading.
 constexpr double kSubsampleInContact = 0.25;
 
-// Indices of calibration constants. Flight depends on lever arm and accelerometer bias, and Euler's equation on the
-// inertia.
+// kLever, kAccelBias and kInertia are indices of calibration constants. The flight model depends on lever arm and
+// accelerometer bias; Euler's equation depends on the inertia.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
-// Returns the contribution of the uncertain calibration to the covariance of the flight residual.
+// Returns the covariance of the flight residual that the uncertain calibration causes.
 Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
   const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
                         B = f.jacobian_calibration.middleCols<3>(kAccelBias);
@@ -74,15 +74,15 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Returns the squared residual normalised by its covariance. The covariance contains sensor noise and the uncertain
-// calibration: rate_smoother.md (R16).
+// Returns the squared residual, normalised by its covariance. The covariance contains the sensor noise and the
+// uncertainty of the calibration: rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
-// Mahalanobis distance of one part of the calibration, divided by the square root of its number of constants:
+// Returns the Mahalanobis distance of one group of calibration constants, divided by the root of their number:
 // rate_smoother.md (R32).
 template <int kFirst, int kCount>
 double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
@@ -91,8 +91,8 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Adds the information of a factor about the unknowns of the sample to the normal equations. Returns A' * information,
-// with the derivative A of the residual by the unknowns of the sample.
+// Adds the information of a residual about the rate and acceleration of a sample to the normal equations. Returns A' *
+// information; A is the derivative of the residual with respect to the sample's unknowns.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.jacobian_knot;
@@ -103,8 +103,8 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
   return At;
 }
 
-// Adds the information of a factor about calibration constants to the normal equations. The constants are kCount
-// constants, starting with kFirst.
+// Adds the information of a residual about the calibration constants to the normal equations. The residual depends on
+// kCount constants, starting with index kFirst.
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
@@ -133,7 +133,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Reduces the information of a residual by an additional covariance of the residual: rate_stream.md (R92).
+// Reduces the information of a residual because of an additional covariance of the residual: rate_stream.md (R92).
 Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -171,7 +171,7 @@ void RateModel::compute_flight_weight(const RateObservation& observation, const 
   // Geman-McClure weight: the gradient of an outlier decreases with the cube of the residual, rate_smoother.md (R18)
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  // contact force, as a fraction of the flight residual (model minus reading): rate_smoother.md (R19)
+  // contact force, which is a fraction of the flight residual (model minus reading): rate_smoother.md (R19)
   estimate.contact_force_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
@@ -180,13 +180,15 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
                     params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
-// Returns the accelerometer variance for sums over samples. Errors that last longer than a sample do not average out.
+// Returns the variance of the accelerometer for use in sums over samples. Errors that last longer than a sample do not
+// average out.
 double RateModel::accel_variance_of_sum(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// Returns the squared change between two samples, normalised by its covariance in flight: rate_smoother.md (R17), (R4).
+// Returns the squared change of the motion between two samples, normalised by its covariance in flight:
+// rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -197,7 +199,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // change of the rate by contact between reading and sample: rate_smoother.md (R7)
+    // contact changes the rate between the time of the reading and the time of the sample: rate_smoother.md (R7)
     const double change =
         params_.expert.contact.gain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost =
@@ -210,8 +212,8 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the prior of the contact force has the current force as standard deviation: rate_smoother.md (R20). A
-// small force is then a more probable explanation of an unmeasured rate than a large force.
+// In contact, the prior of the contact force has the estimated force as its standard deviation: rate_smoother.md (R20).
+// The prior prefers small contact forces over large forces as explanation of an unmeasured rate.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_of_sum(observation);
@@ -285,7 +287,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
-// A force through one point of the body has no torque about the direction of the force: rate_smoother.md (R21).
+// A force through one point of the body exerts no torque about its own direction: rate_smoother.md (R21).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
   const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
@@ -299,12 +301,12 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
+  // During model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
   // possible change of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
   const double change =
       params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // inverse of the scaled motion covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
+  // inverse of the scaled process noise covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
@@ -312,7 +314,7 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
     const double e1 = (from.knot.acceleration_rad_s2[j] - to.knot.acceleration_rad_s2[j]) * h;
     const double g0 = a * e0 + b * e1, g1 = b * e0 + c * e1;
     const int i = 3 + j;
-    // transition matrix F = [1, ratio; 0, 1]
+    // state transition matrix F = [1, ratio; 0, 1]
     block.diagonal(j, j) += a;
     block.diagonal(j, i) += ratio * a + b;
     block.diagonal(i, j) += ratio * a + b;
@@ -345,7 +347,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
-// Converts the scaled state of rate_smoother.md (R1) to physical units, as the inverse of scaled().
+// Converts the scaled motion state of rate_smoother.md (R1) to physical units, as the inverse of scaled().
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;
@@ -361,7 +363,7 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.unusable_gyro;
-  // a reading that may be saturated counts as a bound only, neither as clipped nor as measured
+  // a reading that may be saturated counts as a lower bound, neither as clipped nor as measured
   if (clipped == 0) return o.possibly_saturated_axes() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
   double largest = 0.0;

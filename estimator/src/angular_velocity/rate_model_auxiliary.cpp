@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel for auxiliary IMUs.
+// rate_model_auxiliary.cpp contains the part of RateModel for auxiliary IMUs.
 #include <Eigen/LU>
 #include <cmath>
 
@@ -19,7 +19,7 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
 }
 
 // Returns whether an axis of an auxiliary IMU depends only on unclipped components of the primary IMU's specific force.
-// The saturation deficit of element i acts along column i of the inverse of the sensing directions.
+// A saturation deficit of element i acts along column i of the inverse of the sensing directions.
 bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kSlight = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -37,8 +37,8 @@ Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const SensingDirections& el
   return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation of an unsaturated element's reading that is due to the element's uncertain sensing
-// direction. `most` is the maximum saturation deficit of the other elements.
+// Returns the standard deviation of an unsaturated reading that is due to the uncertain direction of the sensing
+// element. `most` is the maximum saturation deficit of the other sensing elements.
 double unknown_row(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }
@@ -51,7 +51,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];
     const AuxiliaryReading& reading = observation.auxiliary_imus[i];
     const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
-    // the lever arm starts at the primary IMU, not at the centre of mass: rate_smoother.md (R15)
+    // the lever arm of an auxiliary IMU starts at the primary IMU, not at the centre of mass: rate_smoother.md (R15)
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;

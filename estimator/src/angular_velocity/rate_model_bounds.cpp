@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel for the lower bounds of the rate from clipped readings.
+// rate_model_bounds.cpp contains the part of RateModel that uses clipped readings as lower bounds of the rate.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 // initial precision of the lower bound that a clipped reading provides, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
-// Search for flight between two impacts: number of Newton steps and longest step [rad/s]. `kGentleShare` is the maximum
-// remaining force, as a fraction of the reading.
+// The search for flight between two impacts has these limits: number of Newton steps and longest step [rad/s].
+// `kGentleShare` is the maximum force that the flight model leaves unexplained, as a fraction of the reading.
 constexpr int kSeekIterations = 6;
 constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
 
@@ -33,7 +33,7 @@ void RateModel::search_flight(const RateObservation& observation, const RigConst
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // the saturation deficit of one sensing element changes the readings of all axes, by a column of M^-1: rails.md (R51)
+  // the saturation deficit of one sensing element changes the readings of all axes by a column of M^-1: rails.md (R51)
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d hides = rows.inverse();
@@ -93,8 +93,8 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.jacobian_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // The sign of the residual makes each bound a lower bound: rate_smoother.md (R22). The variance of the residual
-    // follows from the covariance of the sample: rate_smoother.md (R35).
+    // Multiplication by the sign of the saturated reading turns each bound into a lower bound: rate_smoother.md (R22).
+    // The variance of the residual follows from the covariance of the sample's rate: rate_smoother.md (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const GaussianSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel for samples in which a sensing element of gyro or accelerometer clips. The readings of clipped
-// samples are processed element by element.
+// rate_model_elements.cpp contains the part of RateModel for samples with a clipped sensing element of gyro or
+// accelerometer. RateModel processes the readings of clipped samples element by element.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// Adds one component m_j' (rate - age acceleration + bias - reading), with the given information and gradient. The unit
-// of `age` is the time scale of the acceleration. With `rig_spread`, the component does not update the sensing
-// direction m_j, and has a correspondingly smaller weight: rate_smoother.md (R8), rate_stream.md (R92).
+// Adds the residual of one sensing element, m_j' (rate - age acceleration + bias - reading), with its information and
+// gradient. `age` is in units of the time scale of the acceleration. With `rig_spread`, the residual has a smaller
+// weight and leaves the sensing direction m_j unchanged: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
@@ -88,8 +88,8 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // The residual is model minus reading. The true force component exceeds its saturated reading in magnitude, with
-    // equal sign: rate_smoother.md (R9).
+    // The residual of the specific force is model minus reading. The true force component has the sign of the saturated
+    // reading and a larger magnitude: rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

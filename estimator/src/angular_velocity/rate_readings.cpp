@@ -41,8 +41,7 @@ void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, Ra
   health.force_unit_suspect = force > 0.5 && force < 2.0;
 }
 
-// Marks axes that were saturated for a part of their window. Also marks axes that may be at an unknown saturation
-// level.
+// Marks axes that were saturated for a part of the averaging window, or that may be at an unknown saturation level.
 void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const ClippingFinder& finder,
                            const SaturationLevels& rails, const RailPlanes& planes, double noise_rad_s,
                            std::span<const ImuSample> samples, std::span<RateObservation> observations) {

@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// RateReadings is a recording as input of RateModel, with the prior calibration that includes information from
-/// saturation planes.
+/// RateReadings is a recording, classified as input of RateModel, with a prior calibration updated by the saturation
+/// planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
   RateModelParams known;
@@ -22,8 +22,8 @@ struct RateReadings {
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Classifies at least two samples: clipped elements, partly saturated axes, suspect axes, rest, and repeated readings.
-/// Cost: O(N). The function sets saturation levels, units and repetitions in `health`.
+/// Classifies the samples (at least two): clipped elements, partly saturated axes, suspect axes, rest and repeated
+/// readings. Cost: O(N). The function stores saturation levels, units and repetitions in `health`.
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

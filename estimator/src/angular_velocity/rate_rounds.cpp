@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-// Shifts the accelerometer's readings by `shift` samples. At the ends of the recording, the last available reading
-// repeats.
+// Shifts the accelerometer's readings by `shift` samples to later or earlier times. At the ends of the recording, the
+// last available reading repeats.
 void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                  std::span<const double> accel_age_s, std::span<RateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -26,15 +26,16 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// Returns the standard deviations of the data sheet, without the larger standard deviations of an uncalibrated device.
+// Returns the sensor errors' standard deviations from the data sheet, without the larger values of an uncalibrated
+// device.
 SensorErrorPriors as_stated(SensorErrorPriors sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
   return sizes;
 }
 
-// Returns whether a device with the stated errors `given` may have the errors `found`. Errors beyond kDeviations come
-// from the flight model, not from the device.
+// Returns whether a device with the stated sensor errors `given` may have the errors `found`. Errors beyond kDeviations
+// standard deviations come from the flight model, not from the device.
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorPriors& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
@@ -50,7 +51,7 @@ bool is_conclusive(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether estimated and corrected sensor errors differ enough to require another optimisation.
+// Returns whether the estimated and the corrected sensor errors differ enough to require another optimisation.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -59,11 +60,11 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// One device in a thousand exceeds this Mahalanobis distance between three calibration constants and their prior.
+// kMahalanobisOfDevice is the Mahalanobis distance of three calibration constants that one device in a thousand
+// exceeds.
 constexpr double kMahalanobisOfDevice = 2.33;
 
-// Fixes the calibration at its prior, except for the sensing directions of the gyro. Contact does not affect the
-// sensing directions.
+// Fixes the calibration at its prior, except for the sensing directions of the gyro, which contact does not affect.
 RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -88,8 +89,7 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// Runs the optimisation. If the result mistakes contact for flight with a wrong calibration, repeats the optimisation
-// with a fixed calibration.
+// Runs the optimisation, and repeats it with a fixed calibration if the result mistakes contact for flight.
 Status descend_at_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                         std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
   fit.model = RateModel(known, period_s);
@@ -111,20 +111,19 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // A fixed calibration is still uncertain. The covariance of the rates therefore includes the calibration's
-  // uncertainty.
+  // A fixed calibration keeps its uncertainty, which the covariance of the rates therefore includes.
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};
 }
 
-// If the guessed delay differs from the assumed delay by more than kGuessFar standard deviations, the guess becomes the
-// initial value.
+// The estimated delay becomes the initial value if it differs from the assumed delay by more than kGuessFar standard
+// deviations.
 constexpr double kGuessFar = 2.0;
 
 // Adds the delay estimated from impacts to the information about the sensor errors, rate_smoother.md (R38). The flight
-// model does not use impacts.
+// model uses no impacts, so both sources of information are independent.
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -132,13 +131,14 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.linearisation_point.accel_delay_s);
 }
 
-// If the odds of a device that matches its data sheet are below kPlainOdds, the readings clearly contradict the data
-// sheet. Above kPlainOdds, the mixture of a matching and an uncalibrated device accounts for the uncertainty.
+// The readings clearly contradict the data sheet if the odds of a device that matches the sheet are below kPlainOdds.
+// At higher odds, a mixture of a calibrated and an uncalibrated device represents the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
-// contradicts its data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
-// from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
+// contradicts its data sheet, the stated sampling is also unreliable, and vice versa. The function combines the
+// evidence from scale and sampling by naive Bayes. `triads_asynchronous` states that gyro and accelerometer are known
+// to be asynchronous.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -155,15 +155,15 @@ SensorErrorPriors unstated(SensorErrorPriors sizes) {
   return sizes;
 }
 
-// Expresses the sensor errors estimated in an earlier run relative to the errors that the caller states now.
+// Expresses the sensor errors of an earlier run relative to the errors that the caller states for this run.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
                                                const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
   return calibration_evidence(learnt, sizes);
 }
 
-// Fits sensor errors relative to the errors that the caller states. `learnt`, the estimate of an earlier run, is also
-// relative to the stated errors.
+// Estimates sensor errors relative to the errors that the caller states. `learnt` is the estimate of an earlier run,
+// also relative to the stated errors.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -186,8 +186,8 @@ struct Rounds {
 
   const SensorErrorPriors& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// Returns whether the body has impacts and flight. A body with impacts and flight is not hand-held, so sensor errors
-  /// may change the calibration of the rig.
+  /// Returns whether the body has impacts and flight. A body with impacts and flight is not hand-held, so RateSmoother
+  /// may let sensor errors change the calibration of the rig.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -206,8 +206,8 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
   return out;
 }
 
-// Initial values of the optimisations. The first start uses the assumed sensor errors. If the assumed delay requires a
-// fixed calibration, the second start uses another delay.
+// Start contains the initial values of one optimisation. The first optimisation uses the assumed sensor errors. If the
+// assumed delay requires a fixed calibration, a second optimisation starts with another delay.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -233,12 +233,12 @@ Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::
   return descend_at_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
-// Computes the information about the sensor errors, relative to the corrected errors: fit.moved.
+// Computes the information about the sensor errors, relative to the errors that are already corrected (fit.moved).
 Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // If the optimisation has not converged, the remaining gradient must not count as information about sensor errors.
+    // The remaining gradient of an unconverged optimisation must not count as information about sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -257,7 +257,7 @@ struct RoundsState {
   bool is_plausible = true;  ///< a device may have these errors
 };
 
-// Repeats the optimisation until the estimated sensor errors equal the corrected sensor errors.
+// Repeats the optimisation until the estimated sensor errors equal the corrected errors.
 Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
                       RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
@@ -296,9 +296,9 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   }
 }
 
-// If a device clearly contradicts its data sheet, enlarges the covariance of the sensor errors to the covariance of an
-// uncalibrated device. The correction keeps only sensor errors that the readings clearly determine. Returns the
-// standard deviations of the sensor errors that are in use.
+// Uses the larger covariance of an uncalibrated device if the device clearly contradicts its data sheet. The correction
+// then keeps only those sensor errors that the readings clearly determine. Returns the standard deviations of the
+// sensor errors that are in use.
 SensorErrorPriors leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -314,7 +314,7 @@ SensorErrorPriors leave_open(const Rounds& rounds, const RateFit& fit, RoundsSta
   return sizes;
 }
 
-// Changes the fit to first order, as if the readings were corrected by an additional `step` of the sensor errors.
+// Updates the fit to first order for an additional correction `step` of the sensor errors.
 void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
@@ -337,8 +337,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const SensorErrorPriors sizes = leave_open(rounds, fit, rounds_state, health);
   const SensorErrorPriors stated = as_stated(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
-    // Without flight, the run contains no information about the device beyond the prior. All sensor errors then remain
-    // uncertain.
+    // A run without flight contains no information about the device beyond the prior. All sensor errors then keep their
+    // prior uncertainty.
     rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     rounds_state.found.known.errors = rounds_state.errors;
   } else {
@@ -347,7 +347,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // Sensor errors belong to the device. The next run is affected by the same sensor errors, and includes their
+  // Sensor errors belong to the device, so the same errors affect the next run. The next run must include their
   // uncertainty again.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance +=

@@ -27,7 +27,8 @@ Status check_auxiliary_imus(const RateModelParams& params,
   return {};
 }
 
-/// Returns the parameters with a large zero offset of the gyro as nominal bias, unless a bias is stated.
+/// Returns the parameters with the gyro's zero offset as nominal bias if the offset is large and the user states no
+/// bias.
 RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const ImuSample> samples) {
   RateSmootherParams out = params;
   Eigen::Vector3d& nominal = out.model.nominal.gyro_bias_rad_s;

@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Maximum common delay of gyro and accelerometer, in standard deviations.
+// kSharedReach is the maximum delay that gyro and accelerometer have in common, in standard deviations.
 constexpr double kSharedReach = 2.0;
 
-// Interpolates the readings of a slow gyro at the time of each sample, if the gyro measures all axes.
+// Interpolates the readings of a slow gyro at the time of each sample if the gyro measures all axes.
 std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSample> samples,
                                                           const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
@@ -28,8 +28,8 @@ std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSam
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
-// Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
-// rate_smoother.md (R44).
+// Returns the covariance of a rate that uncertain sensor errors cause, limited to the largest rate: rate_smoother.md
+// (R44).
 Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
@@ -38,8 +38,9 @@ Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErro
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// Returns how fast the rate may change between two samples. If the readings are unsaturated, the result is the change
-// of the estimated rate per time. If a reading may be saturated, the result follows from the contact force.
+// Returns how fast the angular rate may change between two samples. For unsaturated readings, the function returns the
+// change of the estimated rate per time. For readings that may be saturated, the function computes the change from the
+// contact force.
 double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                      std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -51,9 +52,9 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Returns the covariance of a rate that is due to an unknown delay of gyro and accelerometer together. The standard
-// deviation is the largest change of the rate within the delay. An impact in the next sample's window may belong to the
-// current sample.
+// Returns the covariance of a rate that an unknown common delay of gyro and accelerometer causes. The standard
+// deviation is the largest change of the rate within the delay. With a delay, an impact in the next sample's window may
+// belong to the current sample.
 Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
@@ -69,8 +70,9 @@ Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& param
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// Returns the rate at some time after a sample, with its covariance. The rate is a cubic between the two surrounding
-// knots. The covariance is at most the mean of the covariances of both knots.
+// Returns the angular rate at a given time after a sample, with its covariance. The function interpolates the rate by a
+// cubic between the two surrounding samples. The covariance of an interpolated rate is at most the mean covariance of
+// both samples.
 RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                       std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;
@@ -137,7 +139,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     RateState& state = states[k];
     state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
     // In flight, the motion is smoother than the gyro's readings. In other motion, interpolated readings are more
-    // accurate than the model of white jerk between samples.
+    // accurate than the white-jerk model between samples.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

@@ -22,7 +22,7 @@ constexpr double kMoved_s = 3e-4;
 // replaces the current delay if their difference exceeds `kGuessFar` standard deviations.
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
 // `kIntervalsMin` is the minimum number of intervals. `kGainMin` is the minimum difference between the correlations at
-// the estimated and at the stated delay. The first impacts of a tumble correlate by chance.
+// the estimated and at the stated delay. The first impacts of a tumble correlate by chance with the rate changes.
 constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
 // Maximum delay, in standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
@@ -36,8 +36,8 @@ bool repeats_readings(const RateStream::State& state) {
          state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
-// Integral of the norm of the specific force around a sample of the window. Between readings, the norm is linear.
-// Before the first and after the last reading, the norm is constant.
+// ForceAbout integrates the norm of the specific force around a sample of the window. Between readings, the norm is
+// linear. Before the first and after the last reading, the norm is constant.
 class ForceAbout {
  public:
   ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
@@ -69,8 +69,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
-// Stores the specific force at the time of sample k, or the closest force in the window. Also stores the remaining
-// delay between the force and the sample: rate_stream.md (R105).
+// Stores the specific force at the time of sample k, or the closest force in the window. The function also stores the
+// remaining delay between the force and the sample: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -118,7 +118,7 @@ void RateStream::accumulate_impacts(State& state) const {
   impacts.add((end - begin).norm() / span_s, mean);
 }
 
-// Returns the delay estimated from impacts. The result is empty if the log repeats readings, since each repetition
+// Returns the delay estimated from impacts. The estimate is empty if the log repeats readings, since each repetition
 // would count as a reading.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const ImpactSums& impacts = state.device.front().delay.impacts;

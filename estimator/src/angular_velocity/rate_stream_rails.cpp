@@ -36,8 +36,8 @@ bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
-// Returns the first sample of the reading that precedes the reading of sample k. The result is empty if that first
-// sample is not in the window.
+// Returns the first sample of the reading that precedes the reading of sample k. Returns nothing if the first sample of
+// the preceding reading is outside the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -56,8 +56,8 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// The samples with the gyro readings before and after a sample's own reading. If there is no such reading in the
-// window, the pointer is null.
+// Beside contains the samples with the gyro readings before and after a sample's reading. The pointer is null if the
+// window contains no earlier or later reading.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
@@ -157,8 +157,8 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               now, after);
 }
 
-// Clears the suspect marks in the window that a larger reading refutes. Also clears marks for which a saturation level
-// is now known.
+// Clears the suspect marks in the window that a larger reading refutes. The function also clears marks for which a
+// saturation level is now known.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;

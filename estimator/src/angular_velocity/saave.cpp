@@ -19,7 +19,7 @@ std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
 }
 
 // Returns the squared rate |w|^2 from the component of the specific force that points from the IMU to the rotation
-// axis: saave.md (S1), (S2). The result is NaN if the IMU is on the axis.
+// axis: saave.md (S1), (S2). The squared rate is NaN if the IMU is on the rotation axis.
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
   const double r = to_axis.norm();

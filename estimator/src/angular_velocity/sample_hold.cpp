@@ -43,7 +43,7 @@ std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, c
   return misses;
 }
 
-// Longest run of adjacent phases, on the circle of phases, for which a period explains the most samples.
+// Phases is the longest run of adjacent phases, on the circle of phases, for which a period explains the most samples.
 struct Phases {
   std::size_t misses = 0;
   double first = 0.0;

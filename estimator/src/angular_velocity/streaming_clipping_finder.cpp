@@ -20,8 +20,8 @@ using Eigen::Vector3d;
 // `kBeside` neighbours of a segment.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
-// `StreamingClippingFinder` always stores the first and the latest readings of a run. The first readings determine the
-// gyro's noise.
+// `StreamingClippingFinder` always stores the first and the latest readings of a run. The first readings of a run
+// determine the gyro's noise.
 constexpr std::size_t kLatest = 48;
 // StreamingClippingFinder searches again when the number of readings near the extremes has grown by the fraction 1 /
 // kMore, and by at least two readings.

@@ -8,11 +8,12 @@ namespace tumble {
 
 namespace {
 
-// Maximum saturated fraction of the window. Above kShareMax, the unsaturated part does not determine the slope.
+// Maximum saturated fraction of the window. If a larger fraction is saturated, the unsaturated part of the window does
+// not determine the slope.
 constexpr double kShareMax = 0.85;
-// The standard deviation of the saturation deficit has two parts. The first part is the fraction `kOfLoss` of the
-// deficit. The second part is the fraction `kOfDepth` of the distance from the saturation level. The distance counts up
-// to `kDepthMax` (1 rad/s).
+// The standard deviation of the saturation deficit has two parts. The first part of the deviation is the fraction
+// `kOfLoss` of the deficit. The second part is the fraction `kOfDepth` of the reading's distance from the saturation
+// level. The distance counts up to `kDepthMax` (1 rad/s).
 constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 
 }  // namespace

@@ -34,7 +34,7 @@ constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
 // Minimum decrease of the robust cost (at most 1 per sample) that is not due to chance.
 constexpr double kGainMin = 0.4;
 
-// Distinct readings of one triad, with their true times.
+// TriadReadings contains the distinct readings of one triad, with their true times.
 struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
@@ -133,8 +133,8 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
   return sum;
 }
 
-// Integral of the norm of the specific force, starting at the first reading. Between readings, the norm is linear.
-// After the last reading, the norm is constant.
+// ForceIntegral integrates the norm of the specific force from the first reading on. Between readings, the norm is
+// linear. After the last reading, the norm is constant.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)

@@ -9,8 +9,8 @@ namespace tumble {
 
 namespace {
 
-// Returns the ratio phi(z) / Phi(z) of the normal density to the normal distribution. If phi and Phi underflow, returns
-// the asymptotic series.
+// Returns phi(z) / Phi(z), the ratio of the normal density to the normal distribution function. If phi and Phi
+// underflow, the function returns an asymptotic series.
 double density_over_share(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;

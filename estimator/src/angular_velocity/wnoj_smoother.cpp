@@ -11,21 +11,21 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// Eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance and upper triangular R, saave.md (S6).
-// The state x is (rate, acceleration * time_scale). The time scale gives rate and scaled acceleration similar
-// magnitudes at any sample rate.
+// EliminatedKnot is the equation of one axis of sample k after elimination: R x_k + S x_{k+1} = z, saave.md (S6). The
+// noise has unit variance, R is upper triangular, and the state x is (rate, acceleration * time_scale). The time scale
+// gives rate and scaled acceleration similar magnitudes at any sample rate.
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
 
-// Information about the current knot from all earlier knots: R x = z with upper triangular R.
+// Carried contains the information of all earlier samples about the current sample: R x = z with upper triangular R.
 struct Carried {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
 };
 
-// columns 0 and 1: knot k; columns 2 and 3: knot k+1; column 4: right-hand side
+// columns 0 and 1: sample k; columns 2 and 3: sample k+1; column 4: right-hand side
 using Stack = Eigen::Matrix<double, 5, 5>;
 
 // Triangularises the first four columns in place by Householder reflections.
@@ -47,7 +47,8 @@ void triangularise(Stack& a) {
 
 EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd,
                          double time_scale_s) {
-  // The square root of Q^-1 for the scaled state follows from Q = L L' with lower triangular L. The vector L^-1 (F x_k
+  // The square root of Q^-1 for the scaled motion state follows from Q = L L' with lower triangular L. The vector L^-1
+  // (F x_k
   // - x_{k+1}) is then white noise: saave.md (S5).
   const double ratio = dt_s / time_scale_s;
   const double unit = std::sqrt(psd * dt_s) * dt_s;
@@ -119,8 +120,8 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   }
   measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
-  // The solution is x_k = R^-1 (z - S x_{k+1}), with covariance R^-1 (1 + S P S') R^-T: saave.md (S7). The covariance
-  // is a sum of positive terms, without cancellation.
+  // The solution of the back-substitution is x_k = R^-1 (z - S x_{k+1}), with covariance R^-1 (1 + S P S') R^-T:
+  // saave.md (S7). The covariance is a sum of positive terms, so it suffers no cancellation.
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
   Eigen::Vector2d x = R_inv * carried.z;
   Eigen::Matrix2d P = R_inv * R_inv.transpose();

@@ -11,20 +11,22 @@
 
 namespace tumble {
 
-/// Smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of samples.
+/// WnojSmoother smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of
+/// samples.
 ///
-/// The state of each sample (knot) is angle, rate and angular acceleration. The prior between knots is that of Tang,
-/// Yoon and Barfoot (RA-L 2019). It has a transition matrix Phi and noise Q of order three, with density `jerk_psd`.
-/// Each knot measures the rate with a separate variance per axis. The angle is not measured, and the angle of the first
-/// knot is fixed. Eliminating the angle from the last knot backwards is therefore exact. The remaining prior of (rate,
-/// acceleration) has the noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. WnojSmoother computes only rate and angular
-/// acceleration. Orthogonal (square-root information) elimination and back-substitution give mean and variance of the
-/// rate at every knot. The variances of different knots may differ by many orders of magnitude.
+/// The state at each sample (knot) consists of angle, rate and angular acceleration. The motion prior between samples
+/// is that of Tang, Yoon and Barfoot (RA-L 2019). The prior has a transition matrix Phi and process noise Q of order
+/// three, with density `jerk_psd`. Each sample measures the rate, with a separate variance per axis. The angle is not
+/// measured, and the angle of the first sample is fixed. The angle can therefore be eliminated exactly, from the last
+/// sample backwards. After the elimination, the prior of (rate, acceleration) has the noise Q = q [dt^3/3, dt^2/2;
+/// dt^2/2, dt]. WnojSmoother computes only rate and angular acceleration. Orthogonal (square-root information)
+/// elimination and back-substitution give mean and variance of the rate at every sample. Square-root elimination stays
+/// accurate even if the variances of the samples differ by many orders of magnitude.
 ///
-/// WnojSmoother does not model the coupling of the three axes. The commutators of SO(3) would add about dt^2 |w x
-/// alpha| / 4 to the angular acceleration. The published code uses +gyro although its convention requires -gyro. The
-/// sign of the gyro acts only through the commutators, because negating angle, rate and acceleration together does not
-/// change the linear problem. WnojSmoother therefore has no parameter for the sign of the gyro.
+/// WnojSmoother smooths the three axes independently. The neglected commutators of SO(3) would change the angular
+/// acceleration by about dt^2 |w x alpha| / 4. The published code uses +gyro, although its sign convention requires
+/// -gyro. The sign of the gyro matters only in the commutators, because the linear problem is unchanged if angle, rate
+/// and acceleration change sign. WnojSmoother therefore needs no parameter for the sign of the gyro.
 class WnojSmoother {
  public:
   struct Params {
@@ -48,12 +50,12 @@ class WnojSmoother {
     Eigen::Vector3d variance_rad2_s2;  ///< posterior variance of the rate, per axis
   };
 
-  /// Throws InvalidParams if the density is out of bounds.
+  /// Throws InvalidParams if the jerk density is out of bounds.
   explicit WnojSmoother(const Params& params);
 
-  /// Computes one result per measurement. Cost: O(N) in time and memory. Returns `empty`, `time_order` (time stamps
-  /// must increase strictly), `non_finite`, or `out_of_range` (variances must be in [1e-18, 1e18]). On error `out` is
-  /// unchanged. A single measurement is returned unchanged, with acceleration zero.
+  /// Computes one smoothed rate and acceleration per measurement. Cost: O(N) in time and memory. Returns `empty`,
+  /// `time_order` (time stamps must increase strictly), `non_finite`, or `out_of_range` (variances must be in [1e-18,
+  /// 1e18]). On error, `out` is unchanged. A single measurement is returned unchanged, with zero angular acceleration.
   Status smooth(std::span<const Measurement> measurements, std::vector<Smoothed>& out) const;
 
  private:

@@ -25,8 +25,8 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
 }
 
-/// Averages the terms of the force difference between IMUs: imu_merge.md (I10), (I11). The terms are the force
-/// difference and its derivatives by the accelerometer errors.
+/// Averages the force difference between IMUs and its derivatives with respect to the accelerometer errors:
+/// imu_merge.md (I10), (I11).
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
@@ -58,7 +58,7 @@ void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen
   if (state.span_s >= kSpan_s - 0.5 * dt_s) update(state);
 }
 
-/// Updates the errors of the accelerometers by the averaged force differences: imu_merge.md (I11).
+/// Updates the estimated errors of the accelerometers by the averaged force differences: imu_merge.md (I11).
 void ForceErrors::update(State& state) const {
   const double share = 1.0 / params_.count;
   const double samples = state.samples;
@@ -98,7 +98,7 @@ void ForceErrors::update(State& state) const {
   state.span_s = 0.0;
 }
 
-/// Returns the specific force of an IMU without the estimated errors: imu_merge.md (I13).
+/// Returns the specific force of an IMU, corrected by the estimated errors: imu_merge.md (I13).
 Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {
   if (!state.started) return force;
   const auto own = state.x.segment<kPerUnit>(kPerUnit * k);

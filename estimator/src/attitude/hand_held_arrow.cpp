@@ -3,7 +3,7 @@
 
 namespace tumble {
 
-// This explicit instantiation serves all files of the smoother for hand-held motion.
+// All files of the smoother for hand-held motion use one explicit instantiation of ArrowSystem.
 template struct ArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;
 
 }  // namespace tumble

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimation of the angular jerk from a gyro's readings.
+// hand_held_jerk.cpp estimates the density of the angular jerk from a gyro's readings.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// `kSecondDifference` is the variance of a second difference of readings, as a multiple of q P^3. The jerk density is
-// q, and the period is P. `kJerkReach` is the time span of the second difference, in periods.
+// `kSecondDifference` is the variance of a second difference of readings, as a multiple of q P^3, with jerk density q
+// and period P. `kJerkReach` is the time span of a second difference, in periods.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
@@ -28,8 +28,9 @@ struct Reach {
         last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
 };
 
-// Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). The second
-// difference of means over contiguous windows has the variance 11/20 q P^3, plus six times the noise variance.
+// Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). White jerk
+// of density q gives the second difference of means over adjacent windows P the variance 11/20 q P^3, plus six times
+// the noise variance.
 void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
@@ -55,7 +56,7 @@ void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double no
 }
 
 // Computes the slope between two consecutive unsaturated readings of sensing element `axis`, and the time of the slope.
-// Returns false if the readings are not consecutive.
+// Returns false if the two readings are not consecutive.
 bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
               double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
@@ -67,9 +68,9 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
   return true;
 }
 
-// Estimates the jerk across a clipped segment of a sensing element: carried.md (C25). White jerk of density q changes
-// the angular acceleration by a mean square of q T within the time T. If a motion reverses beyond the saturation level,
-// its jerk is larger than the jerk of the adjacent unsaturated readings.
+// Estimates the jerk of a sensing element across a clipped segment: carried.md (C25). White jerk of density q changes
+// the angular acceleration by a mean square of q T within the time T. A motion that reverses beyond the saturation
+// level has a larger jerk than the adjacent unsaturated readings.
 void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                 std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

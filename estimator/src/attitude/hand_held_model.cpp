@@ -21,8 +21,8 @@ using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;  // derivative by the c
 using ForceState = Eigen::Matrix<double, 3, 12>;          // derivative by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
-// Returns the hazard phi(u)/Phi(u), which is the slope of log Phi(u): carried.md (C14). In the tail, phi and Phi
-// underflow, so the function uses the asymptotic series.
+// Returns the hazard phi(u)/Phi(u), the slope of log Phi(u): carried.md (C14). The function uses an asymptotic series
+// in the tail, because phi and Phi underflow there.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -44,8 +44,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// `value` contains the derivatives of one sensing element's rate by the errors of the node's state. `slope` contains
-// the derivatives of the element's angular acceleration.
+// `value` contains the derivatives of one sensing element's rate with respect to the errors of the node's state.
+// `slope` contains the derivatives of the sensing element's angular acceleration.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -64,9 +64,9 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
   return rows;
 }
 
-// Returns how much the estimated rate differs from the readings of clipped and unusable sensing elements. For a clipped
-// element, the difference is the saturation deficit. The result is the sum of the differences over all elements except
-// for element `except`.
+// Returns the difference between the estimated rate and the readings of clipped and unusable sensing elements. For a
+// clipped sensing element, the difference is the saturation deficit. The function sums the differences over all sensing
+// elements except `except`.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -80,7 +80,7 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// Replaces n readings at times t by two independent readings: the value at the mean time, and the slope, carried.md
+// Replaces n readings at times t by two independent readings, the value at the mean time and the slope: carried.md
 // (C13).
 double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                 System::Corner& corner) {
@@ -100,7 +100,7 @@ double add_free(const ElementSums& e, const GyroRows& rows, double information, 
   return cost;
 }
 
-// Adds the lower bound from the readings of a saturated sensing element: carried.md (C14).
+// Adds the lower bound of the rate that a saturated sensing element provides: carried.md (C14).
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_time_s * rows.slope;
@@ -110,16 +110,16 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds the information `w` that three states are zero. `i` is the index of the first state, and `value` contains the
-// current states.
+// Adds a measurement with information `w` that three states are zero. `i` is the index of the first state, and `value`
+// contains the current states.
 double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// Adds information about `N` states of two consecutive nodes. The information is equal for each axis, and `first` is
-// the index of the first state.
+// Adds information about `N` states of two consecutive nodes, with equal information for each axis. `first` is the
+// index of the first of the `N` states.
 template <int N>
 double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                  const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -140,7 +140,7 @@ double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double 
 
 }  // namespace
 
-// Applies a step of the solver to the states of the node: carried.md (C1).
+// Adds a step of the solver to the motion state of the node: carried.md (C1).
 void Node::move(const System::StateVector& step) {
   q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
   w_WI_I_rad_s += step.segment<3>(kRate);
@@ -166,7 +166,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // All readings of a node have one common tilt error. The tilt error therefore does not average out.
+      // All readings of a node share one tilt error of the saturation plane. The tilt error therefore does not average
+      // out over the readings.
       const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost +=
           add_free(e, element,
@@ -237,7 +238,7 @@ double add_rest(const ReadingNoise& noise, const Node& node, System::Block& bloc
          add_zero(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHandAcceleration, block);
 }
 
-// Returns the rotation vector between two nodes: carried.md (C3).
+// Returns the rotation between two nodes as a rotation vector: carried.md (C3).
 Vector3d turned(const Node& from, const Node& to, double h) {
   const Vector3d& w0 = from.w_WI_I_rad_s;
   const Vector3d& w1 = to.w_WI_I_rad_s;
@@ -248,18 +249,17 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // Q is the covariance of rate and angular acceleration after a step of white jerk: carried.md (C2). The covariance Q
-  // is conditional on rate and angular acceleration before the step.
+  // Q is the covariance that white jerk adds to rate and angular acceleration during a step: carried.md (C2).
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // Given rate and angular acceleration at both ends of a step, the rotation angle has the variance of a quintic's
-  // remainder: carried.md (C4).
+  // Given rate and angular acceleration at both ends of a step, the rotation angle has the remainder variance of a
+  // quintic: carried.md (C4).
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
-  // white noise drives the acceleration of the point in the hand: carried.md (C6), (C7), (C8)
+  // white noise drives the acceleration of the hand-held point of the body: carried.md (C6), (C7), (C8)
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;
@@ -272,7 +272,7 @@ Motion::Motion(const Params& params) : params_(params) {
   kinematics_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
 
-// Adds the residual of the attitude between two nodes: carried.md (C4), (C5).
+// Adds the attitude residual between two consecutive nodes: carried.md (C4), (C5).
 double Motion::add_attitude(const Node& from, const Node& to, double jerk, System::Block& block,
                             System::Block& next) const {
   const double h = params_.step_s;
@@ -299,7 +299,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   return w * error.squaredNorm();
 }
 
-// Adds the motion between two nodes: carried.md (C2), (C4), (C6), (C7), (C8).
+// Adds the motion model between two consecutive nodes: carried.md (C2), (C4), (C6), (C7), (C8).
 double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                         double jerk) const {
   double cost = add_attitude(from, to, jerk, block, next);
@@ -313,7 +313,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   return cost;
 }
 
-// Adds the weak priors of velocity and position: carried.md (C9).
+// Adds the weak priors that limit velocity and position: carried.md (C9).
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double position = params_.position_m * params_.position_m * params_.position_tau_s;

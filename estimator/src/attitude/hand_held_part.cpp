@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solves a part of the nodes of a hand-held motion separately. All other nodes provide a prior for the part.
+// hand_held_part.cpp solves a part of the nodes of a hand-held motion separately. All other nodes provide a prior for
+// the ends of the part.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -56,7 +57,7 @@ Problem::Problem(const Problem& whole, const Part& part)
 // (C17).
 bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
-  // from the left, all earlier nodes provide a prior for a node
+  // the forward pass condenses all earlier nodes to a prior for a node
   System::Block here, next;
   motion_.add_initial_prior(nodes_[0], here);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -70,7 +71,7 @@ bool Problem::condense_rest(std::span<Part> parts) const {
     here = next;
     here.border.setZero();
   }
-  // from the right, all later nodes provide a prior for a node
+  // the backward pass condenses all later nodes to a prior for a node
   here = {};
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     for (Part& part : parts)

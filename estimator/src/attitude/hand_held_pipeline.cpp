@@ -7,8 +7,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns the gyro's sensing directions. A sensing element without a known saturation plane gets the direction of its
-/// axis.
+/// Returns the sensing directions of the gyro. An element without a known saturation plane gets the direction of its
+/// output axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {
@@ -48,8 +48,8 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   return status;
 }
 
-/// Classifies the newest sample of the window with its neighbour `next`. If the saturation levels have changed,
-/// classifies all samples of the window.
+/// Classifies the newest sample of the window, given the sample `next` after it. If the saturation levels have changed,
+/// the function classifies all samples of the window again.
 void HandHeldPipeline::classify_window(const ImuSample& next, State& state) const {
   const std::vector<HandHeldStream::Reading>& window = state.stream.readings;
   RailDetector::State& axis_aligned_rails = state.rails.known.axis_aligned_rails;

@@ -50,9 +50,9 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// Returns the reading noise for the computation of covariances. A lower bound contains no information about how far the
-// rate is beyond the bound. The mean over a window P differs from the rate at the window's centre. For white jerk of
-// density q, the difference has the variance q P^3/320: carried.md (C26).
+// Returns the reading noise for the covariances. In covariances, a lower bound contains no information about how far
+// the rate exceeds the bound. The mean of the rate over a window P differs from the rate at the window's centre. For
+// white jerk of density q, this difference has the variance q P^3/320: carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -141,7 +141,7 @@ bool Problem::eliminate(System::BorderVector& step) {
 // Makes one Gauss-Newton step: carried.md (C19).
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // the steps overwrite the gradients, because the solver no longer needs the gradients
+  // the steps overwrite the gradients, which the solver no longer needs
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
@@ -160,14 +160,14 @@ bool Problem::step(double& largest) {
   return true;
 }
 
-// Moves the nodes from their current states by a fraction of the last step.
+// Moves the nodes from their current states by a fraction `share` of the last Gauss-Newton step.
 void Problem::go(double share) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
   constants_.move(share * border_step_);
 }
 
-// Adapts the assumed acceleration noise of the hand to the recent acceleration of the hand. The assumed acceleration
-// noise has a lower limit: carried.md (C10).
+// Adapts the process noise of the hand's acceleration to the hand's recent acceleration, with a lower limit: carried.md
+// (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
@@ -190,7 +190,7 @@ void Problem::restore(Answer answer) {
   covariances_ = std::move(answer.covariances);
 }
 
-// Iterates Gauss-Newton steps until the solution converges: carried.md (C19), (C20).
+// Iterates Gauss-Newton steps until convergence: carried.md (C19), (C20).
 Status Problem::solve(HandHeldSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
@@ -210,7 +210,7 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
     if (report.converged && k > kFollowFirst) break;
   }
   if (before && !report.converged) {
-    // checks the cost after the last step
+    // checks the cost after the last Gauss-Newton step
     report.cost = linearise();
     (void)descend_from(*before, report.cost);
   }
@@ -219,8 +219,8 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// If the last step increased the cost, tries shorter steps. If no shorter step decreases the cost, restores the nodes,
-// linearises again, and returns false.
+// If the last Gauss-Newton step increased the cost, the function tries shorter steps. If no shorter step decreases the
+// cost, the function restores the nodes, linearises again, and returns false.
 bool Problem::descend_from(const Iterate& before, double& cost) {
   const auto goes_down = [&] { return cost < before.cost + kRises; };
   for (int k = 0; k < kHalvings && !goes_down(); ++k) {
@@ -260,9 +260,9 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// Compares the hand's mean acceleration over windows with the model: carried.md (C30). The model is a process with
-// standard deviation s and correlation time tau. Its mean over a window T has the variance s^2 2 tau/T (1 - tau/T (1 -
-// exp(-T/tau))).
+// Compares the mean acceleration of the hand over windows with its motion model: carried.md (C30). The model of the
+// hand's acceleration is a random process with standard deviation s and correlation time tau. The mean of the process
+// over a window T has the variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
 double Problem::hand_acceleration_ratio() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,

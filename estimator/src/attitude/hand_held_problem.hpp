@@ -10,20 +10,20 @@
 
 namespace tumble::hand_held {
 
-/// Returns the weights of motion factors; `jerk` multiplies the root density of the jerk.
+/// Returns the weights of the motion model; `jerk` multiplies the root density of the jerk.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
-/// Adds the factors of one node: gyro, force, limits of velocity and position, and rest.
+/// Adds the measurements of one node: gyro, specific force, limits of velocity and position, and rest.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
-/// Adds the zero-mean priors of the constants.
+/// Adds the zero-mean priors of the calibration constants.
 double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner);
-/// Returns the difference of two nodes, in the form that Node::move takes.
+/// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// Message contains the information from all nodes on one side of a node, as a quadratic about the node's current
-/// value.
+/// Message contains the information of all nodes on one side of a node, as a quadratic function about the node's
+/// current state.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -31,8 +31,8 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Part consists of the nodes [first, last] of a problem. A Part includes the information from all other nodes about
-/// the ends of the part, for fixed constants.
+/// Part is the range of nodes [first, last] of a problem. A Part includes the information of all other nodes about the
+/// ends of the range, for fixed constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
@@ -42,15 +42,16 @@ class Problem {
  public:
   Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
           std::vector<Node> nodes);
-  /// Constructs a part of another problem; condense_rest() must have set `part.before` and `part.after`. The constants
-  /// and the density of the held point's acceleration are copied and fixed.
+  /// Constructs the sub-problem of `part`; condense_rest() must have set `part.before` and `part.after`. The
+  /// sub-problem copies and fixes the calibration constants and the noise density of the held point's acceleration.
   Problem(const Problem& whole, const Part& part);
 
-  /// Solves the problem by Gauss-Newton. Returns `diverged` if the normal equations are not positive definite.
+  /// Solves the problem by Gauss-Newton iteration. Returns `diverged` if the normal equations are not positive
+  /// definite.
   Status solve(HandHeldSmoother::Report& report);
   /// Computes the covariances of all nodes at the solution.
   Status covariances(HandHeldSmoother::Report& report);
-  /// Answer is a copy of the solution and its covariances, which restore() restores.
+  /// Answer is a copy of the solution and its covariances, for restore().
   struct Answer {
     std::vector<Node> nodes;
     Constants constants;
@@ -60,14 +61,15 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Computes the information about the ends of each part, with one elimination from either end of the chain. Returns
-  /// false if the normal equations are not positive definite.
+  /// Computes the information of all other nodes about the ends of each part, with one elimination from each end.
+  /// Returns false if the normal equations are not positive definite.
   bool condense_rest(std::span<Part> parts) const;
-  /// Solves a part by Gauss-Newton. Returns the cost at the solution, or infinity without convergence.
+  /// Solves a sub-problem by Gauss-Newton iteration. Returns the cost at the solution, or infinity if the iteration
+  /// does not converge.
   double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
-  /// Returns rate plus bias of a node, which is the expected gyro reading.
+  /// Returns the expected gyro reading of a node: rate plus bias.
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
   double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
@@ -75,10 +77,10 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Replaces the nodes from index `first` on, to start from other initial values.
+  /// Replaces the nodes from index `first` on, in order to start from other initial values.
   void place(std::size_t first, std::span<const Node> nodes);
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
-  /// Returns the covariance of attitude error (sensor axes), rate and angular acceleration.
+  /// Returns the joint covariance of attitude error (sensor axes), rate and angular acceleration.
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:

@@ -45,18 +45,18 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// If at least the fraction kMinClockAgreement of equal readings agrees with a regular clock, equal readings are
-// repetitions.
+// Equal readings are repetitions if at least the fraction kMinClockAgreement of them agrees with a regular clock.
 constexpr double kMinClockAgreement = 0.9;
-// Window length, in node intervals, above which a window may be partly saturated. In recordings of pendulums, 20 ms
-// windows were partly saturated. In recordings of hand-held wands, 10 ms windows were not.
+// Averaging windows longer than kLongWindow node intervals may be partly saturated. In recordings of pendulums,
+// averaging windows of 20 ms were partly saturated. In recordings of hand-held wands, averaging windows of 10 ms were
+// not partly saturated.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-/// Returns the median time step. With fewer than two samples, returns `otherwise_s`.
+/// Returns the median time step, or `otherwise_s` for fewer than two samples.
 double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
@@ -90,7 +90,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.reading_time_sum += z * t;
 }
 
-/// Fills the clipped segment [begin, end) of one sensing element, given its readings `raw`.
+/// Fills the clipped segment [begin, end) of one sensing element, given all its readings `raw`.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -107,8 +107,7 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-/// Segment in which a sensing element is at one saturation level or unusable. For an unsaturated segment, the sign is
-/// 0.
+/// HiddenSegment is a range of samples in which a sensing element is at one saturation level or unusable.
 struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
@@ -126,14 +125,14 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // If all readings are unusable, the rate is assumed to be beyond the saturation level with the sign of the previous
-  // reading.
+  // If all readings of a segment are unusable, the rate is assumed beyond the saturation level with the sign of the
+  // previous reading.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Computes ends and centres of the averaging windows for readings every `period_s`. After a drop-out, the averaging
-// window has its usual length.
+// Computes ends and centres of the averaging windows for readings every `period_s`. The reading after a drop-out has an
+// averaging window of the usual length.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -156,8 +155,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 }
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
-// (C12). The corrected window centre is the middle of the possible range. The change of force over the possible range
-// of the centre adds to the uncertainty of the force.
+// (C12). The corrected window centre is the middle of the possible range. The uncertainty of the force includes the
+// change of force over the possible range of the window centre.
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -197,7 +196,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// Replaces readings with correlated errors by equivalent readings with independent errors: carried.md (C15).
+// Replaces recovered rates with correlated errors by equivalent readings with independent errors: carried.md (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
@@ -221,7 +220,7 @@ OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElemen
     }
     ImuSample own = samples[k];
     if (repeated) own.time_ns -= nanoseconds(repeated->age_s[k]);
-    // if the clock is inaccurate, one time step may contain two readings
+    // one time step may contain two readings if the clock is inaccurate
     if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);

@@ -6,17 +6,16 @@
 
 #include "tumble/attitude/hand_held_smoother.hpp"
 
-/// hand_held_readings.hpp sums the IMU readings of a hand-held body by node, as input of Problem.
+/// hand_held_readings.hpp assigns the IMU readings of a hand-held body to nodes, as input of Problem.
 namespace tumble::hand_held {
 
-/// Minimum determinant of the matrix of sensing directions. Below the minimum determinant, the sensing directions do
-/// not span the axes.
+/// kRowsMin is the minimum determinant of the matrix of sensing directions. With a smaller determinant, the sensing
+/// directions do not span three dimensions.
 inline constexpr double kRowsMin = 0.1;
-/// Standard deviation of the time of a repeated reading, which is uniform within the previous sample: 1/sqrt(12).
+/// kAge_samples is the standard deviation of a repeated reading's time, uniform within the previous sample: 1/sqrt(12).
 inline constexpr double kAge_samples = 0.29;
 
-/// Windows contains the positions of sample windows relative to the nodes; time zero is the centre of the first
-/// sample's window.
+/// Windows contains the times of averaging windows relative to the nodes; time zero is the centre of the first window.
 struct Windows {
   double period_s = 0.0;
   std::vector<double> centre_s;
@@ -24,7 +23,7 @@ struct Windows {
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
 
-/// OwnReadings contains the distinct readings of gyro or accelerometer at their true times, if the sensor is slower
+/// OwnReadings contains the distinct readings of a gyro or accelerometer, at their true times, if the sensor is slower
 /// than the log.
 struct OwnReadings {
   std::vector<ImuSample> samples;  ///< stamped at the end of their windows
@@ -39,7 +38,7 @@ struct GyroReadings : OwnReadings {
   std::vector<Eigen::Vector3d> open_rad_s;
 };
 
-/// Collected contains the readings summed by node, and the positions of samples relative to the nodes.
+/// Collected contains the readings assigned to nodes, and the times of samples relative to the nodes.
 struct Collected {
   Windows samples;
   GyroReadings rates;
@@ -53,36 +52,37 @@ Collected collect(const HandHeldSmoother::Params& params, std::span<const ImuSam
 
 inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
-/// Estimates the root density of the angular jerk near each of `nodes` nodes from the readings [rad/s^3 sqrt(s)]. Cost:
-/// O(N). The estimate uses the curvature of unsaturated readings, and the change of slope across clipped segments.
-/// Without information, the estimate is 0. See carried.md (C24), (C25).
+/// Estimates the root density of the angular jerk near each of `nodes` nodes [rad/s^3 sqrt(s)] from the readings. Cost:
+/// O(N). The jerk estimate uses the curvature of unsaturated readings, and the change of slope across clipped segments.
+/// The estimate is 0 where the readings contain no information. The equations are carried.md (C24), (C25).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 
-/// Returns the rates, with clipped segments of each sensing element replaced by cubic polynomials. Value and slope of
-/// the rates are continuous at both ends of a clipped segment. The cubic polynomial stays between the saturation level
-/// and kFillMost times the level.
+/// Returns the gyro's rates with clipped segments of each sensing element replaced by cubic polynomials. Value and
+/// slope of the filled rates are continuous at both ends of a clipped segment. The cubic polynomial stays between the
+/// saturation level and kFillMost times the level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
 inline constexpr double kFillMost = 2.5;  ///< heuristic, affects only initial values
 
-/// Number of nodes per step while no sample in the window of HandHeldStream is clipped.
+/// kFreeNodes is the number of nodes per optimisation step while no sample in the window of HandHeldStream is clipped.
 inline constexpr int kFreeNodes = 5;
 
-/// Returns whether a sensing element of the gyro is unmeasured for a part of the node's time.
+/// Returns whether a sensing element of the gyro is clipped or unusable during a part of the node's time.
 bool clips(const NodeReadings& readings);
 
-/// Standard deviation of the window centre of an accelerometer with unknown averaging, as a fraction of the period:
-/// 1/(4 sqrt(3)). The window centre is assumed uniform between the window's end and its middle.
+/// kOpenShare is the standard deviation of an accelerometer's window centre if its averaging is unknown, as a fraction
+/// of the period: 1/(4 sqrt(3)). The window centre is assumed to be uniformly distributed between the window's middle
+/// and its end.
 inline constexpr double kOpenShare = 0.144;
 
-/// Adds one reading of the gyro, at `t` seconds from the node. `open_rad_s` is the additional standard deviation per
-/// sensing element.
+/// Adds one reading of the gyro to a node; the reading is `t` seconds after the node. `open_rad_s` is the additional
+/// standard deviation per sensing element.
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
               const Eigen::Vector3d& open_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);
 
-/// Initialises attitude and rates of the nodes by a filter (VQF) on the filled rates, and the held point's acceleration
+/// Initialises attitude and rates of the nodes by a VQF filter on the filled rates, and the held point's acceleration
 /// by the remaining force.
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
                    std::vector<Node>& nodes);

@@ -37,7 +37,7 @@ Status check(const HandHeldSmoother::Params& params, std::span<const ImuSample> 
   return check_samples(samples, params.expert.gap_max_s);
 }
 
-// Returns the sensing elements that are completely or partly saturated in the window of a reading.
+// Returns the sensing elements that are fully or partly saturated in the averaging window of a reading.
 std::uint8_t clipped_axes(const hand_held::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
@@ -54,9 +54,9 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// Adds the effect of the gyro's scale error on the attitude: carried.md (C27). The scale error matters if the body is
-/// not hand-held and continues to rotate in one direction. The attitude error grows with the smaller of two rotations:
-/// since the last rest, or until the next rest.
+/// Adds the effect of the gyro's scale error to the attitude covariance: carried.md (C27). The scale error matters for
+/// a body that rotates continuously in one direction, which a hand cannot do. The attitude error grows with the
+/// rotation since the last rest or until the next rest, whichever is smaller.
 void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;
@@ -110,8 +110,8 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
-    // The rate refers to the centre of the reading's window, because the reading is the mean over the window. The
-    // attitude refers to the time stamp of the reading.
+    // The rate belongs to the centre of the averaging window, because a reading is the mean over its window. The
+    // attitude belongs to the time stamp of the reading.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

@@ -52,7 +52,7 @@ HandHeldStream::HandHeldStream(const Params& params)
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
   // The buffer can store readings of twice the nominal sample rate. At higher sample rates, the stream drops the oldest
-  // readings.
+  // readings from its buffer.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -82,7 +82,7 @@ Status HandHeldStream::check_reading(const Reading& reading, const Reading* befo
     const Status status = check_stamp_order(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
     if (!status.ok()) return status;
   }
-  // The type is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
+  // The time difference is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
   const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
   if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
     return {ErrorCode::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
@@ -143,8 +143,8 @@ Status HandHeldStream::push(const ImuSample& sample, const ClippedElements& know
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // While the gyro is unsaturated, the predicted nodes are already accurate. While the gyro is unsaturated, occasional
-  // steps are sufficient for attitude and calibration constants.
+  // While the gyro is unsaturated, the predicted nodes are already accurate. Occasional optimisation steps then suffice
+  // for attitude and calibration constants.
   const bool due =
       begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
   const bool factorised = due && step(state);
@@ -162,7 +162,7 @@ void HandHeldStream::extend(State& state) const {
   state.window.emplace_back();
 }
 
-// Initialises the newest node by its prediction and its readings.
+// Initialises the newest node from its prediction and its readings.
 void HandHeldStream::predict_newest(State& state) const {
   Knot& newest = state.window.back();
   if (state.window.size() == 1) {
@@ -172,7 +172,7 @@ void HandHeldStream::predict_newest(State& state) const {
   }
 }
 
-// Adds a sample to the window. After a drop-out, the averaging window of a reading has its usual length.
+// Adds a sample to the window. The reading after a drop-out has an averaging window of the usual length.
 void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -194,7 +194,7 @@ void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State
   ++state.samples;
 }
 
-// Updates saturation signs and sensing directions. Returns whether samples in the window have changed.
+// Updates saturation signs and sensing directions; returns whether samples in the window have changed.
 bool HandHeldStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -214,9 +214,9 @@ void HandHeldStream::rebuild(State& state) const {
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds an IMU reading to the nodes of the window, unless the reading is a repetition. The reading of a slow sensor
-// averages over a window with the length of the sensor's period. The averaging window ended at an unknown time since
-// the previous sample: rate_stream.md (R95). For an accelerometer, the length of the averaging window is also unknown:
+// Adds an IMU reading to the nodes of the window unless the reading is a repetition. A slow sensor averages over a
+// window as long as its period. The averaging window of a slow sensor ended at an unknown time since the previous
+// sample: rate_stream.md (R95). For a slow accelerometer, the length of the averaging window is also unknown:
 // carried.md (C12).
 void HandHeldStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
@@ -254,7 +254,7 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Returns the noise of the readings. If the log repeats readings, the noise refers to the gyro's own period.
+// Returns the noise of the readings, which is that of the gyro's own period if the log repeats readings.
 hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -270,8 +270,8 @@ Node HandHeldStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous node. Each unsaturated sensing element provides one component of the rate. For
-// clipped elements, the predicted rate is beyond the saturation level.
+// Predicts a new node from the previous node. Each unsaturated sensing element provides one component of the predicted
+// rate. For clipped elements, the predicted rate is beyond the saturation level.
 void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -299,7 +299,7 @@ double HandHeldStream::hand(const State& state) const {
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
-// Adds the prior from marginalised nodes: rate_stream.md (R91).
+// Adds the prior that marginalised nodes leave behind: rate_stream.md (R91).
 void HandHeldStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
   if (state.first_node == 0) {
     (void)motion_.add_initial_prior(state.window.front().node, block);
@@ -349,7 +349,7 @@ void HandHeldStream::marginalise_oldest(State& state) const {
   prune_output_samples(state);
 }
 
-// Deletes readings whose node has left the window and whose rate has been reported.
+// Deletes readings whose rate has been reported and whose node has left the window.
 void HandHeldStream::prune_output_samples(State& state) const {
   std::size_t gone = 0;
   const std::size_t given = first_unreported(state);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reported rates of a HandHeldStream and their covariances.
+// hand_held_stream_rates.cpp computes the rates that HandHeldStream reports, with their covariances.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -28,8 +28,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate at reading `at`. Readings of one node reuse the node's covariance until the next step of the window.
-// `factorised` is defined at report_rates().
+// Returns the rate at the reading with index `at`. All readings of one node reuse the node's covariance until the next
+// optimisation step. `factorised` is defined at report_rates().
 RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -48,8 +48,8 @@ std::size_t HandHeldStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// Stores the current rate of the oldest node. If samples are sparser than stated, a node may leave the window before
-// its rate is reported.
+// Stores the current rate of the oldest node, because the node may leave the window before its rate is reported. A node
+// leaves early if samples are sparser than stated.
 void HandHeldStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -77,8 +77,8 @@ RateState HandHeldStream::to_rate(const Reading& reading, const State& state, co
   return out;
 }
 
-// Counts the clipped segment around the reported reading `at` if the segment may contain an additional revolution:
-// carried.md (C43).
+// Counts the clipped segment around the reading `at` if the segment may contain an additional revolution: carried.md
+// (C43).
 void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -101,8 +101,9 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
   }
 }
 
-// Reports the rates of the readings [first, last] with their covariances. Near clipped nodes, the covariances follow
-// from carried.md (C23), (C42). If `factorised`, the buffer contains the equations with the assumed jerk density.
+// Reports the rates of the readings [first, last] with their covariances. The covariances of nodes near clipped
+// readings follow from carried.md (C23), (C42). If `factorised` is true, the buffer already contains the equations with
+// the assumed jerk density.
 void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                   std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -115,7 +116,7 @@ void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool fact
   for (std::size_t i = from; i < to; ++i) clipped = clipped || hand_held::clips(state.window[i].readings);
   System::BorderVector unused;
   hand_held::ReadingNoise noise = adapted_noise(state);
-  // a lower bound does not limit how far a rate or a force is beyond the bound: carried.md (C42)
+  // a lower bound does not limit how far a rate or a force exceeds the bound: carried.md (C42)
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
   System::Conditional here, next;

@@ -37,7 +37,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// Returns the parameters of RateRecovery, with positions relative to the mean position of the IMUs.
+/// Returns the parameters of RateRecovery, with IMU positions relative to the mean position of the IMUs.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -92,7 +92,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Adds finite readings to the averaging windows of their IMUs, with the flags of saturated axes.
+/// Adds finite readings and the flags of saturated axes to the averaging windows of their IMUs.
 void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -113,7 +113,7 @@ void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s
   state.window_s += dt_s;
 }
 
-/// Completes the averaging windows, merges the IMUs, and starts the next windows.
+/// Completes the averaging windows, merges the IMUs, and starts new windows.
 ImuSample ImuMerge::merge(State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   const double h = state.window_s;
@@ -173,11 +173,11 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Selects the unsaturated IMUs whose rate and specific force agree with the median: imu_merge.md (I5).
+/// Selects the unsaturated IMUs whose rate and specific force agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
-  // Rotation causes different forces at different positions. The tolerance of the median test must cover the difference
-  // due to rotation.
+  // Rotation causes different specific forces at different positions. The tolerance of the median test must therefore
+  // include the effect of rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -188,14 +188,14 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // With three or more IMUs, a clipped gyro provides a lower bound of the rate. The merge therefore keeps the
-    // accelerometer of an IMU with a clipped gyro.
+    // If the rig has three or more IMUs, a clipped gyro provides a lower bound of the rate. The merge therefore uses
+    // the accelerometer of an IMU even if its gyro clips.
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // If the selected IMUs are no majority, the selection contains all present IMUs. With one or two present IMUs, the
-  // selection contains only unsaturated IMUs.
+  // If the selected IMUs are a minority, the merge uses all present IMUs. With one or two present IMUs, the merge uses
+  // only unsaturated IMUs.
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // true if a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
@@ -229,19 +229,19 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// Returns the ratio between measured and modelled forces due to the lever arms: imu_merge.md (I8).
+/// Returns the ratio of measured to modelled force differences that the lever arms cause: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;
 }
 
-/// Updates the error estimates with the means over the averaging windows, and starts the next windows.
+/// Updates the estimated IMU errors with the means over the averaging windows, and starts new windows.
 void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // An IMU with a repeated reading may be frozen, and therefore does not update the errors. If all IMUs repeat their
-  // readings, the rate is constant.
+  // An IMU with a repeated reading may be frozen, and therefore does not update the estimated errors. If all IMUs
+  // repeat their readings, the rate is constant, so no IMU is frozen.
   const auto end = state.units.begin() + params_.count;
   const auto some_repeat = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
@@ -273,11 +273,11 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   ++state.windows;
 }
 
-/// Excludes IMUs whose accelerometer may be saturated by an impact for less than a sample: imu_merge.md (I6). On a
-/// rigid body, the force of one IMU predicts the force component of another IMU along their connecting line. The
-/// prediction along the connecting line does not need the angular acceleration. The reference is the IMU whose force
-/// agrees with most other IMUs. IMUs that disagree with the reference are excluded. If no two IMUs agree, the function
-/// first estimates a common angular acceleration that started within the window: (I7).
+/// Excludes IMUs whose accelerometer an impact may have saturated for less than a sample: imu_merge.md (I6). On a rigid
+/// body, the force at one IMU predicts the force at another IMU along their connecting line. The force along the
+/// connecting line does not depend on the angular acceleration. The reference is the IMU whose force agrees with the
+/// most other IMUs. The function excludes IMUs whose force disagrees with the reference. If no two IMUs agree, the
+/// function first estimates a common angular acceleration that started within the window: imu_merge.md (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -332,8 +332,8 @@ void ImuMerge::recover(const Readings& readings, const UnitMask& present, double
   recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
-/// Updates the rate errors of each IMU relative to the mean of all IMUs: bias, scale and time offset, imu_merge.md
-/// (I3), (I8). The angular acceleration is a central difference over the adjacent windows.
+/// Updates bias, scale and time offset of each gyro relative to the mean of all IMUs: imu_merge.md (I3), (I8). The
+/// angular acceleration is the central difference of the rates in the adjacent windows.
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();

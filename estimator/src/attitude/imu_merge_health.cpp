@@ -5,7 +5,7 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// This file detects faulty IMUs: saturation, frozen readings, disagreement.
+// imu_merge_health.cpp detects faulty IMUs: saturation, frozen readings, disagreement.
 namespace tumble {
 
 namespace {
@@ -16,15 +16,15 @@ constexpr double kComparable = 0.8;  // fraction of the gyro's range up to which
 
 constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
-/// Returns the rotation across the direction of the repeated force, which is mostly gravity.
+/// Returns the rotation perpendicular to the direction of the repeated force, which is mostly gravity.
 double turned_across(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
 
 }  // namespace
 
-/// Returns the saturation flags of the selected IMUs, for the axes of the common frame C. An axis of C is flagged if a
-/// clipped axis of an IMU contributes to the axis of C.
+/// Returns the saturation flags of the selected IMUs for the axes of the common frame C. An axis of frame C is flagged
+/// if a clipped axis of any selected IMU contributes to it.
 std::uint8_t ImuMerge::combined_flags(const Readings& readings, const UnitMask& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -58,8 +58,8 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
   return out;
 }
 
-/// Detects triads that repeat readings while the median of the IMUs changes. For accelerometers, a rotation of the body
-/// replaces the change of the median, since all IMUs may freeze together.
+/// Detects gyros and accelerometers that repeat readings while the median of the IMUs changes. Accelerometers count as
+/// frozen only if the body rotates, since all accelerometers may freeze together.
 void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                                    TimeNs time_ns, State& state) const {
   UnitMask counted = present;

@@ -89,7 +89,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.all_frozen", s.all_frozen);
 }
 
-/// Visits the members except the poses of the units, which RollingOdometry's units contain.
+/// Visits all members except the poses of the units, which the parameters of RollingOdometry contain.
 template <StateOf<ImuMerge::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit.scratch(p.T_CI);

@@ -20,8 +20,8 @@ auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
-// Returns the scalar product of two rotations, measured by gyro and by force: imu_merge.md (I20). The product follows
-// from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+// Returns the scalar product of the rotations that gyro and specific force measure: imu_merge.md (I20). The product
+// follows from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
 double together_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2.front());
 }
@@ -74,7 +74,7 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Repetiti
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
-/// Adds an averaged reading to the comparison of gyro and force: imu_merge.md (I18), (I19).
+/// Adds an averaged reading to the comparison of gyro and specific force: imu_merge.md (I18), (I19).
 void ImuPlausibility::process_average(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -83,8 +83,9 @@ void ImuPlausibility::process_average(State& state) const {
   if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2)
     state.non_rest_force_s += length_s;
   if (state.window_started) {
-    // Each averaged force refers to the centre of its average. The first and the last rotation therefore count by half.
-    // To first order, the result equals the sum of all rotations except for the first rotation.
+    // Each averaged force belongs to the centre of its averaging interval. The sum of rotations therefore counts the
+    // first and the last rotation by half. To first order, the sum with halves equals the sum of all rotations except
+    // the first.
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -108,7 +109,7 @@ void ImuPlausibility::process_average(State& state) const {
   }
 }
 
-/// Adds a window with constant force to the sums: imu_merge.md (I19), (I22).
+/// Adds a window of constant specific force to the sums: imu_merge.md (I19), (I22).
 void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
@@ -150,9 +151,9 @@ double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
              : 0.0;
 }
 
-/// Returns how long a reading has been frozen. A device that never changed counts as frozen only while the body moves.
-/// If the gyro is frozen, a rotating force or a force that excludes rest indicates motion. If the accelerometer is
-/// frozen at zero for longer than a free fall lasts, the gyro indicates motion.
+/// Returns for how long a sensor has repeated its reading, in seconds. A sensor whose reading never changed counts as
+/// frozen only while the body moves. For a frozen gyro, motion is detected by a rotating force, or by a force that
+/// excludes rest. For an accelerometer that reads zero for longer than a free fall, the gyro detects motion.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Repetition& hold) {
     return hold.changing_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
@@ -165,7 +166,7 @@ double ImuPlausibility::frozen_s(const State& state) const {
                    accel ? state.accel.repeated_s : 0.0});
 }
 
-/// Returns the ratio of the force's rotation to the gyro's rotation, by linear regression: imu_merge.md (I20).
+/// Returns the ratio of the rotation from force to the rotation from gyro, by linear regression: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
   return together_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
@@ -182,7 +183,7 @@ double ImuPlausibility::force_rotation_ratio(const State& state) const {
                                                                         : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
-/// Returns the axis labels that explain the readings better than the current labels: imu_merge.md (I22).
+/// Returns axis labels that explain the readings better than the current labels: imu_merge.md (I22).
 std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state) const {
   if (unexplained_rotation_ratio(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);
@@ -190,12 +191,12 @@ std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
-/// Returns whether another gyro scale explains the readings better than pushes: imu_merge.md (I21). Pushes also rotate
-/// the force, but leave an equal residual for any gyro scale.
+/// Returns whether a different gyro scale explains the readings better than pushes of the body do: imu_merge.md (I21).
+/// Pushes also rotate the measured force, but leave an equal residual for any gyro scale.
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
-  // Pushes often reduce the slope. Pushes rarely invert the slope or increase the slope by half.
+  // Pushes of the body often reduce the slope of the regression. Pushes rarely invert the slope or increase it by half.
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
   return left < most * state.unexplained_rad2.front();

@@ -25,7 +25,7 @@ constexpr double kClearly = 0.4;           // logarithm of a ratio of squared re
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Returns the matrices S by which the hypotheses about the gyro multiply the rates: imu_merge.md (I27).
+/// Returns the matrices S by which each hypothesis about the gyro multiplies the rates: imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -41,13 +41,13 @@ Readings all_readings() {
   return out;
 }
 
-/// Estimate of the gyro's scale from one segment. `step` is a Newton step from scale 1. `weight` is the curvature of
-/// the residual, as a function of the scale, at scale 1.
+/// ScaleVote is the estimate of the gyro's scale from one segment of motion. `step` is a Newton step that starts at
+/// scale 1. `weight` is the second derivative of the residual with respect to the scale, at scale 1.
 struct ScaleVote {
   double step, weight;
 };
 
-/// Results of the completed segments, and the unfinished segment.
+/// Segments contains the results of completed segments of motion, and the unfinished segment.
 class Segments {
  public:
   Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
@@ -60,7 +60,7 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
-  /// Completes the unfinished segment. A segment counts if it has at least half of the nominal length.
+  /// Completes the unfinished segment of motion. A segment counts if it has at least half of the nominal length.
   void close() {
     if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_least_rad) take();
     sums_ = {};
@@ -80,10 +80,9 @@ class Segments {
     vote(fits);
   }
 
-  /// Compares the residuals of the hypotheses: imu_merge.md (I28), (I29).
+  /// Compares the residuals of the hypotheses about the gyro: imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // The residual combines two errors: the unexplained velocity, and the difference between mean force magnitude and
-    // gravity.
+    // The residual combines the unexplained velocity with the difference between mean force magnitude and gravity.
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s,
                         length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
@@ -120,8 +119,8 @@ class Segments {
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
-/// Computes the weighted mean of the segments' scales, with a heteroscedasticity-consistent standard deviation (White,
-/// 1980): imu_merge.md (I30).
+/// Computes the weighted mean of the segments' gyro scales, with a heteroscedasticity-consistent standard deviation
+/// (White, 1980): imu_merge.md (I30).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -144,8 +143,8 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // The two series of segments are offset by half a segment. An event at a segment boundary of one series is therefore
-  // within a segment of the other series.
+  // The check uses two series of segments, offset by half a segment. An event at a segment boundary of one series is
+  // therefore inside a segment of the other series.
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
@@ -192,7 +191,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
   return found;
 }
 
-/// Returns an error if the evidence against the unchanged rates exceeds its limits: imu_merge.md (I29), (I30).
+/// Returns an error if the evidence for a wrong gyro scale or axis exceeds its limits: imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
   const double least =
       std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.compared_segments));

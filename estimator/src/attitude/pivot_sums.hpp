@@ -10,18 +10,18 @@
 
 namespace tumble {
 
-/// PivotFit is the fit of a segment of motion by a rotation about a point of the body that moves at constant velocity.
-/// See imu_merge.md (I27).
+/// PivotFit is the fit of a motion segment by a rotation about a body point that moves at constant velocity:
+/// imu_merge.md (I27).
 struct PivotFit {
   double residual_m_s = 0.0;  ///< root mean square of the velocity residual over all components
   double gravity_m_s2 = 0.0;  ///< magnitude of the force that does not rotate
   double arm_m = 0.0;         ///< distance from the pivot to the sensor
 };
 
-/// PivotSums contains the normal equations of imu_merge.md (I27) for one alternative of the gyro.
+/// PivotSums contains the normal equations of imu_merge.md (I27) for one hypothesis about the gyro.
 class PivotSums {
  public:
-  /// Adds a mean reading over `dt_s`, whose middle is `at_s` after the start of the segment. Cost: O(1).
+  /// Adds a mean reading over `dt_s` seconds; its middle is `at_s` after the start of the segment. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;

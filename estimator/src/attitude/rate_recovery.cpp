@@ -25,14 +25,15 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// Readings of one gyro or accelerometer. While a sensing element clips, the readings are along the sensing directions
-// of the elements: rails.md (R52). While no element clips, the readings are along the axes of the IMU.
+// Seen contains the readings of one gyro or accelerometer. If a sensing element clips, the readings are along the
+// sensing directions of the elements: rails.md (R52). If no sensing element clips, the readings are along the axes of
+// the IMU.
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the saturation deficit of the clipped elements, given the expected values.
+  // Returns the saturation deficit of the clipped sensing elements, given the expected readings.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -102,7 +103,7 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
     }
     clipped += force;
   }
-  // With a correct rate, the unsaturated IMUs provide a better specific force than the filter. The merged force
+  // If the rate is correct, the unsaturated IMUs provide a better specific force than the filter. The merged force
   // therefore counts as clipped only if few IMUs are unsaturated.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
@@ -110,8 +111,8 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated IMUs therefore has a bias in
-  // one direction of the world frame W.
+  // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated accelerometers is therefore
+  // biased in one direction of the world frame W.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kActiveRangeRatio * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -132,12 +133,12 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // the mean force depends on the rate, which may be wrong
+  // the filter's force replaces the mean force, which depends on a possibly wrong rate
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // if the filter restarts, the lever arms keep their estimates
+  // the lever arms keep their estimates when the filter restarts
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();

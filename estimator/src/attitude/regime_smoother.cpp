@@ -16,8 +16,8 @@ bool unusable_count(const RateReport& report, const RateState& rate, std::size_t
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
-/// Returns samples whose forces are interpolated at the times of the rates: carried.md (C38). Without interpolation,
-/// the forces of a slow accelerometer would be older than the rates.
+/// Returns the samples with specific forces interpolated to the times of the rates: carried.md (C38). Without
+/// interpolation, the specific forces of a slow accelerometer would be older than the rates.
 std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -73,14 +73,14 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     if (by_segment[k] <= params_.carried_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = mix_rates(rates[k], other[k], by_segment[k]);
-    // the sample remains unclipped, because no clipping was detected for any motion type
+    // the sample stays unclipped because no motion type has clipping at this sample
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// Returns the probability of hand-held motion for samples in a segment of clipped or suspect readings: carried.md
-/// (C40). The probability is the smallest value within `near_s` of the sample and within its segment. Outside such
-/// segments, the probability is 0.
+/// Returns the probability of hand-held motion for samples within segments of clipped or suspect readings: carried.md
+/// (C40). The function takes the smallest probability within `near_s` of the sample and within the sample's segment.
+/// The probability is 0 outside segments of clipped or suspect readings.
 std::vector<double> RegimeSmoother::hand_held_by_segment(std::span<const RegimeProbabilities> probabilities,
                                                          const RateReport& report,
                                                          std::span<const RateState> rates) const {

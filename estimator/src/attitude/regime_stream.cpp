@@ -16,8 +16,8 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // After a gap longer than gap_max_s, HandHeldStream restarts. Without a restart, samples would leave the window
-  // before HandHeldStream reports the samples.
+  // HandHeldStream restarts after a gap longer than gap_max_s. The limit on gap_max_s ensures that HandHeldStream
+  // reports samples before they leave the window.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -27,28 +27,29 @@ bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
-// Returns the saturation signs of a sample. A run of suspect readings is a lower bound, like a clipped reading.
+// Returns the saturation sign of each axis of a sample. A run of suspect readings provides a lower bound of the rate,
+// like a clipped reading.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rates of RateStream and HandHeldStream. A suspect reading counts as `bounded_only`, not as clipped, in
-// all motion types.
+// Combines the rate estimates of RateStream and HandHeldStream. In all motion types, a suspect reading counts as
+// `bounded_only`, not as clipped.
 RateState joined_rate(const RateState& rate, const RateState& hand_held, double share) {
   RateState out = mix_rates(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  // HandHeldStream does not detect which readings may be partly saturated
+  // HandHeldStream cannot detect which readings may be partly saturated
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
 
-// Returns the derivative of the rates around sample k: carried.md (C44). If there are enough samples, the derivative
-// covers kTurn_s. RateStream also estimates an angular acceleration, but this estimate depends on the force that is
-// tested.
+// Returns the angular acceleration around sample k as the derivative of the rates: carried.md (C44). The derivative
+// covers kTurn_s seconds if the window contains enough samples. The function does not use RateStream's angular
+// acceleration, because it depends on the specific force under test.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // the code subtracts integer time stamps, because seconds since the clock's start would lose precision
+  // the code subtracts integer time stamps, because seconds since the epoch would lose precision
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -90,7 +91,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = hand_held_weight(*out, state);
   }
   std::optional<RateState> hand_held;
-  // HandHeldStream accepts all input of RateStream, except for sensing directions that do not span three dimensions
+  // HandHeldStream accepts all input of RateStream, except sensing directions that do not span three dimensions
   if (state.probabilities.hand_held >= params_.carried_min) {
     if (!state.hand_held_running) {
       hand_held_.restart(state.hand_held);
@@ -130,7 +131,7 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        std::span<const RateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // A rate fitted to the force with an invalid calibration agrees with the force in any kind of motion.
+  // A rate that was fitted to the force with an invalid calibration agrees with the force in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -147,15 +148,14 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Returns whether RateStream resets its calibration repeatedly, which indicates that the motion contains no flight. The
-// function counts the resets within RateStream's lag, because the steps within the lag determine the reported rate.
+// Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. The function
+// counts resets within RateStream's lag, because optimisation steps within the lag determine the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the probabilities of the motion types with the reported sample and its rate: forward pass of carried.md
-// (C38).
+// Updates the motion type probabilities with a reported sample and its rate: forward pass of carried.md (C38).
 void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
@@ -170,9 +170,9 @@ void RegimeStream::update_probabilities(const RateState& rate, State& state) con
   state.sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of HandHeldStream for the reported sample: s in carried.md (C40). The weight is the smallest
-// probability of hand-held motion among nearby samples in the segment of clipped samples. Outside segments of clipped
-// samples, the weight is 0.
+// Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40). The weight is the smallest
+// probability of hand-held motion among nearby samples of the same clipped segment. The weight is 0 outside clipped
+// segments.
 double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
@@ -190,7 +190,7 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
   if (out < params_.carried_min || !before) return out;
-  // continues with the provisional rates of the samples that are not reported yet
+  // the forward pass continues with the provisional rates of unreported samples
   RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);

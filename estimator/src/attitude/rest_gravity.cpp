@@ -15,15 +15,15 @@ namespace {
 constexpr double kRested_s = 1.0;   // total duration of rest that is needed for checking the magnitude of gravity
 constexpr double kOtherUnit = 3.0;  // an error factor that no scale error or bias of an accelerometer reaches
 
-/// Returns parameters that detect rest from any force, also from a force that is far from gravity.
+/// Returns rest parameters that accept any specific force, even a force far from gravity.
 RestDetector::Params without_force(RestDetector::Params rests) {
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
   return rests;
 }
 
-/// Returns parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. No robot stands still
-/// at ten times gravity.
+/// Returns rest parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. Readings far
+/// above gravity at rest prove a wrong unit, because no robot stands still at ten times gravity.
 RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;
@@ -89,7 +89,8 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Integrates the rotation. A reading is a mean over its window and refers to the window's middle: imu_merge.md (I25).
+/// Integrates the rotation of the body. A reading is the mean over its window and belongs to the window's middle:
+/// imu_merge.md (I25).
 void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -102,14 +103,15 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& r
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.saturation_deficit_m_s += dt_s * peak;
 }
 
-/// Ends a clipped segment. Saturation deficits within a segment are correlated: imu_merge.md (I23).
+/// Ends a clipped segment of readings. Saturation deficits within one clipped segment are correlated: imu_merge.md
+/// (I23).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Starts a rest. Compares the change of gravity's direction since the previous rest with the gyro's rotation:
-/// imu_merge.md (I23).
+/// Starts a period of rest. The function compares the rotation of the gravity direction since the previous rest with
+/// the gyro's rotation: imu_merge.md (I23).
 void RestGravity::finish_span(State& state) const {
   end_segment(state);
   if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
@@ -127,8 +129,7 @@ void RestGravity::finish_span(State& state) const {
   state.angle_error_sigma_rad = sigma_rad;
 }
 
-/// Compares the mean specific force between two rests with the specific force during the rests: imu_merge.md (I25),
-/// (I26).
+/// Compares the mean specific force between two rests with the specific force during rest: imu_merge.md (I25), (I26).
 void RestGravity::check_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.last_rest_force_m_s2).norm() / state.last_rest_force_m_s2.norm();

@@ -28,29 +28,29 @@ constexpr double kTakeLogOdds = 3.0;       // log odds (20 to 1) for a change; t
 constexpr int kTurnsMax = 2;               // maximum number of revolutions more or less than in the optimised solution
 constexpr int kRounds = 3;                 // maximum rounds of tests, with a complete solution after each
 
-/// Range of nodes [first, last] in which the sensing element `element` was saturated and had no unsaturated reading.
+/// Segment is a range of nodes [first, last] in which a sensing element was saturated and had no unsaturated reading.
 struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// A hypothesis about the number of revolutions contains nodes, starting with node `from`, and the cost of the nodes.
+/// Hypothesis is a solution with an assumed number of revolutions: its nodes, starting with node `from`, and its cost.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;
 };
 
-/// Probable solutions of a segment other than the current solution, with the probabilities of the solutions.
+/// Open contains the probable alternatives to the current solution of a segment, with their probabilities.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Returns the jerk cost of an additional revolution within `steps` node intervals.
+/// Returns the cost of the jerk that one additional revolution within `steps` node intervals requires.
 double revolution_cost(const Problem& problem, std::size_t steps) {
   return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
-/// Returns the segments that may contain an additional revolution: carried.md (C28).
+/// Returns the clipped segments that may contain an additional revolution: carried.md (C28).
 std::vector<Segment> suspect_segments(const Problem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
@@ -71,7 +71,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // at either end of the recording, no readings on the outer side determine the number of revolutions
+      // a segment at an end of the recording has no readings on its outer side that determine the number of revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -82,7 +82,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
 }
 
 /// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. The function
-/// adds a smooth bump to the rate, integrates the attitudes, and distributes the remaining attitude error at b evenly.
+/// adds a smooth bump to the rate, integrates the attitude, and spreads the remaining attitude error evenly.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -98,7 +98,7 @@ std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axi
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
-    // the specific force in sensor axes remains unchanged
+    // the specific force in sensor axes must remain unchanged
     const Node& before = part.nodes()[i];
     nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
   }
@@ -111,7 +111,7 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// Returns the optimised solution and the solutions with another possible number of revolutions.
+/// Returns the optimised solution, and alternatives with another possible number of revolutions.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
@@ -121,7 +121,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // if another hypothesis has an equal number of revolutions, the solution is discarded
+    // a solution with the same number of revolutions as another hypothesis is discarded
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -139,14 +139,14 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
       if (!keep(other)) break;
     }
   }
-  // removes solutions that are improbable compared with the best solution
+  // removes alternatives that are improbable compared with the best solution
   std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
   return out;
 }
 
-/// Result of testing one segment. The result contains the solutions for the nodes of a part, starting with node `from`
-/// and with the best solution. The test result also identifies the current solution and states whether another solution
-/// replaces the current solution.
+/// TestedSegment is the result of the test of one segment. The test finds alternative solutions for the nodes of a
+/// part, from node `from` on, with the best solution first. TestedSegment also identifies the current solution, and
+/// states whether an alternative replaces it.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -154,7 +154,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of all solutions except for the solution with index `standing`: carried.md (C29).
+/// Returns the probabilities of all solutions except the one with index `standing`: carried.md (C29).
 Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
   Open out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -167,7 +167,8 @@ Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing)
   return out;
 }
 
-/// Returns the alternative solutions of all segments. `taken` states whether the selected changes have been applied.
+/// Returns the probable alternative solutions of all segments. `taken` states whether the selected changes have been
+/// applied.
 std::vector<Open> left_open(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<Open> out;
   for (const TestedSegment& each : tested) {
@@ -195,8 +196,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests each part. The optimised solution remains until another solution is clearly better. If the tests ruled out the
-/// optimised solution (`fallen`), the best alternative replaces the optimised solution.
+/// Tests the number of revolutions in each segment. The optimised solution remains unless another solution is clearly
+/// better. The best alternative replaces an optimised solution that the tests have ruled out (`fallen`).
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -241,8 +242,8 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The tests use linearised information about the nodes outside a part. After a change, the tests are therefore
-  // repeated.
+  // The tests use linearised information about the nodes outside a part. A change of the solution therefore requires
+  // another round of tests.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
@@ -265,7 +266,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
     report.revolutions_corrected += static_cast<int>(taken);
   }
   report.revolutions_ambiguous = static_cast<int>(open.size());
-  // the alternative solutions increase the covariance: carried.md (C29)
+  // probable alternative solutions increase the covariance: carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -12,8 +12,8 @@
 
 namespace tumble {
 
-/// RigidForces contains the specific forces of IMUs (units) at different positions of one rigid body over a window, in
-/// body axes. RigidForces finds units whose force contradicts the common motion. See imu_merge.md (I6), (I7).
+/// RigidForces contains the specific forces of several IMUs (units) on one rigid body over a window, in body axes.
+/// RigidForces finds the units whose force contradicts the common motion: imu_merge.md (I6), (I7).
 struct RigidForces {
   static constexpr std::size_t kUnits = ImuMergeState::kImus;
 
@@ -43,8 +43,8 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the unit with which most other units agree. If several units have equally many agreeing units, the
-  /// function returns the unit whose force changed least.
+  /// Returns the unit with which the most other units agree. Among units with equally many agreeing units, the function
+  /// prefers the unit whose force changed least.
   Agreed most_agreed() const {
     Agreed best;
     for (std::size_t k = 0; k < kUnits; ++k) {
@@ -57,7 +57,8 @@ struct RigidForces {
     return best;
   }
 
-  /// Returns the correction of the angular acceleration that minimises all force differences, imu_merge.md (I7).
+  /// Returns the correction of the angular acceleration that minimises the force differences between the units:
+  /// imu_merge.md (I7).
   Eigen::Vector3d common_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();

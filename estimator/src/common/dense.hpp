@@ -3,16 +3,16 @@
 
 #include <Eigen/Core>
 
-/// dense.hpp declares decompositions of large symmetric matrices that are compiled once. Eigen's fixed-size versions
-/// would be instantiated per file and size, which doubles the compile time of files that use them. Factorisations equal
-/// those of fixed size bit for bit; eigenvalues are equal up to rounding. Each call allocates memory, so call a
-/// decomposition at most once per sweep or run.
+/// dense.hpp declares decompositions of large symmetric matrices that are compiled once. Eigen's fixed-size
+/// decompositions would be instantiated per file and size, which doubles the compile time of those files. The
+/// factorisations equal those of fixed size bit for bit; the eigenvalues are equal up to rounding. Each decomposition
+/// allocates memory, so call it at most once per sweep or run.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// Computes A^-1 B in place for positive definite A, by Cholesky factorisation. If A is not positive definite, `ok()`
-/// is false and the results are undefined.
+/// Cholesky computes A^-1 B in place for positive definite A, by Cholesky factorisation. If A is not positive definite,
+/// `ok()` returns false and the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);
@@ -22,7 +22,6 @@ class Cholesky {
   void solve(Eigen::Ref<Eigen::MatrixXd> B) const;
   void solve_vector(Eigen::Ref<Eigen::VectorXd> b) const;
 
-  /// Returns A^-1 as `Matrix`.
   template <class Matrix>
   Matrix inverse() const {
     Matrix out = Matrix::Identity();
@@ -39,7 +38,7 @@ class Cholesky {
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B);
 void solve_semidefinite_vector(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> b);
 
-/// Computes ascending eigenvalues and eigenvectors.
+/// Computes the eigenvalues of a symmetric matrix in ascending order, and the eigenvectors.
 void decompose(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::MatrixXd> vectors);
 void eigenvalues(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> values);
 

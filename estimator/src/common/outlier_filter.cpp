@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Thresholds of the outlier test. docs/maths/outliers.md, "Thresholds", lists the measurements behind the thresholds.
+// docs/maths/outliers.md, "Thresholds", lists the measurements behind the thresholds of the outlier test.
 constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
 constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
 constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
@@ -60,13 +60,13 @@ Triad accel_of(const OutlierFilter::Device& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// Returns the time between two stamps. The subtraction is unsigned, since the difference of two stamps may not fit
-/// into a signed integer.
+/// Returns the time between the stamps of two samples, in seconds. The subtraction is unsigned, since the difference of
+/// two stamps may not fit into a signed integer.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// Consecutive samples, starting with the oldest sample.
+/// Sequence contains consecutive samples, oldest first.
 struct Sequence {
   std::array<const ImuSample*, 4> samples{};
   std::size_t count = 0;
@@ -83,8 +83,8 @@ Sequence passed_near(const OutlierFilter::State& state) {
   return out;
 }
 
-/// Returns the largest change from one reading to the next: outliers.md (O3). If saturation may hide a change, the
-/// result is kUnknown.
+/// Returns the largest change from one reading to the next: outliers.md (O3). The function returns kUnknown if
+/// saturation may hide a change.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -94,7 +94,7 @@ double largest_step(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns the largest difference between two consecutive steps: outliers.md (O4).
+/// Returns the largest difference between two consecutive steps of the readings: outliers.md (O4).
 double largest_bend(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -117,8 +117,8 @@ double departure(const Vector3d& before, const Vector3d& now, const Vector3d& af
   return out;
 }
 
-/// Returns the smaller of two distances of a reading: outliers.md (O2). The first is the distance from the last
-/// accepted reading. The second is the distance from the line through the last two accepted readings.
+/// Returns the distance of a reading from the last accepted reading, or from the line through the last two: outliers.md
+/// (O2). The function uses the smaller of both distances.
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -176,8 +176,8 @@ bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// Returns the last step of the stamps, or the nominal period if it is longer. The result is infinite if the nominal
-/// period is not stated.
+/// Returns the last time step between samples, or the nominal period if the period is longer. The function returns
+/// infinity if no nominal period is stated.
 double OutlierFilter::period_s(const State& state) const {
   if (!(device_.period_s > 0.0)) return kUnknown;
   if (state.count < 2) return device_.period_s;
@@ -191,7 +191,8 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   return after_s > kPeriodsAhead * period_s(state) || jumps(sample, state);
 }
 
-/// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
+/// Returns whether a reading jumps further than the readings of the other sensor (gyro or accelerometer) explain:
+/// outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
   const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > kNear_s) return false;
@@ -202,7 +203,7 @@ bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
-/// Returns whether the delayed reading is an outlier, given the following reading: outliers.md (O6).
+/// Returns whether the delayed reading is an outlier, given the next reading: outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.recent_inliers[1];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// precompiled.hpp includes the headers that nearly every source uses, and instantiates types of Eigen expressions that
-// at least a dozen sources use. The compiler needs longer for the classes of an expression than for the machine code of
-// the expression (docs/figures.md). CMakeLists.txt precompiles precompiled.hpp, and no source includes the file.
-// Precompiling affects only the compile time.
+// precompiled.hpp includes the headers that nearly every source uses, and instantiates frequent Eigen expressions. The
+// compiler spends more time on the classes of an Eigen expression than on its machine code (docs/figures.md).
+// CMakeLists.txt precompiles this header, so no source includes it. Precompilation affects only the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -16,12 +15,12 @@
 
 namespace tumble::precompiled {
 
-/// Is true for any expressions of Eigen, and instantiates the classes and evaluators of the expressions.
+/// `known` is true for any Eigen expressions, and instantiates their classes and evaluators.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
 
-/// Is true for any matrices, and instantiates the matrices with their constants and identities.
+/// `known_matrices` is true for any matrix types, and instantiates them with their constants and identities.
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>
@@ -30,7 +29,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// Operands of the following expressions. The operands are declared but never defined.
+// The operands of the following expressions are declared but never defined.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;
@@ -50,7 +49,7 @@ static_assert(known<decltype(a + b), decltype(a - b), decltype(s * a), decltype(
 // comparisons and finiteness checks
 static_assert(known<decltype((a - a).array()), decltype((a - a).array() == (a - a).array()), decltype(a.cwiseEqual(b)),
                     decltype(R.cwiseNotEqual(Q.Identity()))>);
-// rows and columns of a rotation, and its product with a 3-vector
+// rows and columns of a rotation matrix, and the product of the matrix with a 3-vector
 static_assert(
     known<decltype(R.row(0)), decltype(R.col(0)), decltype(Q.row(0)), decltype(R.row(0).transpose()),
           decltype(Q.row(0).transpose()), decltype(a.col(0)), decltype(R.row(0).transpose().cwiseProduct(a.col(0)))>);

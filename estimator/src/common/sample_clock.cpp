@@ -65,7 +65,7 @@ double median_step(const Offsets& x_ns) {
   return steps[steps.size() / 2];
 }
 
-// Numbers the samples by the time steps between their stamps.
+// Numbers the samples according to the time steps between their stamps.
 Numbers by_steps(const Offsets& x_ns, double period_ns) {
   Numbers n{};
   for (std::size_t k = 1; k < n.size(); ++k)
@@ -115,8 +115,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // Time must increase after an uncorrected stamp and after a burst of stamps. The corrected stamps then approach the
-  // received stamps.
+  // Corrected time must increase even after an uncorrected stamp or a burst of stamps. The corrected stamps then
+  // approach the received stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns = state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kLeastStep * state.period_ns, 0.5 * step_ns)));
   state.stamp_ns = stamp_ns;
@@ -124,7 +124,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   return {};
 }
 
-/// Fits a line to the first stamps, if the stamps have a period.
+/// Fits a line through the first time stamps if the stamps are periodic.
 void SampleClock::begin(State& state) const {
   Offsets x_ns{};
   for (std::size_t k = 0; k < kFirstFitStamps; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
@@ -146,8 +146,8 @@ void SampleClock::begin(State& state) const {
   state.outliers = 0;
 }
 
-/// Updates the line with a stamp: sample_clock.md (S1), (S2), (S3). If the sample number is uncertain, restarts the
-/// fit.
+/// Updates the fitted line with a time stamp: sample_clock.md (S1), (S2), (S3). The function restarts the fit if the
+/// sample number is uncertain.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
@@ -172,7 +172,8 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
       fading * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
   state.prediction_error_ns = limited_ns;
 
-  // Sample numbers count from the current sample. Only the residual of the current sample about the line is not zero.
+  // Sample numbers count from the current sample. Only the current sample has a non-zero residual about the fitted
+  // line.
   const double keep = 1.0 - fading;
   state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
                                               2.0 * number * state.weighted_number_sum + number * number * state.sum);

@@ -7,13 +7,13 @@ namespace tumble::so3 {
 
 namespace {
 
-// below kSmallAngle, two terms of the power series are exact to rounding
+// for angles below kSmallAngle, two terms of the power series are exact to rounding
 constexpr double kSmallAngle = 1e-4;
-// Below kCancellingAngle, x - sin(x) loses digits by cancellation. Up to kCancellingAngle, six terms of the power
-// series are exact to rounding.
+// For angles x below kCancellingAngle, x - sin(x) loses digits by cancellation. Six terms of the power series are exact
+// to rounding up to kCancellingAngle.
 constexpr double kCancellingAngle = 0.5;
 
-// Returns (1 - cos x) / x^2. The function uses the half angle, because 1 - cos x loses digits by cancellation.
+// Returns (1 - cos x) / x^2. The formula uses the half angle, because 1 - cos x loses digits by cancellation.
 double cosine_term(double angle, double angle2) {
   if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
   const double s = std::sin(0.5 * angle);
@@ -48,8 +48,8 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q) {
-  // A half turn has two rotation vectors. The function returns the vector whose first non-zero component is positive,
-  // so that q and -q give equal results.
+  // A half turn has two rotation vectors. The function returns the rotation vector whose first non-zero component is
+  // positive, so that q and -q give equal results.
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
   if (q.w() == 0.0) {
     const double lead = q.x() != 0.0 ? q.x() : (q.y() != 0.0 ? q.y() : q.z());
@@ -79,9 +79,9 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // The rotation is the quaternion with real part |h| / 2 and imaginary part (from x to) / |h|, where h = from + to. In
-  // the imaginary part, the cross product from x to equals from x h. For nearly opposite vectors, h is exact to
-  // rounding. The formula for the rotation is accurate up to a half turn, because no digits cancel.
+  // The rotation is the quaternion with real part |h| / 2 and imaginary part (from x to) / |h|, where h = from + to.
+  // The imaginary part uses from x h, which equals the cross product from x to. For nearly opposite vectors, h is exact
+  // to rounding. The formula is therefore accurate up to a half turn.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

@@ -12,11 +12,11 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// state_bytes.hpp serialises states as numbers of fixed width, little-endian on every machine, in the order in which
-/// the numbers are visited. The length of a sequence (8 bytes) precedes the sequence.
+/// state_bytes.hpp serialises an estimator's state as numbers of fixed width, little-endian on every machine. The
+/// length of a sequence (8 bytes) precedes its elements.
 namespace tumble {
 
-/// Returns the 64-bit checksum FNV-1a (Fowler, Noll and Vo, RFC 9923), which changes if any one byte changes. The
+/// Returns the 64-bit checksum FNV-1a (Fowler, Noll and Vo, RFC 9923), which changes if a single byte changes. The
 /// checksum detects accidental damage, not manipulation.
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before = 0xcbf29ce484222325u);
 
@@ -57,9 +57,9 @@ class StateWriter : public StateVisitor<StateWriter> {
   std::vector<std::byte>& out_;
 };
 
-/// StateReader reads states from untrusted bytes. After the first error, status() returns the error, nothing more is
-/// read, and the values read so far are invalid. Errors are `too_few` (the bytes end within `field`), `non_finite` and
-/// `out_of_range` (an index, a count, an enumeration or a length).
+/// StateReader reads states from untrusted bytes. After the first error, StateReader reads nothing more, status()
+/// returns the error, and the values read so far are invalid. The possible errors are `too_few` (the bytes end within
+/// `field`), `non_finite` and `out_of_range` (index, count, enumeration or length).
 class StateReader : public StateVisitor<StateReader> {
  public:
   static constexpr bool kReads = true;
@@ -84,7 +84,7 @@ class StateReader : public StateVisitor<StateReader> {
   requires requires(T& value, StateReader& in) { value.load(in); }
   void whole(const char* /*name*/, T& value) { value.load(*this); }
 
-  /// Requires a relation between members that every saved state fulfils.
+  /// Reports an error unless a relation between members holds that every saved state fulfils.
   void require(const char* name, bool holds, double value = 0.0, double bound = 1.0) {
     if (going() && !holds) status_ = {ErrorCode::out_of_range, name, value, bound};
   }

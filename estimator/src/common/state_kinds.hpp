@@ -10,10 +10,10 @@
 #include <type_traits>
 #include <vector>
 
-/// state_kinds.hpp defines the kinds of members that a StateVisitor (state_visitor.hpp) distinguishes.
+/// state_kinds.hpp defines the kinds of state members that a StateVisitor (state_visitor.hpp) distinguishes.
 namespace tumble {
 
-/// StateOf constrains the first argument of `members` and `others` to `Of` or const `Of`.
+/// StateOf constrains the first argument of `members` and `others` to the type `Of` or const `Of`.
 template <class T, class Of>
 concept StateOf = std::same_as<std::remove_const_t<T>, Of>;
 

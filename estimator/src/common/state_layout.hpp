@@ -12,11 +12,12 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// state_layout.hpp checks that saved bytes match given parameters and a given layout.
+/// state_layout.hpp checks that saved bytes match given parameters and a given layout of the state.
 namespace tumble {
 
-/// StateMatcher compares visited members with saved bytes. StateMatcher reports `out_of_range` with the name of the
-/// first number that differs, the stored value and the visited value. StateMatcher reports `too_few` if the bytes end.
+/// StateMatcher compares the visited members of a state with saved bytes. At the first different number, StateMatcher
+/// reports `out_of_range` with the member's name, the stored value and the visited value. StateMatcher reports
+/// `too_few` if the bytes end early.
 class StateMatcher : public StateVisitor<StateMatcher> {
  public:
   static constexpr bool kReads = false;
@@ -57,8 +58,8 @@ class StateMatcher : public StateVisitor<StateMatcher> {
   Status status_;
 };
 
-/// StateLayout computes a 64-bit digest of the names, widths and order of visited members. A reader rejects bytes with
-/// another digest.
+/// StateLayout computes a 64-bit digest of the names, widths and order of a state's members. A reader rejects saved
+/// bytes whose digest differs.
 class StateLayout : public StateVisitor<StateLayout> {
  public:
   static constexpr bool kReads = false;

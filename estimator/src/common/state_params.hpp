@@ -6,12 +6,12 @@
 #include "state_visitor.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// state_params.hpp visits a `Params` that is part of a state, as state_visitor.hpp describes.
+/// state_params.hpp visits a `Params` structure that is part of a state, as state_visitor.hpp describes.
 namespace tumble {
 
 namespace detail {
 
-/// FieldsAsMembers passes the fields of a `Params` to a StateVisitor.
+/// FieldsAsMembers passes the fields of a `Params` structure to a StateVisitor.
 template <class Visitor>
 class FieldsAsMembers {
  public:
@@ -36,7 +36,7 @@ class FieldsAsMembers {
 
 }  // namespace detail
 
-/// Visits all members of a `Params`: its Fields, and the members that are not Fields.
+/// Visits all members of a `Params` structure: its Fields and its other members.
 template <class Params, class Visitor>
 void visit_params(Params& params, Visitor& visit) {
   detail::FieldsAsMembers<Visitor> fields(visit);

@@ -8,26 +8,24 @@
 
 #include "state_kinds.hpp"
 
-/// An estimator's state is described member by member, in one place. Saving, loading and comparing a state are visitors
-/// of the description.
+/// The members of an estimator's state are listed in one function. Saving, loading and comparing a state are visitors
+/// of this list.
 ///
-/// A state has a function `members(Self& s, Visitor& visit)` in its namespace, or a static function `members` if its
-/// members are private. The function `members` calls `visit("name", s.member)` for each member: numbers, fixed-size
-/// Eigen types, arrays, vectors, deques, optionals and nested states. Indices and counts are visited with their bounds,
-/// and enumerations with their last value. Values that may be NaN are visited by `with_nan`, and buffers by `scratch`.
-/// The type `Self` may be const. The function `visit_params` visits a `Params` that is part of a state. The function
-/// `others(Self& p, Visitor& visit)` visits the members of the `Params` that are not Fields.
+/// The list is a function `members(Self& s, Visitor& visit)` in the state's namespace, or a static function if the
+/// members are private. `members` calls `visit("name", s.member)` for each member: numbers, fixed-size Eigen types,
+/// arrays, vectors, deques, optionals and nested states. `members` visits indices and counts with their bounds, and
+/// enumerations with their last value. `members` visits values that may be NaN by `with_nan`, and buffers by `scratch`.
+/// The type `Self` may be const. The function `visit_params` visits a `Params` structure that is part of a state. The
+/// function `others(Self& p, Visitor& visit)` visits the members of a `Params` structure that are not Fields.
 namespace tumble {
 
-/// StateVisitor visits the members of a state. `Derived` has the following members.
-/// The function numbers(name, data, count) processes contiguous numbers.
-/// The function length(name, count) processes the size of a sequence or an optional (0 or 1), and returns the size to
-/// use.
-/// The function bounded(name, value, low, high) checks a visited number.
-/// The function going() returns false to stop.
-/// The optional function whole(name, value) processes a member that serialises itself.
-/// The constant kReads is true if visited members are overwritten.
-/// The constant kDescribes is true to visit a sequence as one element in its initial state.
+/// StateVisitor visits the members of an estimator's state. A class `Derived` that derives from StateVisitor has the
+/// following members. The function numbers(name, data, count) processes contiguous numbers. The function length(name,
+/// count) processes the size of a sequence or an optional (0 or 1), and returns the size to use. The function
+/// bounded(name, value, low, high) checks a number against its bounds. The function going() returns false to stop the
+/// visit. The optional function whole(name, value) processes a member that serialises itself. The constant kReads is
+/// true if the visitor overwrites the members. The constant kDescribes is true if a sequence is visited as one element
+/// in its initial state.
 template <class Derived>
 class StateVisitor {
  public:
@@ -62,7 +60,7 @@ class StateVisitor {
     }
   }
 
-  /// Visits a number with bounds, which is an index or a count.
+  /// Visits an index or a count with its bounds.
   template <class T>
   void operator()(const char* name, T& value, double low, double high) {
     (*this)(name, value);
@@ -77,14 +75,14 @@ class StateVisitor {
     if constexpr (Derived::kReads) value = static_cast<T>(number);
   }
 
-  /// Visits the first `count` elements of an array. The remaining elements of the array are in their initial state.
+  /// Visits the first `count` elements of an array. The remaining elements of the array keep their initial state.
   template <class Array>
   void leading(const char* name, Array& array, std::size_t count) {
     if (Derived::kDescribes) count = 1;
     for (std::size_t k = 0; k < count && k < array.size(); ++k) (*this)(name, array[k]);
   }
 
-  /// Visits a value that may be NaN.
+  /// Visits a floating-point value that may be NaN.
   template <class T>
   void with_nan(const char* name, T& value) {
     const bool before = nan_allowed_;
@@ -114,7 +112,7 @@ class StateVisitor {
       for (const Element& element : value) (*this)(name, element);
     } else {
       value.clear();
-      // visits elements one by one, so that no more memory is allocated than there are bytes
+      // visits elements one by one, so that no more memory is allocated than the saved bytes justify
       for (std::size_t k = 0; k < count && self().going(); ++k) (*this)(name, value.emplace_back());
     }
   }

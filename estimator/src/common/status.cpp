@@ -8,8 +8,7 @@ namespace tumble {
 
 namespace {
 
-// Returns the shortest decimal text that converts back to exactly the number `value`. The text does not depend on the
-// locale.
+// Returns the shortest decimal text that converts back to exactly `value`, in any locale.
 std::string number(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value);

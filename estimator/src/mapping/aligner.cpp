@@ -16,8 +16,8 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
 
 constexpr double kCoarseReach = 2.0;  // maximum distance of useful matches, as a multiple of the matching distance
 
-/// Returns parameters of a coarse registration. The coarse registration has wider limits and finds only a start near
-/// the solution.
+/// Returns the parameters of a coarse registration. A coarse registration has wider limits and only needs to find a
+/// pose near the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;
@@ -34,7 +34,7 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   return out;
 }
 
-/// Selects at most `count` evenly spread points.
+/// Selects at most `count` evenly spread points of a sweep.
 void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
@@ -43,12 +43,12 @@ void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<Swe
 
 void align(Registration& registration, const Registration::Prior& prior, const Scene& scene,
            std::span<const SweepPoint> points, SweepTrajectory& trajectory, Registration::Result& found) {
-  // align() cannot fail here, because add_sweep() ensures that the samples cover the sweep
+  // align() cannot fail here, because add_sweep() ensures that the IMU samples cover the sweep
   const Status status = registration.align(prior, scene.samples, scene.end_ns, points, scene.map, trajectory, found);
   if (!status.ok()) found.verdict = RegistrationVerdict::diverged;
 }
 
-/// Returns the prior with `found` as initial value of the iterations.
+/// Returns the prior with the result `found` as initial value of the iterations.
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;

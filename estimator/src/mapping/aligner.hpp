@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// Scene is the input of an alignment.
+/// Scene is the input of an alignment of a sweep to the map.
 struct Scene {
   std::span<const MotionSample> samples;
   TimeNs end_ns;
@@ -17,26 +17,26 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Registers a sweep in stages. The verdict of `found` states whether the registration succeeded. After success,
-/// `trajectory` is the registered motion. After a failure, `trajectory` is that of a failed attempt.
+/// Aligner registers a sweep to the map in stages. The verdict of `found` states whether the registration succeeded.
+/// After success, `trajectory` is the registered motion. After a failure, `trajectory` is the motion of the failed
+/// attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers a sweep with all points and few iterations. Without convergence, the stages with fewer points continue
-  /// at lower cost.
+  /// Registers a sweep with all points and few iterations. If the full registration does not converge, stages with
+  /// fewer points continue at lower cost.
   void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                Registration::Result& found);
   /// Registers a sweep with some of the points until convergence, then with all points from the converged pose.
   void to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found);
-  /// Registers a sweep from a start that may be far from the solution: coarsely with few points, then to convergence if
-  /// the coarse stage succeeds. A failed start therefore costs only a fraction of a registration, and returns only its
-  /// verdict.
+  /// Registers a sweep from an initial pose that may be far away: coarsely with few points, then to convergence if the
+  /// coarse stage succeeds. A wrong initial pose therefore costs only a fraction of a registration.
   void from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                  SweepTrajectory& trajectory, Registration::Result& found);
 
-  /// Returns the Registration that computes the variance of a lidar return.
+  /// Returns the Registration object that computes the variance of a lidar return.
   const Registration& registration() const { return full_; }
 
  private:

@@ -15,10 +15,11 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// The prior of the speed has the standard deviation kSpeed_m_s and the correlation time kSpeedTime_s. Robots exceed
-// kSpeed_m_s only for moments.
+// The prior of the speed has standard deviation kSpeed_m_s and correlation time kSpeedTime_s. Robots exceed kSpeed_m_s
+// only for moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
-// Standard deviations of a start in motion: the mean force of half a second differs from gravity by 1 m/s^2.
+// The standard deviations of a start in motion assume that the mean force over half a second differs from gravity by 1
+// m/s^2.
 constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
@@ -36,8 +37,8 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Returns the matrix that transforms errors of the motion to a frame at the IMU, turned by `turn`. In the old frame,
-/// the displacement to the IMU has an error.
+/// Returns the matrix that transforms errors of the motion to a frame with its origin at the IMU, rotated by `turn`.
+/// The displacement from the old origin to the IMU has an error.
 Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
@@ -46,8 +47,8 @@ Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   return T;
 }
 
-/// Applies a Kalman update by a velocity of 0 with standard deviation `sigma_m_s`. The covariance C determines the
-/// Kalman gain. The Kalman gain updates C and the covariance E of the errors.
+/// Applies a Kalman update with a measured velocity of 0 and standard deviation `sigma_m_s`. The covariance C
+/// determines the Kalman gain. The update with this gain applies to C and to the covariance E of the errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -112,8 +113,9 @@ StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in a frame in which the IMU's attitude has no error. The new frame is turned by the tilt
-/// error φ of the IMU. In the turned frame, velocity v and gravity g have the errors δv + v × φ and g × φ.
+/// Returns the state estimate in a frame in which the IMU's attitude has no error. The frame without attitude error is
+/// rotated by the tilt error φ of the IMU. In the rotated frame, velocity v and gravity g have the errors δv + v × φ
+/// and g × φ.
 StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

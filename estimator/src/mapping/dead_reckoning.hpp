@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// DeadReckoning is an alternative pose by inertial prediction. During an unconfirmed relocalisation, the alternative
+/// DeadReckoning predicts an alternative pose from inertial data. During an unconfirmed relocalisation, the alternative
 /// is the pose without the relocalisation. After a contradicted relocalisation, the alternative is the contradicted
 /// pose.
 struct DeadReckoning {

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// Integrates the rate of a body without torque over dt: flight_arc.md (A6).
+/// Integrates the angular rate of a torque-free body over dt: flight_arc.md (A6).
 Eigen::Vector3d after(const FlyingBody& body, const Eigen::Vector3d& w, double dt) {
   const auto slope = [&](const Eigen::Vector3d& at) { return torque_free_acceleration(body, at); };
   const Eigen::Vector3d k1 = slope(w);
@@ -24,7 +24,7 @@ Eigen::Vector3d after(const FlyingBody& body, const Eigen::Vector3d& w, double d
 
 }  // namespace
 
-/// Returns the angular acceleration of a body without torque: flight_arc.md (A1).
+/// Returns the angular acceleration of a torque-free body: flight_arc.md (A1).
 Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Vector3d& w) {
   const Eigen::Vector3d momentum = body.inertia_I_kg_m2 * w;
   return body.inertia_I_kg_m2.inverse() * momentum.cross(w);
@@ -53,8 +53,8 @@ Status flight_arc(const FlyingBody& body, const Eigen::Vector3d& start_rad_s, Ti
     const double dt = seconds(sample.time_ns - from);
     const Eigen::Vector3d middle = after(body, w, 0.5 * dt), end = after(body, w, dt);
     sample.w_WI_I_rad_s = (w + 4.0 * middle + end) / 6.0;  // mean rate: flight_arc.md (A7)
-    // The specific force must reproduce the change of the IMU's velocity relative to the centre of mass: flight_arc.md
-    // (A9), (A10). SweepTrajectory integrates the force to this change of velocity.
+    // The specific force must reproduce the velocity change of the IMU relative to the centre of mass: flight_arc.md
+    // (A9), (A10). SweepTrajectory integrates the force to exactly this velocity change.
     const Eigen::Vector3d turned = sample.w_WI_I_rad_s * dt;
     const Eigen::Vector3d gained = w.cross(body.p_IB_I_m) - so3::exp(turned) * end.cross(body.p_IB_I_m);
     sample.f_I_m_s2 = so3::left_jacobian_inverse(turned) * gained / dt;

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 namespace u = unknowns;
 using Matrix = Registration::Matrix;
 
-/// Rotates the blocks of the unknowns that are vectors in the world.
+/// Returns the matrix that rotates those blocks of the unknowns that are world vectors.
 Matrix FrameChange::rotation() const {
   Matrix T = Matrix::Identity();
   const Eigen::Matrix3d R = T_MW.linear();

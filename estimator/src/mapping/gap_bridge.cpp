@@ -14,7 +14,7 @@ constexpr TimeNs kStepsMax = 64;
 
 }  // namespace
 
-/// Interpolates the rate across a gap in the IMU data: mapping.md (R44).
+/// Interpolates the angular rate across a gap in the IMU data: mapping.md (R44).
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples) {
   const TimeNs from_ns = before.time_ns, to_ns = after.from_ns;

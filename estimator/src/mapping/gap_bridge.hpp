@@ -9,10 +9,10 @@
 
 namespace tumble::mapping {
 
-/// Longest IMU window whose reading describes the motion inside the window.
+/// kGap_ns is the longest IMU window whose reading still describes the motion inside the window.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
-/// WindowRate is the rate of one window of the IMU, in IMU axes, with its standard deviation.
+/// WindowRate is the angular rate in one window of the IMU, in IMU axes, with its standard deviation.
 struct WindowRate {
   Eigen::Vector3d rate_rad_s;
   Eigen::Vector3d sigma_rad_s;
@@ -23,11 +23,11 @@ struct WindowRate {
   static void members(Self& s, Visitor& visit);
 };
 
-/// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly. The standard
-/// deviation of the interpolated rate is that of a random walk known at both ends, see mapping.md (R44). All axes of
-/// the appended samples count as clipped. A registration that estimates the saturation deficit then also estimates the
-/// interpolation error. The force of the appended samples is unknown (`bridges_gap`). The samples are 10 ms long, or
-/// longer in gaps beyond 0.64 s.
+/// Appends samples that fill the gap from the end of `before` to the start of `after`. The function interpolates the
+/// angular rate linearly. The standard deviation of the interpolated rate is that of a random walk with known ends, see
+/// mapping.md (R44). All axes of the appended samples count as clipped. A registration that estimates the saturation
+/// deficit therefore also estimates the interpolation error. The appended samples have an unknown specific force
+/// (`bridges_gap`). The appended samples are 10 ms long, or longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

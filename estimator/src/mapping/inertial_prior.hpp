@@ -9,30 +9,29 @@
 
 namespace tumble::mapping {
 
-/// Returns the errors of inertial integration over one segment as uncertainty of the state at the start of the segment.
-/// A rate error is assumed constant over the segment, because the error comes from saturation, not from white noise.
-/// The standard deviation of the attitude is therefore the time integral of the rate's standard deviation. Axes in
-/// `deficit_axes` (bits) are excluded, because the registration estimates the saturation deficit of the axes
-/// separately.
+/// Returns the errors of inertial integration over one segment as a covariance of the state at the segment's start. A
+/// rate error is assumed constant over the segment, because it comes from saturation, not from white noise. The
+/// standard deviation of the attitude is therefore the time integral of the rate's standard deviation. The function
+/// excludes the axes in `deficit_axes` (bits), whose saturation deficit the registration estimates separately.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
-/// Returns the variance of the velocity change over the segment due to accelerometer saturation, in W. The saturation
-/// deficit of the force is assumed constant while a saturation lasts.
+/// Returns the variance of the velocity change over the segment that accelerometer saturation causes, in frame W. The
+/// saturation deficit of the specific force is assumed constant while the saturation lasts.
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples);
 
-/// Computes the state at rest at the start of the first sample's window, with origin of W and yaw 0. The mean specific
-/// force of the samples within `rest_s` levels the attitude. Returns `degenerate` if the mean force is below 1 m/s^2.
+/// Computes the state at rest at the start of the first sample's window, at the origin of W with yaw 0. The mean
+/// specific force of the samples within `rest_s` levels the attitude. Returns `degenerate` if the mean specific force
+/// is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
-/// Computes the state at rest, levelled by a specific force, without a time.
+/// Computes the state at rest, levelled by a specific force, without a time stamp.
 Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
                      MotionState& state);
 
-/// Returns the standard deviation of the angular velocity of a rate method, per IMU axis, limited to the mapper's upper
-/// bound.
+/// Returns the standard deviation of the angular rate per IMU axis, limited to the mapper's upper bound.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);
 
 }  // namespace tumble::mapping

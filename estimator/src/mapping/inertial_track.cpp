@@ -35,8 +35,8 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // The bound limits the norm of an undetected rate. Each of the three axes therefore gets the bound divided by
-  // sqrt(3).
+  // The parameter `rate_rad_s` limits the norm of an undetected angular rate. Each of the three axes therefore gets the
+  // limit divided by sqrt(3).
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -61,7 +61,7 @@ Status InertialTrack::check(const ImuSample& sample) const {
 
 void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
-  // The first window has no start time and gets the length of the second window.
+  // The first window has no start time, so it gets the length of the second window.
   if (!boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
@@ -73,7 +73,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // after a gap, a reading's window is as long as the window before the gap
+  // the first window after a gap is as long as the window before the gap
   if (after_gap && newest_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
@@ -90,13 +90,13 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !fly_through(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (undecided_rad_s_.empty()) return;
-  // The list of undecided rates contains one rate per sample. The last rate belongs to the pending sample.
+  // The list of undecided rates contains one rate per sample. The last undecided rate belongs to the pending sample.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Bridges the gap by a ballistic arc if the predicted rate agrees with the next reading: flight_arc.md (A12). The
-/// predicted rate assumes free flight up to the end of the gap.
+/// Bridges a gap by ballistic flight if the predicted rate agrees with the next reading: flight_arc.md (A12). The
+/// prediction assumes free flight up to the end of the gap.
 bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -117,8 +117,8 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
 }
 
 /// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The flight test uses the
-/// rates before and after the sample. If a gap follows the sample, the rate after the sample is the prediction of free
-/// flight.
+/// angular rates before and after the sample. If a gap follows the sample, free flight predicts the angular rate after
+/// the sample.
 bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
@@ -141,13 +141,13 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // during the initial rest, the mean rate is the gyro's bias
+  // during the initial rest, the mean rate is the bias of the gyro
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
   if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
-    // The mean of a new run is as noisy as single readings. Noise may therefore restart the run.
+    // The mean at the start of a rest is as noisy as single readings. Noise may therefore interrupt the rest.
     if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
       initial_.run_ns = next.rest_start_ns;
     initial_.lasts = next.rest_start_ns == initial_.run_ns;
@@ -164,7 +164,7 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   undecided_rad_s_.clear();
 }
 
-/// If a complete reading shows motion, marks all samples since the start of the reading as motion.
+/// If a complete reading shows motion, the function marks all samples since the start of the reading as motion.
 void InertialTrack::take_back_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
@@ -180,7 +180,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A rest of this length has set the bias. The first samples may no longer be stored.
+  // A rest of this length has already determined the gyro bias, although the first samples may no longer be stored.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

@@ -11,8 +11,8 @@
 
 namespace tumble::mapping {
 
-/// Stores the IMU's samples since the end of the last sweep. InertialTrack detects the initial rest and flight, and
-/// bridges gaps.
+/// InertialTrack stores the IMU samples since the end of the last sweep. InertialTrack also detects the initial rest
+/// and flight, and bridges gaps in the data.
 class InertialTrack {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -21,36 +21,36 @@ class InertialTrack {
 
   /// Returns `time_order` unless the sample is later than all earlier samples.
   Status check(const ImuSample& sample) const;
-  /// Adds a sample that check() accepted, with its angular velocity.
+  /// Adds a sample that check() accepted, with its angular rate.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
-  /// Returns the stored samples, starting with the window that contains the end of the last sweep.
+  /// Returns the stored samples, starting with the IMU window that contains the end of the last sweep.
   std::span<const MotionSample> samples() const { return samples_; }
   /// Returns the samples that end after `from_ns`.
   std::span<const MotionSample> samples_from(TimeNs from_ns) const;
-  /// Returns the end of the last sweep, or nothing before the first sweep.
+  /// Returns the end time of the last sweep, or nothing before the first sweep.
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
-  /// Returns the mean specific force of the current rest, if the rest had lasted for `lasted_s` by `time_ns`.
+  /// Returns the mean specific force of the current rest if the rest had lasted at least `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the first `lasted_s` of samples, or all samples if there are fewer, are a rest.
+  /// Returns whether the first `lasted_s` seconds of samples (or all samples, if fewer) show rest.
   bool starts_at_rest(double lasted_s) const;
-  /// Returns whether the rest at the start continues.
+  /// Returns whether the initial rest continues.
   bool has_not_moved() const { return initial_.lasts; }
-  /// Returns the time of the newest sample, or the end of the last sweep without samples.
+  /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.
   std::optional<TimeNs> last_ns() const;
   /// Returns whether the IMU measures only gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
   bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
-  /// Marks the forces before `end_ns` as unknown, as in a gap; the rates remain.
+  /// Marks the specific forces before `end_ns` as unknown, as in a gap, and keeps the angular rates.
   void exclude_accelerometer(TimeNs end_ns);
-  /// Deletes samples that ended by `end_ns`, the end of a sweep.
+  /// Deletes the samples that ended by `end_ns`, the end of a sweep.
   void prune_until(TimeNs end_ns);
 
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// InitialRest is the rest at the start of a recording. The initial rest cannot resume after its end, and its results
+  /// InitialRest is the rest at the start of a recording. The initial rest cannot resume after its end, but its results
   /// remain.
   struct InitialRest {
     bool lasts = true;

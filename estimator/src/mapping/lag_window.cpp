@@ -21,11 +21,11 @@ WindowSweep& LagWindow::enter() {
   return sweeps_.emplace_back();
 }
 
-/// Smooths the sweeps of the window by a backward pass (Rauch, Tung, Striebel, 1965): mapping.md (R63). The measurement
-/// of a sweep is its registration, linearised at the converged value. To first order, the smoothed result is the
+/// Smooths the sweeps of the lag window by a backward pass (Rauch, Tung, Striebel, 1965): mapping.md (R63). The
+/// measurement of a sweep is its registration, linearised at the converged pose. To first order, smoothing gives the
 /// maximum a posteriori estimate of all sweeps' unknowns. Smoothing improves sweeps with few features. In scenes with
-/// many features, the window length hardly matters. For windows of 1, 2 and 3 sweeps, the final error was 1.0 to 1.9
-/// cm.
+/// many features, the length of the lag window hardly matters. With lag windows of 1, 2 and 3 sweeps, the final
+/// position error was 1.0 to 1.9 cm.
 void LagWindow::smooth() {
   if (sweeps_.empty()) return;
   sweeps_.back().smoothed = sweeps_.back().filtered;

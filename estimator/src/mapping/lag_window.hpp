@@ -24,7 +24,7 @@ struct WindowSweep {
   TimeNs end_ns = 0;
   std::vector<InsertedPoint> inserted;
 
-  /// Builds the smoothed motion of the sweep. Returns the errors of SweepTrajectory::build.
+  /// Computes the smoothed motion of the sweep. Returns the errors of SweepTrajectory::build.
   Status motion(SweepTrajectory& trajectory) const;
 };
 
@@ -34,18 +34,18 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep. If the window is full, the oldest sweep leaves the window.
+  /// Adds an empty sweep to the lag window. If the lag window is full, its oldest sweep leaves.
   WindowSweep& enter();
-  /// Returns whether the oldest sweep has its final estimate.
+  /// Returns whether the oldest sweep of the lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
-  /// Smooths each sweep except the newest with the data of later sweeps, see mapping.md (R63).
+  /// Smooths all sweeps except the newest with the data of later sweeps, see mapping.md (R63).
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Fixes the positions of all inserted points, because indices of the map have changed.
+  /// Makes the positions of all inserted points final, because the map's point indices have changed.
   void clear_inserted();
 
-  /// Calls `change` with each sweep, oldest first.
+  /// Calls `change` for each sweep, oldest first.
   template <class Change>
   void for_each(const Change& change) {
     for (WindowSweep& sweep : sweeps_) change(sweep);

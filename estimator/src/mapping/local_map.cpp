@@ -12,8 +12,8 @@ namespace tumble::mapping {
 
 namespace {
 
-/// Variance of a point due to the uncertain trajectory within a segment, relative to the segment's ends: mapping.md
-/// (R64).
+/// PoseVariance is the variance of a map point due to the uncertain trajectory within a segment, relative to the
+/// segment's ends: mapping.md (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -59,7 +59,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
       const Eigen::Vector3f position = levers_W_m_[i] + trajectory.common_position_m(points[i].t_s).cast<float>();
       sight_.add(position);
       if (map_.is_occupied(position)) continue;  // true for most points
-      // standard deviation of an inserted point: mapping.md (R64)
+      // standard deviation of a point that is inserted into the map: mapping.md (R64)
       const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =

@@ -9,20 +9,20 @@ namespace tumble {
 
 namespace {
 
-// sin 10 deg. If the angle between a beam and the line to a neighbouring return is larger, both returns belong to one
-// surface (Bogoslavskyi, Stachniss).
+// kSurfaceSine is sin 10 deg. Two neighbouring returns belong to one surface if the line between them forms a larger
+// angle with the beam (Bogoslavskyi, Stachniss).
 constexpr float kSurfaceSine = 0.17365f;
-// sin 2 deg. If the sensor is 0.5 m above the ground, a beam of 14 m length meets the ground at 2 deg. A smaller angle
-// between a surface and the beam indicates an edge.
+// kGrazingSine is sin 2 deg. From 0.5 m above the ground, a beam of 14 m length meets the ground at 2 deg. A smaller
+// angle between the beam and a surface indicates an edge.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // tolerance of the range difference for uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// Maximum fraction of lone returns in a sweep in clear air. Lone returns come from thin objects, edges and distant
-// ground. Measured fractions are 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig that sees little
-// ground.
+// kClearShare is the maximum fraction of lone returns in a sweep in clear air. In clear air, lone returns come from
+// thin objects, edges and distant ground. The measured fraction of lone returns is 0.05 % at rest, 0.3 to 0.7 % in
+// motion, and 1.6 % for a thrown rig that sees little ground.
 constexpr float kClearShare = 0.02f;
 
 float square(float x) {
@@ -31,7 +31,7 @@ float square(float x) {
 
 }  // namespace
 
-/// Returns the squared sine of the angle between two beams. For an angle of 90 deg or more, returns 1.
+/// Returns the squared sine of the angle between two beams, or 1 for angles of 90 deg or more.
 float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
   if (a.point_L_m.dot(b.point_L_m) <= 0.0f) return 1.0f;
   return a.point_L_m.cross(b.point_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
@@ -46,7 +46,8 @@ bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam&
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
-/// Returns whether the line between two returns forms an angle with the beam of at least `sine`: mapping.md (R14).
+/// Returns whether the line between two returns forms an angle with the beam whose sine is at least `sine`: mapping.md
+/// (R14).
 bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.point_L_m.cross(b.point_L_m).squaredNorm() >=
@@ -65,7 +66,7 @@ bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Bea
   return square(beam.range_m - expected_m) <= std::max(square(kDeviations) * variance, square(bend_m));
 }
 
-/// The neighbours on one side of a return on its ring, starting with the closest neighbour.
+/// Beside contains the neighbours of a return on one side of its ring, nearest first.
 struct LoneReturns::Beside {
   std::array<const Beam*, kNeighbours> beam;
   int count = 0;
@@ -84,8 +85,8 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
 
 bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
-  // In most cases, the previous beam shows that a return is not alone. An index below 0 wraps beyond the end of the
-  // list.
+  // The previous beam is checked first, because it usually shows that a return is not alone. An index below 0 wraps
+  // around to a number beyond the end of the list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
   if (has_before && stands(kSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);
@@ -109,7 +110,8 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   });
 }
 
-/// Sorts the points by ring, and within each ring by firing time. Overwrites the start indices of the rings.
+/// Sorts the points by lidar ring, and within each ring by firing time. The sort overwrites the start indices of the
+/// rings.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   ring_next_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -126,7 +128,8 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the angular step from each beam to the previous beam on its ring. The first beam of a ring has a step of 1.
+/// Computes the angular step from each beam to the previous beam on its ring. The first lidar beam of each ring has a
+/// step of 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();
@@ -137,7 +140,7 @@ void LoneReturns::measure_steps() {
   }
 }
 
-/// Returns the median of the angular steps along the rings. If there are no steps, returns 1.
+/// Returns the median of the squared angular steps along the rings, or 1 if there are no steps.
 float LoneReturns::median_step2() {
   if (sorted_steps2_.empty()) return 1.0f;
   const auto middle = sorted_steps2_.begin() + static_cast<std::ptrdiff_t>(sorted_steps2_.size() / 2);

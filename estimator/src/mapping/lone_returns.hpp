@@ -9,29 +9,30 @@
 
 namespace tumble {
 
-/// RangeNoise is the standard deviation of a range: the larger of a length and a fraction of the range.
+/// RangeNoise is the standard deviation of a measured range: the larger of a length and a fraction of the range.
 struct RangeNoise {
   double sigma_m, share;
 };
 
-/// Detects lone returns, which no neighbouring beam confirms: dust, rain, snow, blades of grass, birds.
+/// LoneReturns detects returns that no neighbouring beam confirms: dust, rain, snow, blades of grass, birds.
 ///
-/// A surface reflects many neighbouring beams. A neighbour on the same ring of the lidar confirms a return in one of
-/// three ways. First, the range of one of the two returns before or after is equal within noise. Second, the line to an
-/// adjacent return is steep enough against the beam to be a surface (Bogoslavskyi and Stachniss, IROS 2016). Third, the
-/// return is on the line between a return before and a return after, as on ground at a grazing angle. See mapping.md
-/// (R13), (R14), (R15). Neighbours are within the angular step of the sweep, so a return among misses is a lone return.
-/// All returns are kept if successive returns are too far apart to be compared. All returns are also kept if the number
-/// of lone returns is not larger than in clear air. Returns of larger moving objects (people, cars) are not lone
-/// returns.
+/// A real surface reflects many neighbouring beams. A neighbour on the same ring of the lidar confirms a return in one
+/// of three ways. First, one of the two returns before or after has an equal range within noise. Second, the line to an
+/// adjacent return forms a large enough angle with the beam to be a surface (Bogoslavskyi and Stachniss, IROS 2016).
+/// Third, the return is on the line between an earlier and a later return, as on ground at a grazing angle. The three
+/// tests are equations (R13), (R14), (R15) of mapping.md. Neighbours are at most one angular step of the lidar apart,
+/// so a return whose neighbouring beams miss is a lone return. LoneReturns keeps all returns if successive returns are
+/// too far apart for a comparison. LoneReturns also keeps all returns if there are no more lone returns than in clear
+/// air. Returns of larger moving objects (people, cars) are not lone returns.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points` and returns their number. Cost: O(number of points). The remaining points
-  /// are in firing order per ring. Memory is allocated only for a sweep larger than all earlier sweeps.
+  /// are ordered by ring, and within each ring by firing time. The function allocates memory only for a sweep larger
+  /// than all earlier sweeps.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
-  /// Beam contains the data of a return for the comparison of neighbours; beams are contiguous per ring.
+  /// Beam contains the data of a return for the comparison with its neighbours; the beams of a ring are contiguous.
   struct Beam {
     Eigen::Vector3f point_L_m;
     float range_m;

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
-// Number of sweeps that must see through a point before the point is omitted. A single sweep may be wrong near an edge.
+// A map point is omitted from the drawing if at least kSeenThrough sweeps saw through it. A single sweep may be wrong
+// near an edge.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

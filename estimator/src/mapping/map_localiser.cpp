@@ -8,10 +8,10 @@ namespace tumble::mapping {
 
 namespace {
 
-// A wrong pose makes a covered surface point agree by chance with at most this probability.
+// At a wrong pose, a covered surface point agrees with the prior map by chance with at most probability kChance.
 constexpr double kChance = 0.8;
-// The second best pose shows the chance in the present surroundings. This share of its disagreeing points is added to
-// the chance as a margin for its sampling error.
+// The second best pose shows how many points agree with the prior map by chance in these surroundings. The fraction
+// kChanceMargin of the second pose's disagreeing points is a margin for sampling error.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // bound for one search
 constexpr std::size_t kLeastPoints = 100;  // number of surface points for a search
@@ -22,7 +22,7 @@ constexpr int kSearchSweeps = 5;           // number of sweeps between two searc
 constexpr double kSigmas = 3.0;            // limits of the search about an approximate pose
 constexpr double kLeastReach_m = 1.0, kLeastReach_rad = 0.15;
 
-/// Relative entropy of two Bernoulli distributions.
+/// Returns the relative entropy of two Bernoulli distributions.
 double divergence(double share, double chance) {
   double out = 0.0;
   if (share > 0.0) out += share * std::log(share / chance);
@@ -69,7 +69,8 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
   return pose;
 }
 
-/// Searches the best pose. The second best pose is a wrong pose, which measures how many points agree by chance.
+/// Searches the best and the second best pose of the local map in the prior map. The second best pose is wrong, and
+/// therefore measures how many points agree by chance.
 void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
   if (map().T_MI) {  // the local frame was placed at the stated pose, so that the heading of W in M is about zero
@@ -89,7 +90,8 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   chance_ = std::max(kChance, second + kChanceMargin * (1.0 - second));
 }
 
-/// Chernoff bound of the binomial test, with Bonferroni's correction for the number of compared poses.
+/// Tests a pose with the Chernoff bound of the binomial test, and Bonferroni's correction for the number of compared
+/// poses.
 bool MapLocaliser::passes(const FramePose& pose) const {
   if (pose.ratio() <= chance_ || chance_ >= 1.0) return false;
   return double(pose.covered) * divergence(pose.ratio(), chance_) >= std::log(tried_ / kFalseAcceptance);

@@ -8,10 +8,12 @@
 
 namespace tumble::mapping {
 
-/// MapLocaliser decides whether and where the current run is in a prior map: mapping.md, "Localisation in a prior map".
+/// MapLocaliser decides whether the current run is inside a prior map, and where: mapping.md, "Localisation in a prior
+/// map".
 ///
-/// The search proposes a pose of the local frame W in the frame M of the prior map. The pose is accepted if it passes
-/// a test against chance after several successive sweeps. A pose that fails the test twice in succession is rejected.
+/// MapLocaliser proposes a pose of the local frame W in the frame M of the prior map. MapLocaliser accepts a pose that
+/// passes a test against chance after several successive sweeps. MapLocaliser rejects a pose that fails the test twice
+/// in succession.
 class MapLocaliser {
  public:
   MapLocaliser() = default;
@@ -20,13 +22,15 @@ class MapLocaliser {
   bool has_map() const { return scene_ != nullptr; }
   bool is_localised() const { return localised_; }
   const PriorMap& map() const { return scene_->map(); }
-  /// Starts again with the same map, from the given pose or from the whole map.
+  /// Restarts the localisation in the same map, from the given pose or with a search of the whole map.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Compares the local map with the prior map after a sweep. Returns the pose of the local frame in the prior map when
-  /// the pose is accepted. Cost: a few milliseconds, or about a second for every fifth sweep while no pose is proposed.
+  /// Compares the local map with the prior map after a sweep. Returns the pose of the local frame in the prior map once
+  /// MapLocaliser accepts the pose. Cost: a few milliseconds, or about a second for every fifth sweep while no pose is
+  /// proposed.
   std::optional<FramePose> observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
-  /// Returns ok if there is no prior map, or if the run is localised in the prior map. Returns `degenerate` before.
+  /// Returns `ok` if there is no prior map, or if the run is localised in the prior map. Returns `degenerate` while the
+  /// run is not localised.
   Status status() const;
 
   template <class Self, class Visitor>

@@ -7,8 +7,8 @@
 #include "odometry_members.hpp"
 #include "sweep_members.hpp"
 
-/// mapping_members.hpp describes the members of the odometry's parts that persist between sweeps, as state_visitor.hpp
-/// explains. The parts are explained in README.md.
+/// mapping_members.hpp lists those members of the odometry that persist between sweeps, as state_visitor.hpp describes.
+/// README.md explains the parts of the odometry.
 namespace tumble {
 
 namespace mapping {
@@ -109,7 +109,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
 
 }  // namespace mapping
 
-/// Visits the members except the parameters, which are set at construction.
+/// Visits all members except the parameters, which the constructor sets.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);

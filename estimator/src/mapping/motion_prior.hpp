@@ -12,12 +12,12 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps. Each kind
-/// of information is a type with a function `impose` or `weigh`. The function `impose` replaces the state at the sweep
-/// boundary, before the sweep's noise is added. The function `weigh` fuses a measurement with the prediction, after all
-/// noise is added.
+/// motion_prior.hpp defines types of information about a sweep's motion, in addition to the previous sweeps. Each type
+/// of information has a function `impose` or `weigh`. The function `impose` replaces the state at the start of the
+/// sweep, before the sweep's noise is added. The function `weigh` fuses a measurement with the prediction, after all
+/// noise has been added.
 
-/// InertialPrior provides no additional information: the velocity at the end of the last sweep continues by the IMU.
+/// InertialPrior adds no information: the IMU propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
 
 /// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis. The
@@ -27,15 +27,14 @@ struct KnownVelocity {
   double sigma_m_s = 0.0;
 };
 
-/// ConstantVelocity assumes a constant velocity with the uncertainty of impacts, for an accelerometer that is absent or
-/// always saturated. With ConstantVelocity, the gyro is still used. ConstantVelocity needs neither `impose` nor
-/// `weigh`, because its samples are treated like the samples of a gap (InertialTrack::exclude_accelerometer). The gap
-/// also determines the noise.
+/// ConstantVelocity assumes a constant velocity, with the uncertainty of impacts, if the accelerometer is absent or
+/// always saturated. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples like those of a gap
+/// (InertialTrack::exclude_accelerometer), so it has neither `impose` nor `weigh`.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
 
-/// Process noise of position, attitude and velocity within a sweep.
+/// MotionNoise is the process noise covariance of position, attitude and velocity within a sweep.
 using MotionNoise = Eigen::Matrix<double, 9, 9>;
 
 void impose(const KnownVelocity& prior, Prediction& prediction);
@@ -43,8 +42,9 @@ inline void impose(const MotionPrior& prior, Prediction& prediction) {
   if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) impose(*velocity, prediction);
 }
 
-/// Updates the prediction of a sweep by a reading from within the sweep, see mapping.md (R34) to (R37). `within` is a
-/// part of the sweep's noise. An unusable reading, or a reading outside of the window, has no effect.
+/// Updates the prediction of a sweep by an odometer reading from within the sweep, see mapping.md (R34) to (R37).
+/// `within` is a part of the sweep's process noise. The function ignores an unusable reading, and a reading outside of
+/// the motion window.
 void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                    const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,

@@ -21,16 +21,15 @@ namespace mapping {
 
 void require_params(const LidarInertialOdometry::Params& params);
 
-/// UpdatedSweep contains the unknowns at the start of a sweep, predicted and updated, and the motion of the updated
-/// unknowns.
+/// UpdatedSweep contains the predicted and the updated unknowns at the start of a sweep, and the updated motion.
 struct UpdatedSweep {
   const Prediction& prediction;
   const StateEstimate& start;
   const SweepTrajectory& trajectory;
 };
 
-/// SweepScratch contains buffers of a sweep, which are kept to avoid allocations. Each sweep fills the buffers before
-/// reading the buffers, and passes their contents between its steps as arguments.
+/// SweepScratch contains work buffers of a sweep, which are kept to avoid allocations. Each sweep writes the buffers
+/// before it reads them.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -41,38 +40,39 @@ struct SweepScratch {
 
 }  // namespace mapping
 
-/// Impl contains the state of the odometry between sweeps, and the steps of processing a sweep; see README.md.
+/// Impl contains the state of the odometry between sweeps, and the steps of processing one sweep, see README.md.
 struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
-  /// Registers a sweep like LidarInertialOdometry::add_sweep, with time stamps in the IMU's clock.
+  /// Registers a sweep like LidarInertialOdometry::add_sweep, with time stamps in the clock of the IMU.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
-  /// Initialises the state from the IMU at rest, before the first sweep.
+  /// Initialises the state from an IMU at rest, before the first sweep.
   Status level_at_first();
   Status level_start(MotionState& levelled) const;
-  /// Starts the map if the sweep is suitable, and returns ok. If the sweep is not suitable, the state is propagated
-  /// inertially to the sweep's end.
+  /// Starts the map if the sweep is suitable. If the sweep is unsuitable, the function propagates the state inertially
+  /// to the end of the sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
-  /// Registers a sweep to the map. `trajectory` is the IMU's motion from the sweep boundary on. On return, `trajectory`
-  /// is that of the alignment, or that of a failed attempt without alignment.
+  /// Registers a sweep to the map. On entry, `trajectory` is the IMU's predicted motion from the start of the sweep on.
+  /// On return, `trajectory` is the aligned motion, or the motion of a failed attempt.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
-  /// Returns the updated state. If the robot is at rest after a tracking failure, the prediction assumes zero velocity.
+  /// Returns the state after the update by the registered sweep. If the robot is at rest after a tracking failure, the
+  /// prediction assumes zero velocity.
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
                                              bool has_ring_numbers, const mapping::Placed& placed, SweepReport& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  /// Adds a sweep to the window that continues from the start of the updated sweep.
+  /// Adds a sweep to the lag window; the new sweep continues from the start of the updated sweep.
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
-  /// Sets the predicted motion to zero if the robot is at rest after a tracking failure and only the IMU provides the
+  /// Sets the predicted velocity to zero if the robot rests after a tracking failure and only the IMU provides the
   /// motion.
   void stop_at_rest(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                     mapping::Prediction& prediction) const;
@@ -80,28 +80,28 @@ struct LidarInertialOdometry::Impl {
   Status go_on_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                           mapping::LagWindow* into) const;
   void go_back_to_inertia();
-  /// Returns the state at the sweep boundary according to a contradicted relocalisation, after tracking failure.
+  /// Returns the state at the sweep boundary according to a contradicted relocalisation, after a tracking failure.
   /// Returns null if no relocalisation was contradicted.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
-  /// Compares the local map with the prior map after a registered sweep. If a pose is accepted, the state continues in
-  /// the frame and with the points of the prior map.
+  /// Compares the local map with the prior map after a registered sweep. If MapLocaliser accepts a pose, the odometry
+  /// continues in the frame and with the points of the prior map.
   void localise(const SweepReport& report);
   void enter_prior_map(const mapping::FramePose& pose);
-  /// Returns whether sweeps extend the map.
+  /// Returns whether new sweeps extend the map.
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU's windows, and at `end_ns` for the last window. `errors` is the
-  /// covariance of the unknowns at the start of the sweep.
+  /// Returns the poses at the ends of the IMU windows, and at `end_ns` for the last window. `errors` is the covariance
+  /// of the unknowns at the start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
 
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants that relate several members. Returns the first violated invariant.
+  /// Checks the invariants that relate several members, and returns the first violation.
   Status check_state() const;
   Status check_other() const;
 

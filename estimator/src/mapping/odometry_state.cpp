@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of the mapper.
+// odometry_state.cpp saves and restores the state of the mapper.
 #include <utility>
 
 #include "../common/state_bytes.hpp"
@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-/// Visits parameters that an earlier run may have estimated: SecondPass.
+/// Visits parameters that an earlier run may have estimated, which are those of SecondPass.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);

@@ -31,7 +31,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
-  // The initial trajectory is the inertial prediction from the boundary of the last sweep. The alignment refines it.
+  // The initial trajectory is the inertial prediction from the end of the last sweep, which the alignment then refines.
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -43,7 +43,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const std::unique_ptr<Prediction> prediction(
       new Prediction(mapping::predict(params, boundary, motion, trajectory, known)));  // too large for the stack
 
-  // A sweep without usable returns gets the inertial prediction as its pose.
+  // A sweep without usable returns gets the inertially predicted pose.
   mapping::SweepPoints& points = scratch.points;
   mapping::SweepPoints::Counts counts;
   const Status points_status = points.select(params, returns, end_ns - start_ns, before.calibration,
@@ -70,8 +70,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // If the map has too few points, LocalMap inserts the sweep at the predicted pose. LocalMap omits points that are too
-  // uncertain.
+  // If the map has too few points, LocalMap inserts the sweep at its predicted pose. LocalMap omits points whose
+  // position is too uncertain.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
@@ -92,8 +92,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // With a wrong clock, the first sweep may start before the first sample. With a wrong clock, the initial rest extends
-  // backwards to the start of the sweep.
+  // If the lidar clock is wrong, the first sweep may start before the first IMU sample. If the lidar clock is wrong,
+  // the initial rest extends backwards to the start of the first sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -117,15 +117,16 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Levels the start by the mean force, which is gravity only if the start is at rest.
+/// Levels the initial attitude by the mean specific force, which is gravity only if the robot is at rest.
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, track.samples(), levelled);
   if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_to_motion(levelled);
   return status;
 }
 
-/// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, the sweep's start is
-/// the levelled state. If the sweep begins later, its start is the result of dead reckoning (mapping.md, "Start").
+/// Starts the map with the first sweep that has enough points. If the sweep begins with the first IMU sample, the state
+/// at its start is the levelled state. If the sweep begins later, dead reckoning provides the state at its start
+/// (mapping.md, "Start").
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   const SweepCalibration calibration = boundary.state_estimate.mean.calibration;
@@ -215,13 +216,13 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// Returns the state at the sweep's start. After a tracking failure at rest, the prediction is corrected before the
-/// update, because the lag window also uses the prediction.
+/// Returns the state at the sweep's start. After a tracking failure at rest, the prediction is corrected first, because
+/// the lag window also uses the prediction.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // The inertial prediction remains the only estimate. If the IMU is at rest, a velocity of zero prevents a drift of
-  // the velocity.
+  // The inertial prediction remains the only estimate of the motion. For an IMU at rest, a velocity of zero prevents a
+  // drift of the velocity.
   if (mapping::is_lost(tracking)) stop_at_rest(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -249,8 +250,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the persistent state after a sweep. The lag window needs the old boundary between the sweep and the previous
-/// sweep. The sweep therefore enters the window before boundary_after() replaces the boundary.
+/// Updates the state that persists between sweeps. The lag window needs the old boundary between this sweep and the
+/// previous sweep. The sweep therefore enters the lag window before boundary_after() replaces the boundary.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -270,7 +271,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     window.smooth();
     window.move_inserted(map);
   }
-  // the oldest sweep leaves the window with the next sweep, so its pose is final
+  // the oldest sweep leaves the lag window with the next sweep, so its pose is final
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
@@ -282,8 +283,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Adds the pose error of a sweep to the map error at the robot's position. The points that the sweep adds to the map
-/// have the pose error of the sweep.
+/// Adds the pose error of a sweep to the map error at the robot's position. Map points that the sweep adds share the
+/// pose error of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -291,7 +292,7 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// Deletes the input up to `end_ns`, which the odometry has already used.
+/// Deletes the input data up to `end_ns`, which the odometry has already used.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
@@ -301,7 +302,7 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// Propagates the alternative pose by inertial prediction. The alternative pose is the pose without an unconfirmed
+/// Propagates the alternative pose by inertial prediction. The alternative is the pose without an unconfirmed
 /// relocalisation. After a second tracking failure, the alternative is the contradicted pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
@@ -319,8 +320,8 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!go_on_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// Propagates the state from the boundary to a sweep's end, without the sweep's points. If `rests`, the velocity is
-/// known to be 0. If there is a lag window, the sweep enters the window.
+/// Propagates the state to the end of a sweep without using the sweep's points. If `rests` is true, the velocity is
+/// known to be 0. The sweep also enters the lag window if there is one.
 Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                                                      mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -341,8 +342,8 @@ Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion,
   return {};
 }
 
-/// Reverts a contradicted relocalisation. Removes the points inserted since the relocalisation from the map, and
-/// resumes inertial prediction. The contradicted pose remains a start of the search.
+/// Reverts a contradicted relocalisation. The function removes the map points inserted since the relocalisation, and
+/// resumes inertial prediction. The contradicted pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
   map.withdraw(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
   std::swap(boundary, other->boundary);

@@ -9,10 +9,9 @@
 
 namespace tumble::mapping {
 
-/// Computes a sum of outer products of columns of up to `Rows` numbers. The result equals
-/// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's function stores its blocks by value, which needs 86 KiB of
-/// stack for 128 columns of 28 numbers. OuterProducts therefore stores the blocks on the heap and calls Eigen's kernel
-/// directly.
+/// OuterProducts computes a sum of outer products of columns with up to `Rows` numbers. The sum equals the result of
+/// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack, which needs 86 KiB
+/// for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls Eigen's kernel directly.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -44,7 +43,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Spare is a pool of buffers for threads, which grows to the number of concurrent users.
+/// Spare is a pool of work buffers for threads, which grows to the number of concurrent users.
 template <class Work>
 class Spare {
  public:

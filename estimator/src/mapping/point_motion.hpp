@@ -11,14 +11,15 @@
 
 namespace tumble::mapping {
 
-/// PointMotion is the derivative of a sweep's point by the unknowns, one direction at a time.
+/// PointMotion computes the derivative of a sweep point's position with respect to the unknowns, one direction at a
+/// time.
 class PointMotion {
  public:
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Computes the derivative of the point's position along a direction of the world by all unknowns, see mapping.md
-  /// (R17).
+  /// Computes the derivative of the point's position along a world direction with respect to all unknowns, see
+  /// mapping.md (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
   /// Returns the lever arm vector u of SweepTrajectory::common_position_m, in W.

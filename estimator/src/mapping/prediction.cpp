@@ -19,8 +19,8 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// Continues the saturation deficit of an axis that is saturated at the boundary. The predicted saturation deficit
-/// decays exponentially: mapping.md (R48).
+/// Predicts the saturation deficit of an axis that is saturated at the end of the last sweep. The predicted saturation
+/// deficit decays exponentially: mapping.md (R48).
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -45,16 +45,16 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // the following samples belong to the next segment
+    // the remaining samples belong to the next segment
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
   return sigma;
 }
 
-/// Adds the process noise of the saturation deficit. The knots of the deficit are samples of a first-order Gauss-Markov
-/// process with the reported standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep,
-/// equation (R49) gives the covariance of the knots.
+/// Adds the process noise of the saturation deficit. The saturation deficit is a first-order Gauss-Markov process with
+/// the reported standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep, equation
+/// (R49) gives the covariance of its samples.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -121,8 +121,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force late in a segment hardly changes the fitted velocity. The velocity variance due to saturated forces is
-  // therefore also added to the next segment.
+  // A saturated force late in a segment hardly changes the fitted velocity. The velocity variance due to saturated
+  // forces is therefore also added to the next segment.
   u::block(next.noise, u::velocity) += boundary.railed_velocity_m2_s2 + railed_m2_s2;
   u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -155,11 +155,11 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the matrix that transforms errors of the prior to errors after the registration: mapping.md (R52).
-/// `weigh_prior()` is a separate function to limit the use of the stack.
+/// Computes the matrix that maps errors of the prior to errors after the registration: mapping.md (R52).
+/// `weigh_prior()` is a separate function in order to limit the use of the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
-  // noise of the normals (errors in variables) is not information
+  // the noise of the normals (errors in variables) is not information about the motion
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
   kept += aligned.normal_noise_information;
@@ -168,9 +168,9 @@ namespace {
 
 }  // namespace
 
-/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors have two sources: the
-/// errors of the prior, and the errors of the surfaces. `score_covariance` is the measured covariance of the surfaces'
-/// gradient.
+/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors after the registration come
+/// from the prior and from the matched surfaces. `score_covariance` is the measured covariance of the gradient that the
+/// surfaces contribute.
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

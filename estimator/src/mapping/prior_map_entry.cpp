@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Localisation of a run in a prior map.
+// prior_map_entry.cpp localises a run in a prior map.
 #include <utility>
 #include <variant>
 
@@ -31,7 +31,7 @@ bool LidarInertialOdometry::has_prior_map() const {
   return impl_->localiser.has_map();
 }
 
-/// A local map after a tracking failure, or with an unconfirmed relocalisation, may be wrong and is not compared.
+/// The local map may be wrong after a tracking failure or with an unconfirmed relocalisation, so it is not compared.
 void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
   if (!localiser.has_map() || localiser.is_localised()) return;
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;

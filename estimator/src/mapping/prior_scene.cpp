@@ -34,8 +34,8 @@ constexpr float kNearSurface_m = 0.5f, kAgree_m = 0.12f, kAgreeNormal = 0.7f;
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
-/// Class of a normal by its slope. Points of all classes have equal shares in a coarse score, because trunks and rocks
-/// determine the pose better than the ground (normal-space sampling).
+/// Returns the slope class of a surface normal. All slope classes have equal shares in a coarse score (normal-space
+/// sampling), because trunks and rocks determine the pose better than the ground.
 int slope_class(const Eigen::Vector3f& normal) {
   const float z = std::abs(normal.z());
   return z < 0.3f ? 0 : z < 0.6f ? 1 : z < 0.85f ? 2 : 3;
@@ -109,7 +109,8 @@ PriorScene::PriorScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxels) {
   build_grid();
 }
 
-/// Marks the cells with surfaces and their neighbours. The margin makes range checks in the search unnecessary.
+/// Marks the grid cells that contain surfaces, and the neighbours of these cells. The margin of the grid makes range
+/// checks in the search unnecessary.
 void PriorScene::build_grid() {
   Eigen::AlignedBox3f box;
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index)
@@ -173,7 +174,7 @@ Eigen::Isometry3d PriorScene::pose_of(const Candidate& candidate, const SurfaceP
   return T_MW;
 }
 
-/// Scores every pose that moves the anchor to a surface cell of the prior map, for every heading.
+/// Scores every pose that moves the anchor point to a surface cell of the prior map, for every heading.
 std::vector<PriorScene::Candidate> PriorScene::best_candidates(const std::vector<SurfacePoint>& points,
                                                                const SurfacePoint& anchor, const SearchRegion* region,
                                                                std::size_t& tried) const {

@@ -8,12 +8,12 @@
 #include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// prior_scene.hpp aligns the map of the current run (frame W) to a prior map (frame M), see mapping.md, "Localisation
-/// in a prior map".
+/// prior_scene.hpp aligns the map of the current run (frame W) with a prior map (frame M), see mapping.md,
+/// "Localisation in a prior map".
 namespace tumble::mapping {
 
-/// SurfacePoint is a point of the current run's map with its normal. A list has at most one point per cube of 1 m, so
-/// that the errors of its points are nearly independent.
+/// SurfacePoint is a point of the current run's map with its normal. A list of surface points has at most one point per
+/// cube of 1 m, so that their errors are nearly independent.
 struct SurfacePoint {
   Eigen::Vector3f position_W_m;
   Eigen::Vector3f normal_W;
@@ -22,32 +22,32 @@ struct SurfacePoint {
 /// Returns the surface points of `map` within `radius_m` of a position, nearest cube first.
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
-/// FramePose is a hypothesis for the pose of the local frame W in the prior map, and its fit.
+/// FramePose is a hypothesis for the pose of the local frame W in the prior map, with its goodness of fit.
 struct FramePose {
   Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
   std::size_t covered = 0;   ///< surface points near the prior map's surfaces
   std::size_t agreeing = 0;  ///< covered points that lie on the prior map's surfaces
-  /// Covariance of a displacement and rotation (in M) of the local frame about the sensor.
+  /// Covariance of a displacement and rotation of the local frame about the sensor, in frame M.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   double ratio() const { return covered == 0 ? 0.0 : double(agreeing) / double(covered); }
 };
 
-/// SearchRegion limits the sensor's position in M and the heading of W in M.
+/// SearchRegion limits the position of the sensor in frame M and the heading of frame W in frame M.
 struct SearchRegion {
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();  ///< sensor position to which the limits refer, in W
   Eigen::Vector3d p_MI_m = Eigen::Vector3d::Zero();  ///< centre of the region
   double reach_m = 0.0, reach_rad = 0.0;
 };
 
-/// PriorScene is a prior map, prepared for the search of a pose.
+/// PriorScene is a prior map that is prepared for a pose search.
 class PriorScene {
  public:
   explicit PriorScene(PriorMap map);
 
   const PriorMap& map() const { return map_; }
-  /// Returns the distinct best poses of the local frame, best first, at most two. Cost: O(surface area of the map) for
-  /// a search in the whole map, about a second for a map of 100 m.
+  /// Returns at most two distinct best poses of the local frame in the prior map, best first. Cost: O(surface area of
+  /// the map) for a search in the whole map, about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position, about which poses are refined
   /// @param attempt     the search anchors the local map at another surface point for each attempt
@@ -55,7 +55,7 @@ class PriorScene {
   /// @param tried       number of poses that the search compared
   std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
                                 std::size_t attempt, const SearchRegion* region, std::size_t& tried) const;
-  /// Refines a pose by point-to-plane registration, and counts the points that agree.
+  /// Refines a pose by point-to-plane registration, and counts the points that agree with the prior map.
   FramePose refined(const FramePose& start, const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
                     float first_kernel_m) const;
 
@@ -80,7 +80,7 @@ class PriorScene {
   PriorMap map_;
   VoxelMap voxels_;
   std::vector<Eigen::Vector3f> normals_;  // by index of voxels_
-  // dense grid of the surfaces with a margin of the query's radius, and the list of its occupied cells
+  // dense grid of surface cells with a margin of the query's radius, and the list of the occupied cells
   float cell_m_ = 0.0f;
   Eigen::Vector3f low_M_m_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
@@ -88,7 +88,7 @@ class PriorScene {
   std::vector<SurfaceCell> cells_;
 };
 
-/// Radius around the sensor within which surface points are compared.
+/// kQueryRadius_m is the radius around the sensor within which surface points are compared.
 inline constexpr float kQueryRadius_m = 20.0f;
 
 }  // namespace tumble::mapping

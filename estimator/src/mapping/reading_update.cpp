@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Update of a sweep's prediction by an odometer reading: mapping.md, section 3.
+// reading_update.cpp updates the prediction of a sweep by an odometer reading: mapping.md, section 3.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>
@@ -27,7 +27,8 @@ using OfMotion = Eigen::Matrix<double, Values, kMotionSize>;
 constexpr int kIterations = 6;     // two or three iterations are usually enough
 constexpr double kSettled = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// Current change of the unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
+/// Offsets is the change of the unknowns relative to the prediction: those at the sweep boundary, and the noise since
+/// then.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotionSize, 1> noise = Eigen::Matrix<double, kMotionSize, 1>::Zero();
@@ -40,7 +41,7 @@ struct Expected {
   Covariance variance;
 };
 
-/// State of the IMU at a time within the sweep.
+/// Moment is the state of the IMU at a time within the sweep.
 struct Moment {
   double noise_share = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
@@ -57,8 +58,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviations of the noise grow in
-  /// proportion to time.
+  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviations of the process noise
+  /// grow in proportion to time.
   Moment at(TimeNs time_ns, const Offsets& offsets) const {
     Moment out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -70,7 +71,7 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // build() cannot fail here, because add_sweep() ensures that the samples cover the window
+    // build() cannot fail here, because add_sweep() ensures that the IMU samples cover the window
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
@@ -91,8 +92,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// Adds derivatives of the odometer reading by the unknowns at the boundary and by the noise. `by_moment` is the
-/// derivative by errors of the motion at the time of the reading.
+/// Adds the derivatives of the odometer reading with respect to the unknowns at the boundary and to the noise.
+/// `by_moment` is the derivative with respect to errors of the motion at the time of the reading.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
@@ -106,7 +107,7 @@ Expected nothing() {
           Covariance::Zero(Size, Size)};
 }
 
-/// Predicts a velocity reading: mapping.md (R35).
+/// Predicts an odometer's velocity reading: mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
   const Moment now = sweep.at(reading.time_ns, offsets);
@@ -120,7 +121,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   return out;
 }
 
-/// Predicts an odometer reading of relative motion: mapping.md (R36).
+/// Predicts an odometer's reading of relative motion: mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
   const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
@@ -151,7 +152,7 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Buffers of an update. The buffers are on the heap, because sandwich() needs the stack.
+/// Work contains the buffers of an update. The buffers are on the heap, because sandwich() needs the stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
@@ -160,7 +161,7 @@ struct Work {
   Gain<kMotionSize> by_noise;      ///< gain of the noise since the boundary
 };
 
-/// Computes the gains at the current linearisation point: mapping.md (R37).
+/// Computes the Kalman gains at the current linearisation point: mapping.md (R37).
 bool find_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
   work.jacobian_start = work.at_start * expected.jacobian_start.transpose();
@@ -174,8 +175,8 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to the unknowns that best fit the odometer reading and the prediction. If there is no solution, returns
-/// false.
+/// Iterates to the unknowns that best fit the odometer reading and the prediction. Returns false if there is no
+/// solution.
 [[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
                               Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -193,7 +194,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update to the unknowns and to the errors at the boundary: mapping.md (R38).
+/// Applies the update to the unknowns and their errors at the sweep boundary: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
@@ -205,7 +206,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   work.left.noalias() -= work.jacobian_start * work.expected.jacobian_start;
 }
 
-/// Adds the noise within the sweep, which the gains reduce, and the noise of the reading: mapping.md (R38).
+/// Adds the noise of the reading, and the noise within the sweep as reduced by the gains: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.jacobian_start;
   Eigen::Matrix<double, kUnknowns, kMotionSize> left = -K * work.expected.by_noise;

@@ -42,7 +42,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Returns whether the registered motion is within the prior's uncertainty: mapping.md (R25).
+/// Returns whether the registered motion agrees with the prior within the prior's uncertainty: mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotionSize = Registration::kMotionSize;
   const Vector moved = now.minus(prior.mean);
@@ -180,7 +180,7 @@ Status Registration::iterate(const Problem& problem, IterationState& at, SweepTr
 }
 
 RegistrationVerdict Registration::classify_result(const Problem& problem, const IterationState& at) const {
-  // at a false minimum of the cost, most matches are far from their planes
+  // at a wrong local minimum of the cost, most matched points are far from their planes
   const bool fits =
       static_cast<double>(at.sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(at.sum.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;

@@ -73,14 +73,14 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Computes the variance of a point due to range and skew errors: first part of mapping.md (R18).
+/// Computes the variance of a point due to range errors and skew errors: first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
   return range * range + skew * skew;
 }
 
-/// Computes the distance of a point from a plane, and the derivative of the distance: mapping.md (R16), (R17).
+/// Computes the distance of a point from a plane and the derivative of the distance: mapping.md (R16), (R17).
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
@@ -96,8 +96,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The radius contains the neighbours that the previous search found. The nearest neighbours are therefore within
-    // the radius. A small margin covers rounding.
+    // The search radius contains the neighbours that the previous search found, so it contains the nearest neighbours.
+    // A small margin of the search radius covers rounding.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -112,11 +112,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // variance of a match due to the map: last part of mapping.md (R18)
+  // variance of a match that comes from the map: last part of mapping.md (R18)
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// Computes the information of a match with its robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
+/// Computes the information of a matched point with its robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -125,7 +125,7 @@ Registration::Weight Registration::compute_weight(const SweepPoint& point, const
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Computes the positions of the points by the trajectory, the planes of the neighbours, and the distances: mapping.md
+/// Computes for each point its position on the trajectory, the plane of its neighbours, and the distance: mapping.md
 /// (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
@@ -146,7 +146,7 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
   });
 }
 
-/// Computes the width of the robust kernel from the median distance: mapping.md (R20).
+/// Computes the width of the robust kernel from the median distance between points and planes: mapping.md (R20).
 double Registration::kernel_width_m() {
   sorted_distances_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -163,8 +163,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each match has one column with its distance and its derivatives by the free unknowns. The column of a match is
-  // multiplied by the square root of the match's weight.
+  // Each matched point has one column with its distance and the derivatives with respect to the free unknowns. The
+  // column is multiplied by the square root of the match's weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -215,10 +215,10 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// Part of the normal matrix that is due to noise of the normals, for all free unknowns: mapping.md (R28), (R29). If
-/// the part covered only the motion, it would constrain unobservable combinations of motion and calibration. An example
-/// is the combination of attitude and mounting rotation. The covariance (R52) of unobservable combinations would then
-/// grow without bound.
+/// NormalNoise is the part of the normal matrix that noise of the surface normals causes, for all free unknowns:
+/// mapping.md (R28), (R29). If NormalNoise covered only the motion, it would constrain unobservable combinations of
+/// motion and calibration. One unobservable combination is that of attitude and mounting rotation. The covariance (R52)
+/// of unobservable combinations would then grow without bound.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -256,7 +256,7 @@ struct Registration::NormalNoise {
   }
 };
 
-/// Gradient sums q of clusters of points, from which the score covariance follows: mapping.md (R26).
+/// Pulls contains the gradient sums q of clusters of points, which determine the score covariance: mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;
@@ -283,7 +283,7 @@ struct Registration::Pulls {
   }
 };
 
-/// Evaluates the errors of each match at the registered pose.
+/// Evaluates the errors of each matched point at the registered pose.
 void Registration::compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                             const SweepCalibration& calibration, const Unknowns& unknowns,
                                             double kernel_m, Result& result) {

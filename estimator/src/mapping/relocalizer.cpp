@@ -14,8 +14,8 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// Tried saturation deficits, as multiples of deficit_try_rad_s. The multiples of deficit_try_rad_s are dense where most
-// deficits occur.
+// kDeficitTries lists the saturation deficits that are tried, as multiples of deficit_try_rad_s. The list is dense
+// where most saturation deficits occur.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // deficits beyond this many standard deviations are not tried
 
@@ -26,18 +26,19 @@ bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Returns whether the matched surfaces fit the sweep: mapping.md (R68).
+/// Returns whether the matched surfaces fit the points of the sweep: mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }
 
-/// Registers the sweep. If the registration fails and a clipped axis may have a saturation deficit, track() tries
-/// larger deficits. A saturation within one sweep may cause an attitude error of a radian at the start of the search.
+/// Registers the sweep while tracking. If the registration fails and a clipped axis may have a saturation deficit,
+/// track() tries larger deficits. A saturation within one sweep may cause an attitude error of a radian in the initial
+/// pose.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.in_full(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // if an attempt exceeded the correction limit, another attempt would also exceed the limit
+  // once an attempt has exceeded the correction limit, further attempts would also exceed it
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -60,9 +61,9 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   found.iterations = iterations;
 }
 
-/// Registers the sweep from the prior and from starts around the prior, until the surfaces fit. If no pose fits,
-/// returns the pose with the most inliers. To limit the cost per sweep, a search that found no pose continues with the
-/// next sweep.
+/// Registers the sweep from the predicted pose and from initial poses around it, until the surfaces fit. If no pose
+/// fits, the function returns the pose with the most inliers. An unsuccessful search continues with the next sweep,
+/// which limits the cost per sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalisationParams& starts = params.expert.search;

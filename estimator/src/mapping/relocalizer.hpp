@@ -6,7 +6,7 @@
 #include "aligner.hpp"
 #include "tracking.hpp"
 
-/// relocalizer.hpp chooses the starting poses of a registration, including all restarts.
+/// relocalizer.hpp chooses the initial poses of a registration, including all restarts.
 namespace tumble::mapping {
 
 struct Attempt {
@@ -15,21 +15,20 @@ struct Attempt {
   double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// SearchContext contains the candidates for the start of a sweep.
+/// SearchContext contains the candidates for the state at the start of a sweep.
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State according to a relocalisation that the sweep contradicted, as a start of the search. The pointer is null if
-  /// no relocalisation was contradicted.
+  /// State according to a relocalisation that the sweep contradicted, as an initial pose of the search; or null.
   const MotionState* contradicted = nullptr;
 };
 
-/// Aligns a sweep by all methods that its tracking state allows. `trajectory` is that of the alignment, or of a failed
-/// attempt. `alignment` refers to the start of the sweep, and is empty if no alignment was found.
+/// Aligns a sweep to the map by all methods that its tracking state allows. `trajectory` is the aligned motion, or that
+/// of a failed attempt. `alignment` refers to the start of the sweep, and is empty if no alignment was found.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
-/// Placed is the result of registering a sweep to the map.
+/// Placed is the result of registering one sweep to the map.
 struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
   bool expected = true;  ///< the alignment agrees with the inertial prediction
@@ -38,14 +37,14 @@ struct Placed {
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
-/// Sets the verdict of an attempt with `points` points. `placed` must contain the alignment, and whether the alignment
-/// was expected. If the map has too few points, or after enough failed searches, the motion continues by inertial
-/// prediction with the verdict `degenerate`.
+/// Sets the verdict of a registration attempt with `points` points. `placed` must contain the alignment, and whether
+/// the alignment agrees with the prediction. If the map has too few points, or after enough failed searches, inertial
+/// prediction continues the motion with verdict `degenerate`.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Computes start number `index` of a search. Start 0 is the prior. The further starts are shifts along each axis by
-/// its uncertainty, closest first, mapping.md (R66).
+/// Computes the initial pose number `index` of a search. Initial pose 0 is the predicted pose. All further initial
+/// poses are shifted along each axis by the standard deviation, closest first, mapping.md (R66).
 void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

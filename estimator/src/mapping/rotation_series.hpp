@@ -3,15 +3,15 @@
 
 #include <utility>
 
-/// rotation_series.hpp computes cosine and sine of half a small angle by their series. The computation starts with c =
-/// s = 1, and h is the square of the half angle. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s.
-/// The resulting s is sin(x) / x with the half angle x.
+/// rotation_series.hpp computes cosine and sine of half a small angle by power series. The series starts with c = s =
+/// 1; h is the square of the half angle. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s. The
+/// final s is sin(x) / x, where x is the half angle.
 namespace tumble::rotation_series {
 
-/// Square of the largest whole angle for which the series is accurate. Angles above kAngle2_rad2 would need more terms
-/// of the series.
+/// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. For larger angles, the series
+/// would need more terms.
 inline constexpr double kAngle2_rad2 = 1.0;
-/// Ratios of successive terms of the series of cos(x) and of sin(x) / x, last term first.
+/// kRatios contains the ratios of successive terms in the series of cos(x) and of sin(x) / x, last term first.
 inline constexpr std::pair<double, double> kRatios[] = {
     {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
     {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};

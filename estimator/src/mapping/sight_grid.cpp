@@ -9,13 +9,13 @@ namespace tumble::mapping {
 
 namespace {
 
-// Minimum ratio of range to sensor motion on each side of the sweep's middle. SightGrid sorts returns into bins by
-// their direction from one position. Above the minimum ratio, the error of the direction is below 0.1 rad, which is the
-// size of the checked bins.
+// kMovedToRange is the minimum ratio of a return's range to the sensor's motion before or after the middle of the
+// sweep. SightGrid sorts returns into bins by their direction from one position. At larger ratios, the direction error
+// is below 0.1 rad, which is the size of the checked bins.
 constexpr float kMovedToRange = 10.0f;
 constexpr int kEmptyMost = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins
-// Distance by which all returns must be behind a map point that is no longer present. The distance covers errors of the
-// relative pose of two sweeps, noise of a return, and slope of the ground within a bin.
+// All returns must be this distance behind a map point before the point counts as no longer present. The distance
+// covers errors of the relative pose of two sweeps, noise of a return, and slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -27,7 +27,8 @@ void SightGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// Returns the direction of a point. For the ray origin and for non-finite coordinates, the result is empty.
+/// Returns the direction of a point from the ray origin. The function returns nothing for the ray origin and for
+/// non-finite coordinates.
 std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
@@ -47,8 +48,8 @@ void SightGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns the smallest range of the returns around a direction. If there are too few returns, or at the edge of the
-/// cube of directions, returns 0.
+/// Returns the smallest range of the returns around a direction. The function returns 0 if there are too few returns,
+/// or at the edge of the cube of directions.
 float SightGrid::free_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;
@@ -66,7 +67,7 @@ float SightGrid::free_m(const Direction& towards) const {
   return nearest_m;
 }
 
-/// Compares a map point with the returns in its direction: mapping.md (R65).
+/// Compares a map point with the lidar returns in its direction: mapping.md (R65).
 SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
   const Eigen::Vector3f lever_m = point_W_m - from_W_m_;
   const float range_m = lever_m.norm();

@@ -7,19 +7,18 @@
 
 namespace tumble::mapping {
 
-/// SightGrid is the free space of a sweep: the nearest return per direction, in bins of a cube around one position,
-/// with world axes. A map point that is closer than all returns around its direction is no longer present, see
+/// SightGrid is the free space that a sweep observed: the nearest return per direction, in bins of a world-aligned cube
+/// around one position. A map point that is closer than all returns around its direction is no longer present, see
 /// mapping.md (R65). Directions with few returns, and directions at an edge of the cube, provide no information.
 class SightGrid {
  public:
-  /// Sets the ray origin for the following points, and the distance that the sensor moved around the origin during the
-  /// sweep.
+  /// Sets the ray origin of the following points, and how far the sensor moved around this origin during the sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown, seen, seen_through };
-  /// Checks whether the sweep saw a map point or saw through the point. `sigma_m` is the standard deviation of the
-  /// point's position. Cost: O(1).
+  /// Checks whether the sweep saw a map point or saw through it. `sigma_m` is the standard deviation of the map point's
+  /// position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:

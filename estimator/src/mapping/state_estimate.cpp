@@ -10,7 +10,8 @@ namespace tumble::mapping {
 using Matrix = Registration::Matrix;
 
 /// Returns the estimate at the start of the map: mapping.md (R54), (R55). The first pose of the lidar defines the map
-/// and is therefore exact. An error of the mounting is thus an error of the IMU's pose and of gravity in the map.
+/// and is therefore exact. An error of the lidar's mounting is therefore an error of the IMU's pose and of gravity in
+/// the map.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -35,7 +36,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
     u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
     u::block(P, u::gravity) = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
     const double sigma2 = params.expert.gravity_sigma_m_s2 * params.expert.gravity_sigma_m_s2;
-    // the standard deviation of gravity's magnitude is much smaller than the standard deviation of its direction
+    // the magnitude of gravity is known much better than its direction
     u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
     u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_by_mounting.transpose();
   }
@@ -63,7 +64,7 @@ MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// The velocity error in IMU axes is R_IW (δv + v × φ) for the errors δv and φ in W.
+/// The velocity error in IMU axes is R_IW (δv + v × φ), with the velocity error δv and attitude error φ in frame W.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
@@ -73,9 +74,9 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// Computes the covariance of pose and mounting after the propagation by F. The blocks have the size of whole SIMD
-/// packets, which keeps the order of summation of the full matrix product. The rows of F for mounting and other
-/// constants are rows of the identity: mapping.md (R11).
+/// Computes the covariance of pose and mounting after propagation by the transition matrix F. The matrix blocks have
+/// the size of whole SIMD packets, which keeps the summation order of the full matrix product. The rows of F for
+/// mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&

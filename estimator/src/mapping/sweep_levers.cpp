@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SweepTrajectory::at for several points of a sweep at a time. Operations and their order are those of Eigen's
-// quaternions on a processor with packets of two doubles.
+// sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The operations and their
+// order are those of Eigen's quaternions on a processor with packets of two doubles.
 #include <algorithm>
 #include <limits>
 
@@ -16,7 +16,8 @@ constexpr int kLanes = 8;
 constexpr double kForever_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-/// Points in one interval of the trajectory: seconds since the start of the interval, positions in I, and results.
+/// Lanes contains points in one interval of the trajectory: seconds since the interval's start, positions in frame I,
+/// and results.
 struct Lanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
@@ -81,10 +82,10 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // quaternion product of the attitude at the start of the interval and the rotation up to the point
+      // quaternion product of the attitude at the start of the interval with the rotation up to the point's time
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
-      // point after the rotation
+      // position of the point after the rotation
       double tx = qy * z - qz * y, ty = qz * x - qx * z, tz = qx * y - qy * x;
       tx += tx;
       ty += ty;

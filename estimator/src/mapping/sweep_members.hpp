@@ -5,8 +5,7 @@
 #include "odometry_impl.hpp"
 #include "odometry_members.hpp"
 
-/// sweep_members.hpp describes the members of the odometry's parts that belong to sweeps and readings, as
-/// state_visitor.hpp explains.
+/// sweep_members.hpp lists the members of the odometry's sweeps and readings, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<MotionSample> Self, class Visitor>

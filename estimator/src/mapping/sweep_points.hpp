@@ -11,8 +11,7 @@
 
 namespace tumble::mapping {
 
-/// SweepPoints contains the usable returns of a sweep, and the subset of returns to be registered. SweepPoints stores
-/// only the current sweep.
+/// SweepPoints contains the usable returns of the current sweep, and the subset that is registered.
 class SweepPoints {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -28,7 +27,7 @@ class SweepPoints {
   /// of check_selection().
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
-  /// Selects the points to register by the predicted motion, one per cube in the world.
+  /// Selects the points to register, one per cube in the world, positioned by the predicted motion.
   void choose(const Params& params, const SweepTrajectory& predicted);
   void move(const SweepCalibration& calibration, double later_s) { apply_calibration(calibration, later_s, all_); }
 

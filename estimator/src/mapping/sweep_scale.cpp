@@ -15,9 +15,9 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// Duration of a span over which velocities are compared. Over short spans, the mapper's prior from the IMU hides scale
-// errors. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. For correct
-// ranges, the estimated scale is 0.998 to 1.006.
+// kSpan_s is the duration of a time span over which velocities are compared. Over short spans, the inertial prior of
+// the mapper hides scale errors. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08
+// over 0.4 s. If ranges are correct, the estimated scale is 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
@@ -29,7 +29,7 @@ constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per
 
 using Change = SweepScaleEstimator::Change;
 
-/// Integrals of the specific force along the attitudes of the run.
+/// ImuMotion integrates the specific force with the estimated attitudes of the run.
 class ImuMotion {
  public:
   template <class Sweeps>
@@ -39,8 +39,8 @@ class ImuMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`. If a
-  /// force between `from_ns` and `to_ns` is saturated or missing, the result is empty.
+  /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`. The
+  /// function returns nothing if a force between `from_ns` and `to_ns` is saturated or missing.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -77,7 +77,7 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Returns whether surfaces constrain the sweep in at least one direction.
+/// Returns whether surfaces constrain the pose of the sweep in at least one direction.
 bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -90,8 +90,8 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Returns the change of velocity between the two spans before the end of sweep `last`. If the change is unknown or too
-/// small, the result is empty.
+/// Returns the change of velocity between the two time spans before the end of sweep `last`. The function returns
+/// nothing if the change is unknown or too small.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns the largest standard deviation of each axis over the samples of the segment in which the axis was clipped.
-/// Samples after the segment do not affect the result.
+/// Returns for each axis the largest standard deviation among the samples of the segment in which the axis was clipped.
+/// Samples after the segment are ignored.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -32,14 +32,14 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    // The true rate exceeds a saturated reading in magnitude. The sign of the rate's error in a gap is unknown.
+    // The true rate has a larger magnitude than a saturated reading. In a gap, the sign of the rate's error is unknown.
     if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;
 }
 
-/// Returns the weights of the deficit's knots at a fraction of the segment. The deficit is linear between neighbouring
-/// knots: mapping.md (R7).
+/// Returns the interpolation weights of the saturation deficit at a fraction of the segment. The saturation deficit is
+/// linear between neighbouring knots of the segment: mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -86,7 +86,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // all errors of kind gap report seconds
+    // all errors with code `gap` report seconds
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
@@ -110,7 +110,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_factor = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // rate with saturation deficit, and integration over the interval: mapping.md (R7), (R5), (R4), (R6)
+    // rate with saturation deficit, and its integration over the interval: mapping.md (R7), (R5), (R4), (R6)
     now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.rate_I_rad_s * dt);
@@ -124,7 +124,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     if (clipped_axes_ == 0) continue;
     now.acceleration_jacobian = -so3::hat(now.specific_force_W_m_s2) * now.attitude_jacobian;
     next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
-    // the mean attitude error of the interval rotates the force: mapping.md (R10)
+    // the mean attitude error of the interval rotates the specific force: mapping.md (R10)
     const DeficitJacobian turn =
         -so3::hat(now.specific_force_W_m_s2) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
     next.velocity_jacobian = now.velocity_jacobian + turn * dt;
@@ -142,7 +142,7 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
   return intervals_[i];
 }
 
-/// Evaluates attitude, velocity and position within an interval: mapping.md (R2), (R4), (R6).
+/// Evaluates attitude, velocity and position within an interval of the trajectory: mapping.md (R2), (R4), (R6).
 SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
@@ -164,7 +164,7 @@ SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, const Eigen
                                  (0.5 * s * s) * now.specific_force_W_m_s2};
 }
 
-/// Returns the derivative of the attitude by the knots of the saturation deficit, `s` seconds into an interval:
+/// Returns the derivative of the attitude with respect to the saturation deficit, `s` seconds into an interval:
 /// mapping.md (R9).
 SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
   if (now.deficit_factor.isZero(0.0)) return DeficitJacobian::Zero();
@@ -175,7 +175,8 @@ SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const 
   return out;
 }
 
-/// Returns the derivatives of attitude, velocity and position by the saturation deficit: mapping.md (R9), (R10).
+/// Returns the derivatives of attitude, velocity and position with respect to the saturation deficit: mapping.md (R9),
+/// (R10).
 SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);

@@ -5,13 +5,13 @@
 
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// tracking.hpp defines the tracking state of the sensor relative to the map, and the transitions of the state.
+/// tracking.hpp defines the tracking states of the sensor relative to the map, and the transitions between them.
 namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the normal state. A sweep without registration may still be accepted, by a certain prior or after the
-/// search was abandoned.
+/// Tracking is the state in normal operation. During tracking, a certain prior or an abandoned search may make a sweep
+/// acceptable without registration.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
@@ -21,9 +21,8 @@ struct Lost {
   int failed_searches = 0;
 };
 
-/// Relocalised is the state after a relocalisation that is not yet confirmed. Inertial prediction continues in parallel
-/// (DeadReckoning), and replaces the relocalisation if a sweep contradicts the relocalisation. See mapping.md (R67),
-/// (R68).
+/// Relocalised is the state after a relocalisation that is not confirmed yet. Inertial prediction continues in parallel
+/// (DeadReckoning), and replaces the relocalisation if a sweep contradicts it: mapping.md (R67), (R68).
 struct Relocalised {
   int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;
@@ -42,9 +41,9 @@ enum class Placement : std::uint8_t {
 
 TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict);
 
-/// Returns whether a sweep with the given placement contradicts the relocalisation.
+/// Returns whether a sweep with the given registration result contradicts the relocalisation.
 bool contradicts(const TrackingState& before, Placement placement);
-/// Returns the state after a relocalisation is reverted.
+/// Returns the tracking state after a relocalisation is reverted.
 Lost given_up(const TrackingState& relocalised);
 
 bool has_started(const TrackingState& state);

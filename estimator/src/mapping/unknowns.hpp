@@ -3,9 +3,9 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// unknowns.hpp names the blocks of a vector or a matrix over all unknowns of a sweep, or over their first part, as
-/// listed in docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, and `segment(step, velocity)` for a
-/// vector.
+/// unknowns.hpp names the blocks of vectors and matrices over all unknowns of a sweep (docs/maths/mapping.md), or over
+/// their first part. Use `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector, instead of
+/// indices.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -26,14 +26,14 @@ inline constexpr Block<Registration::kCalibrationStart + 3, 3> mounting_translat
 inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
 inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
-/// Variance of an unknown whose prior is exact; the variance is above 0 so that the prior can be inverted.
+/// kLeastVariance is the variance of an exactly known unknown; it is above 0 so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
-/// Largest squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
-/// chi-square with nine degrees of freedom. See mapping.md (R25), (R71).
+/// kAgrees is the largest squared Mahalanobis distance at which a sweep's motion agrees with its prior, mapping.md
+/// (R25), (R71). kAgrees is the 95 % quantile of chi-square with nine degrees of freedom.
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 
-/// Returns the index of an axis of the saturation deficit at a knot.
+/// Returns the index of the saturation deficit of an axis at a knot.
 constexpr int deficit_at(int axis, int knot) {
   return Registration::kDeficitStart + 3 * knot + axis;
 }

@@ -16,7 +16,7 @@ using mapping::cube_of;
 
 namespace {
 
-// The coordinates of a free slot in a chunk are kFar, which is beyond any search radius.
+// Free slots of a map chunk have the coordinates kFar, which are beyond any search radius.
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // maximum number of cells that a search covers to each side
 
@@ -32,7 +32,7 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
 }
 
 /// Computes the squared distances from a query to the slabs of cells with offsets -reach to reach along one axis.
-/// `fraction` is the query's position within its own cell, in cells.
+/// `fraction` is the position of the query within its own cell, in cells.
 void slab_distances(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
@@ -40,11 +40,11 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
   }
 }
 
-// explicit SIMD vectors, because compilers do not vectorise the comparisons of a chunk
+// the code uses explicit SIMD vectors, because compilers do not vectorise the comparisons of a chunk
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Returns a bit mask of the values of a chunk that are within the limit. The code has no branches.
+/// Returns a bit mask of those values of a chunk that are within the limit, without branches.
 inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -80,7 +80,8 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// The cells of a search, row by row. Each group of cells is looked up only one time, when a row first uses the group.
+/// Rows iterates over the cells of a neighbour search, row by row. Rows looks up each group of cells once, when a row
+/// first uses the group.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -150,7 +151,7 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
 }
 
 /// Returns whether a position is within the range of the map's integer coordinates. The range has a margin that covers
-/// both cells and cubes of the point spacing. For NaN, returns false.
+/// both search cells and cubes of the point spacing. The function returns false for NaN.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
@@ -170,7 +171,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 
 std::uint32_t VoxelMap::store_point(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep,
                                     std::uint32_t line) {
-  // The newest chunk of a cell is its first chunk. No other chunk of the cell has free slots.
+  // The newest chunk of a cell comes first, and is the only chunk with free slots.
   std::uint32_t& first = first_chunk_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kPointsPerChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];
@@ -236,7 +237,7 @@ void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // if two points move into one cube of the point spacing, the map keeps both points
+    // if two points move into one cube of the point spacing, the map keeps both
     if (params_.spacing_m > 0.0) kept.occupied_cubes_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.store_point(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_[now] = seen_through_[index];
@@ -250,7 +251,8 @@ std::size_t VoxelMap::bytes() const {
          (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t) + seen_through_.capacity();
 }
 
-/// Adds the points of a cell to the k nearest points. `worst_distance2_m2` is the squared current search radius.
+/// Adds the points of a cell to the k nearest points of a query. `worst_distance2_m2` is the square of the current
+/// search radius.
 void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst_distance2_m2,
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of a map. Loading rebuilds the search structure.
+// voxel_map_state.cpp saves and loads a VoxelMap; loading rebuilds the search structure.
 #include "../common/state_bytes.hpp"
 #include "../common/state_layout.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -41,8 +41,8 @@ void VoxelMap::load(StateReader& in) {
   if (in.going()) *this = std::move(map);
 }
 
-/// Loads the next chunk. The chunks of a cell are stored in the order in which they were filled. Only the last chunk of
-/// a cell has free slots. The number of slots in use is therefore sufficient information.
+/// Loads the next chunk of map points. The chunks of a cell are saved in the order in which they were filled. Only the
+/// last saved chunk of a cell has free slots, so the number of used slots suffices.
 void VoxelMap::load_chunk(StateReader& in) {
   std::uint8_t count = 0;
   in("map.chunk.count", count, 1.0, kPointsPerChunk);

@@ -13,8 +13,8 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-// Standard deviation of the map's scale. Errors of successive sweeps have common causes (ranges, matching along a
-// hall), so the position error grows in proportion to the distance: 0.24 % in a hall with pillars.
+// kScale is the standard deviation of the map's scale. The position error grows in proportion to the distance (0.24 %
+// in a hall with pillars), because successive sweeps share causes of errors, such as ranges.
 constexpr double kScale = 0.003;
 
 /// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
@@ -28,7 +28,7 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
 
 }  // namespace
 
-/// A rotation of the map about the start moves distant points: mapping.md (R56).
+/// A rotation of the map about the start moves distant points of the map: mapping.md (R56).
 Pose WorldCovariance::by_start_mounting(const Eigen::Vector3d& p_WI_m) const {
   Pose start = start_by_mounting_;
   start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_by_mounting_.bottomRows<3>();
@@ -48,7 +48,7 @@ double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const 
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
 }
 
-/// Adds the map's error at the pose's position, and the tilt of the start: mapping.md (R58).
+/// Adds the map's error at the position of the pose, and the tilt error of the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
   const Eigen::Vector3d from_start_m = p_WI_m - start_W_m_;
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
@@ -69,12 +69,12 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 }
 
 /// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
-/// The pose is more uncertain at the start and end of a sweep than in its middle. An error of the mounting is not an
-/// error of the map.
+/// The pose is more certain in the middle of a sweep than at its start or end. An error of the lidar's mounting is not
+/// an error of the map.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
-  // a rotation of the map about its last extension moves the map where the robot is now
+  // a rotation of the map about its last extension moves the map at the robot's position
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
   Pose moved = Pose::Identity();
   moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - map_at_W_m_);

@@ -5,8 +5,8 @@
 
 namespace tumble::mapping {
 
-/// Errors of the map relative to the world: mounting, tilt of the start, scale, errors at insertion, and drift in
-/// unconstrained directions. The IMU's first pose defines the world.
+/// WorldCovariance is the error of the map relative to the world: mounting, tilt of the start, scale, errors at
+/// insertion, and drift in unconstrained directions. The first pose of the IMU defines the world frame.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
@@ -17,20 +17,21 @@ class WorldCovariance {
                   const Eigen::Vector3d& p_WI_m = Eigen::Vector3d::Zero())
       : params_(params), start_W_m_(p_WI_m), map_at_W_m_(p_WI_m), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
 
-  /// Returns the errors relative to a prior map, in which a run continues at a position. The prior map is exact.
+  /// Returns the errors of a run that continues at a position in a prior map, which is assumed exact.
   static WorldCovariance of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
-  /// Returns the covariance of a pose's error in the world. `joint` is the covariance of all unknowns in the map at the
-  /// time of the pose.
+  /// Returns the covariance of a pose's error relative to the world. `joint` is the covariance of all unknowns in the
+  /// map at the time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Returns the standard deviation of a pose's position relative to the map around the pose [m].
+  /// Returns the standard deviation of a position relative to the map around it [m].
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Adds the drift of a moving sweep, with its weakest standard deviation and direction (position, scaled attitude).
+  /// Adds the drift of a moving sweep, given its least constrained standard deviation and direction (position, scaled
+  /// attitude).
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
-  /// Adds the error of a sweep that inserted a fraction of the visible map, evaluated at the middle of the sweep's
-  /// motion. `errors` is the covariance at the start of the sweep.
+  /// Adds the error of a sweep that inserted a fraction of the visible map, evaluated in the middle of the sweep.
+  /// `errors` is the covariance of the unknowns at the start of the sweep.
   void add_insertion(double inserted_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 

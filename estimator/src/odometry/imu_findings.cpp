@@ -16,9 +16,9 @@ namespace {
 using Kind = ImuFinding::Kind;
 
 constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
-// Fraction of hand-held samples above which a recording counts as hand-held. Measured fractions are at least 0.91 for
-// hand-held motion. For thrown bodies, the fractions are at most 0.25 with correct axes, and mostly below 0.6 with
-// wrong axes.
+// A recording counts as hand-held if a larger fraction of its samples is classified as hand-held. For hand-held motion,
+// the measured fraction is at least 0.91. For thrown bodies, the measured fraction is at most 0.25 with correct axes,
+// and mostly below 0.6 with wrong axes.
 constexpr double kHeldShare = 0.8;
 
 void add_finding(Kind kind, const Status& status, std::span<const ImuSample> samples, ImuFindings& out) {
@@ -45,7 +45,7 @@ RestGravity rest_gravity(const CheckedImu& imu) {
   return RestGravity(params);
 }
 
-/// Returns the error of a rate in degrees per second, by the criterion of RateReport::rate_unit_suspect.
+/// Returns an error if the gyro readings are in degrees per second, by the criterion of RateReport::rate_unit_suspect.
 Status rate_unit(std::span<const ImuSample> samples) {
   const double largest = largest_rate_rad_s(samples), most = RateModelParams{}.rate_max_rad_s;
   return largest > most ? Status{ErrorCode::out_of_range, "angular_velocity_rad_s", largest, most} : Status{};

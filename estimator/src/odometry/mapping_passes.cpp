@@ -14,20 +14,20 @@ namespace {
 constexpr int kSearches = 3;                    // additional passes for a calibration that has not converged
 constexpr std::size_t kSweepsPerRejection = 5;  // more rejections: the pass does not determine the calibration
 
-/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut, a clock offset would drop the
-/// last sweep.
+/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut of the last sweep, a clock
+/// offset would discard the whole sweep.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
   if (2 * last_marginalised_ns < length_ns) return false;
-  // Points beyond the sweep's end are kept, because they are a fault of the recording that the mapper reports.
+  // The function keeps points beyond the sweep's end, because the mapper reports them as a fault of the recording.
   std::erase_if(sweep.points,
                 [&](const LidarPoint& p) { return p.offset_ns > last_marginalised_ns && p.offset_ns <= length_ns; });
   sweep.end_ns = end_ns;
   return true;
 }
 
-/// One pass of the mapper over a recording.
+/// Pass is one pass of the mapper over a recording.
 class Pass {
  public:
   Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)
@@ -45,7 +45,7 @@ class Pass {
   }
 
  private:
-  /// Adds the IMU samples up to the sweep's end, the odometer reading, and the sweep.
+  /// Adds the IMU samples up to the end of the sweep, then the odometer reading and the sweep.
   void add(WaitingSweep sweep) {
     add_samples(sweep.end_ns + offset_ns_);
     if (!out_.status.ok()) return;
@@ -79,7 +79,7 @@ class Pass {
     apply_next(std::exchange(added.report.smoothed, {}));
   }
 
-  /// Replaces the trajectory of the oldest sweep in the window by its smoothed trajectory.
+  /// Replaces the trajectory of the oldest sweep in the lag window by its smoothed trajectory.
   void apply_next(std::vector<PoseState> smoothed) {
     if (smoothed.empty()) return;
     while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
@@ -109,7 +109,7 @@ StatedCalibration stated_calibration(const LidarInertialOdometry::Params& starte
   return out;
 }
 
-/// Returns whether few enough sweeps were rejected to use the calibration of the pass.
+/// Returns whether a mapper pass rejected few enough sweeps that its calibration is usable.
 bool determines_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;

@@ -15,11 +15,11 @@ namespace tumble {
 namespace {
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
-// A sensing element without an observed saturation plane is assumed to be exactly aligned with its axis. With an
-// uncertainty of 0.03 of the cross-axis sensitivity, three clipped IMUs would no longer determine the rate.
+// An element without an observed saturation plane is assumed to be exactly aligned with its axis. If the cross-axis
+// sensitivity were uncertain by 0.03, three clipped IMUs could no longer determine the rate.
 constexpr double kUnknownSlope = 0.0;
 
-/// The IMUs that provide samples, resampled to common times.
+/// Units contains the IMUs that provide samples, resampled to common times.
 struct Units {
   std::vector<std::size_t> index;
   std::vector<Eigen::Isometry3d> T_BI;
@@ -118,8 +118,7 @@ void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::n
   }
 }
 
-/// Returns the start of the first interval without readings, if the interval is long or lasts until the end of the
-/// recording.
+/// Returns the start of the first interval without readings that is long or lasts until the end of the recording.
 std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -150,7 +149,7 @@ Status frozen_in_all(const FrozenAxis& axis) {
   return {ErrorCode::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
-/// Excludes the readings of an IMU while one of its axes is frozen. If no IMU remains, returns an error.
+/// Excludes the readings of an IMU while one of its axes is frozen. Returns an error if no IMU remains.
 Status exclude_frozen(Units& units, std::vector<UnitFault>& faults) {
   std::optional<FrozenAxis> any;
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {
@@ -178,7 +177,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether there are faulty IMUs.
+/// Excludes the IMUs that ImuMerge has classified as faulty. Returns whether ImuMerge found faulty IMUs.
 bool exclude_found(const ImuMerge::State& state, Units& units, std::vector<UnitFault>& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {

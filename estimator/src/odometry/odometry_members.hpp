@@ -15,7 +15,8 @@ namespace tumble {
 
 namespace odometry {
 
-/// Names of the fields that add_sweep() may report in a Status. A loaded Status needs a pointer to a static string.
+/// kSweepFields lists the field names that add_sweep() may report in a Status. A loaded Status needs a pointer to a
+/// static string.
 inline constexpr std::array<const char*, 13> kSweepFields = {"",
                                                              "end_ns",
                                                              "start_ns",

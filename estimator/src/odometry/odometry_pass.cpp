@@ -16,8 +16,8 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// Returns the rate that the mapper receives. If a clipped axis is too uncertain for the mapper, the returned rate is
-/// the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
+/// Returns the angular rate that the mapper receives. If a clipped axis is too uncertain for the mapper, the function
+/// returns the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
 /// uncertain calibration, RateStream may extrapolate an impact by tens of rad/s, with a correspondingly large standard
 /// deviation.
 RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
@@ -33,8 +33,8 @@ RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double 
   return out;
 }
 
-/// Samples of a stream, with flags on forces that RateStream classified as saturated. Successive calls need increasing
-/// times.
+/// ClassifiedSamples provides the samples of a stream, with flags on specific forces that RateStream classified as
+/// saturated. Successive calls need increasing times.
 class ClassifiedSamples {
  public:
   ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)

@@ -12,7 +12,7 @@
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
-/// pass_members.hpp describes the members of the two passes of TumblingOdometry, as state_visitor.hpp explains.
+/// pass_members.hpp lists the members of the two passes of TumblingOdometry, as state_visitor.hpp describes.
 namespace tumble {
 
 namespace odometry {
@@ -23,7 +23,7 @@ void check_offset(const RegimeStream::Params& rate, Visitor& visit) {
                 GyroOffset::kOffsetMax_rad_s);
 }
 
-/// Visits the parameters of the rates that may come from an earlier run.
+/// Visits those parameters of the rate estimation that may come from an earlier run.
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("gyro offset", p.rate.model.nominal.gyro_bias_rad_s);
@@ -34,7 +34,7 @@ void visit_estimated(Self& p, Visitor& visit) {
 
 }  // namespace odometry
 
-/// Visits only the samples that are still in use.
+/// Visits only those samples that are still in use.
 template <class Self, class Visitor>
 void OdometryPass::Queue::members(Self& s, Visitor& visit) {
   if constexpr (std::is_const_v<Self>) {
@@ -110,7 +110,7 @@ void SecondPass::members(Self& s, Visitor& visit) {
     s.pass_.reset();
     if (is_running && visit.going()) s.pass_.emplace(s.delayed_rate_params(), s.mapping_);
   }
-  // the layout already contains the members of a pass, so that the second pass is not described
+  // the layout already contains the members of a pass, so the second pass is omitted
   if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
   visit.scratch(s.pass_);
   visit("second_pass.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));

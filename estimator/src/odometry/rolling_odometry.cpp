@@ -167,7 +167,8 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// Adds the readings at all common times that are complete. If `ended`, no further readings follow.
+/// Adds the readings at all common times for which every IMU has a reading. If `ended` is true, no further readings
+/// follow.
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
   UnitAlignment::Readings readings;
@@ -238,7 +239,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of frozen IMUs to NaN. If no IMU remains, returns an error.
+/// Sets the readings of frozen IMUs to NaN. Returns an error if no IMU remains.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -311,7 +312,7 @@ void RollingOdometry::end_run() {
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
 }
 
-/// Restarts the run at the newest pose.
+/// Restarts the run at its newest pose.
 void RollingOdometry::restart_at_newest() {
   const std::optional<Pose> pose = newest();
   end_run();
@@ -332,7 +333,7 @@ void RollingOdometry::reset() {
   recorded_ = {};
 }
 
-/// Resets all states of a run, except the readings that UnitAlignment has not yet passed on.
+/// Resets all states of a run, except the readings that UnitAlignment has not passed on yet.
 void RollingOdometry::start_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = std::make_unique<ImuMerge::State>();
@@ -356,7 +357,7 @@ void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
   start_ = T_WG;
 }
 
-/// Computes the pose of the run's origin, from the run's first pose.
+/// Computes the pose of the run's origin from the run's first pose.
 void RollingOdometry::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);
@@ -368,7 +369,7 @@ void RollingOdometry::initialise_pose() {
   start_.reset();
 }
 
-/// Converts an estimate of the filter or the smoother to the world.
+/// Transforms an estimate of the filter or the smoother to the world frame.
 RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restarted_;
   if (!T_W_run_) return estimate;

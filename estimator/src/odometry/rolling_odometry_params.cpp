@@ -10,12 +10,12 @@ namespace {
 constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recovering a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
 constexpr double kUnknownRadiusShare = 0.05;  // prior of an unknown radius, if a known distance determines the radius
-// Prior standard deviations of an IMU without a data sheet at an arbitrary position in the sphere.
+// The prior standard deviations describe an IMU without a data sheet at an arbitrary position in the sphere.
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin on a level floor
 
-// Checks the radius of RollingOdometry here, because the radius of the smoother has no default.
+// Checks the radius parameter of RollingOdometry, because the radius of the smoother has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_valid_fields(params);

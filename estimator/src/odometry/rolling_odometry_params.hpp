@@ -5,13 +5,14 @@
 
 #include "tumble/odometry/rolling_odometry.hpp"
 
-/// Parameters of the parts of RollingOdometry, derived from its own parameters.
+/// rolling_odometry_params.hpp derives the parameters of the parts of RollingOdometry from the parameters of
+/// RollingOdometry.
 namespace tumble::odometry {
 
 /// Returns the parameters of ImuMerge. Throws InvalidParams if a parameter of RollingOdometry is out of bounds.
 ImuMerge::Params merge_params(const RollingOdometry::Params& params);
 
-/// Returns the parameters of the smoother for `units` IMUs. `lever_arm_m` is the position of the merged IMU.
+/// Returns the parameters of RollingSmoother for `units` IMUs. `lever_arm_m` is the position of the merged IMU.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 

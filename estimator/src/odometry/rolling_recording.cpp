@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RollingOdometry with the whole recording.
+// rolling_recording.cpp implements RollingOdometry for a whole recording.
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +12,7 @@ RollingSmoother::Params RollingOdometry::smoother_params(const Params& params, c
   return odometry::rolling_params(params, odometry::merge_params(params), merged.units.size(), merged.lever_arm_m);
 }
 
-/// Stores a reading until finish(). Readings that are not finite are ignored.
+/// Stores a reading until finish(), and ignores non-finite readings.
 Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_[unit];

@@ -11,7 +11,7 @@
 #include "../common/state_layout.hpp"
 #include "../common/state_params.hpp"
 
-/// saved_state.hpp serialises complete odometry objects and states of streams. All numbers are little-endian.
+/// saved_state.hpp saves and loads odometry objects and states of streams. All saved numbers are little-endian.
 ///
 /// The bytes are:
 ///
@@ -25,8 +25,8 @@
 /// | 32 | checksum of all other bytes |
 /// | 40 | the parameters, then the state, as StateWriter writes them |
 ///
-/// A saved state can be loaded only by a library with the same state layout. A new member changes the digest. If the
-/// meaning of a member changes without a change of layout, the version of the format must change.
+/// Only a library with the same state layout can load a saved state. A new member changes the digest of the state
+/// layout. If the meaning of a member changes without a change of layout, the version of the format must change.
 namespace tumble::odometry {
 
 enum class SavedKind : std::uint32_t {
@@ -43,13 +43,13 @@ enum class SavedKind : std::uint32_t {
 inline constexpr std::uint32_t kSavedVersion = 1;
 inline constexpr std::size_t kSavedHeader = 40;
 
-/// Fills the header of `bytes`, whose first kSavedHeader bytes are reserved.
+/// Fills in the header of `bytes`, whose first kSavedHeader bytes are reserved for it.
 void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
-/// Checks the header and returns the bytes after the header.
+/// Checks the header of a saved state and returns the bytes after it.
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload);
 
-/// Serialises `whole`, which is an odometry object or the state of a stream.
+/// Saves `whole`, which is an odometry object or the state of a stream.
 template <class Whole, class Params>
 std::uint64_t layout_of(const Whole& whole, const Params& params) {
   StateLayout layout;
@@ -68,8 +68,8 @@ std::vector<std::byte> save(SavedKind kind, const Whole& whole, const Params& pa
   return bytes;
 }
 
-/// Loads a state into an object that was created with the saved parameters. After an error, the caller must discard the
-/// object.
+/// Loads a saved state into an object that was created with the saved parameters. After an error, the caller must
+/// discard the object.
 template <class Whole, class Params>
 Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Whole& whole) {
   std::span<const std::byte> payload;

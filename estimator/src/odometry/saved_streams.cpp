@@ -28,8 +28,8 @@ constexpr SavedKind kKind<RollingFilter> = SavedKind::rolling_filter;
 template <>
 constexpr SavedKind kKind<RollingSmoother> = SavedKind::rolling_smoother;
 
-/// Creates a state before the first sample. The state is on the heap, because the state of RollingOdometry is too large
-/// for a stack.
+/// Creates the state of a stream before its first sample. The state is on the heap, because the state of
+/// RollingOdometry is too large for the stack.
 template <class Stream>
 std::unique_ptr<typename Stream::State> fresh_state(const Stream& stream) {
   using State = typename Stream::State;
@@ -37,7 +37,7 @@ std::unique_ptr<typename Stream::State> fresh_state(const Stream& stream) {
   return std::make_unique<State>();
 }
 
-/// Creates valid parameters. Parameters without a default get arbitrary values.
+/// Creates valid parameters of a stream; parameters without a default get arbitrary values.
 template <class Stream>
 typename Stream::Params some_params() {
   typename Stream::Params out;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBefore_s = 0.1;       // time before the first buffered sweep, because the clocks may differ
 constexpr std::size_t kMoreShare = 20;  // the second pass may reject one sweep more than the first per this many sweeps
-// If more than one sweep in kSweepsPerRejection sweeps is rejected, the second pass does not use the calibration.
+// The second pass ignores the calibration if more than one in kSweepsPerRejection sweeps is rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Initialises the stream with the saturation levels that the first pass detected. The covariance of the saturation
@@ -148,8 +148,8 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffer, fewer samples than the lag follow. The second pass then processes the samples without a
-  // lag.
+  // At the end of the buffer, fewer samples follow than the lag needs. The second pass then processes the last samples
+  // without a lag.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
@@ -184,7 +184,7 @@ void SecondPass::replace_first_pass(OdometryPass& first) {
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*pass_));
     applied_ = true;
-    // an early second pass replaces the first pass when the regular second pass follows
+    // an early second pass takes the role of the first pass when the regular second pass follows
     rejected_by_first_ = rejected_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

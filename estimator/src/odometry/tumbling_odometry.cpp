@@ -18,7 +18,7 @@ using odometry::rate_params;
 
 namespace {
 
-/// Returns the points fired at `from_ns` or later. The times of the points are relative to `from_ns`.
+/// Returns the lidar points fired at `from_ns` or later. The times of the returned points are relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -184,14 +184,14 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   last_registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  // the second pass has its own local frame
+  // the second pass has a separate local frame
   if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.abandon();
   second_pass_.advance(pass_);
 }
 
 /// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, the newest sample
-/// must be later than the sample at the sweep's end by at least the lag minus 1.5 periods. After a gap, the second
-/// condition is not met immediately.
+/// must be at least the lag minus 1.5 periods later than the sample at the sweep's end. The condition on the newest
+/// sample delays the sweep after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -203,8 +203,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the sweep's end may end up to one period later. The rate of the sample at the sweep's end
-    // is therefore reported one period early.
+    // The sample that covers the end of the sweep may end up to one period later. The rate of this sample is therefore
+    // reported one period early.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -233,7 +233,8 @@ void TumblingOdometry::restart_rates() {
   start_rate_estimation();
 }
 
-/// Restarts the run at the newest pose after the clock stepped back. Sweeps that the IMU covers are registered before.
+/// Restarts the run at its newest pose after the clock has stepped back. The function first registers the sweeps that
+/// the IMU samples cover.
 void TumblingOdometry::restart_at_newest() {
   ++restart_count_;
   PoseState pose;
@@ -250,7 +251,7 @@ void TumblingOdometry::restart_at_newest() {
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
-/// Restarts a run of one sample, which is an outlier.
+/// Restarts a run that consists of a single sample, which is an outlier.
 void TumblingOdometry::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
@@ -265,7 +266,7 @@ void TumblingOdometry::restart_without_first_sample() {
   outlier_filter_state_ = outliers;
 }
 
-/// Restarts the run at rest, at the same start, with the gyro's zero offset as nominal bias.
+/// Restarts the run at rest from the same start, with the gyro's zero offset as nominal bias.
 void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   early_sweeps_ += waiting_.size();
@@ -302,7 +303,7 @@ void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::start_rate_estimation() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  // if the estimated calibration is out of bounds, restart from the stated calibration
+  // if the estimated calibration is out of bounds, the run restarts from the stated calibration
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.start_rate_estimation(params);
 }

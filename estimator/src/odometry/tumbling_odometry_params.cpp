@@ -7,7 +7,8 @@ namespace tumble {
 
 namespace {
 
-// Standard deviation of the horizontal part of gravity after levelling, if the world is not exactly level.
+// kGravitySigma_m_s2 is the standard deviation of the horizontal part of gravity after levelling, if the world is not
+// exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
 }  // namespace

@@ -5,16 +5,17 @@
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
-/// Parameters of the parts of TumblingOdometry, derived from its own parameters.
+/// tumbling_odometry_params.hpp derives the parameters of the parts of TumblingOdometry from the parameters of
+/// TumblingOdometry.
 namespace tumble::odometry {
 
 /// Returns the parameters of the rate estimation. Throws InvalidParams if a parameter of TumblingOdometry is out of
 /// bounds.
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
 
-/// Returns the parameters of the rate estimation over a whole recording. Parameters that RegimeSmoother shares with
-/// RegimeStream have the values of RegimeStream. The prior standard deviations of accelerometer bias and inertia are
-/// wider (see RateStreamParams::model).
+/// Returns the parameters of the rate estimation over a whole recording. Parameters that RegimeSmoother and
+/// RegimeStream share have the values of RegimeStream. The prior standard deviations of accelerometer bias and inertia
+/// are wider (see RateStreamParams::model).
 RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 
 OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingOdometry with the whole recording.
+// tumbling_recording.cpp implements TumblingOdometry for a whole recording.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -22,7 +22,8 @@ CheckedImu checked_imu(const TumblingOdometry::Params& params) {
           .lever_arm_I_m = params.lever_arm_I_m};
 }
 
-/// Removes outliers and corrects the time stamps. `stamps_ns` receives the stamps of the remaining samples.
+/// Removes outliers from the samples and corrects their time stamps. `stamps_ns` receives the time stamps of the
+/// remaining samples.
 Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std::vector<ImuSample>& samples,
                       OutlierFilter::State& outliers, RecordingEstimate& out) {
   const std::vector<bool> inlier = find_inliers(filter, samples);
@@ -35,7 +36,7 @@ Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std
   return {};
 }
 
-/// Estimates the rates and checks the readings.
+/// Estimates the angular rates and checks the readings.
 Status estimate_rates(const TumblingOdometry::Params& params, std::span<const ImuSample> samples,
                       RecordingEstimate& out) {
   const RegimeSmoother smoother(odometry::recording_rate_params(params));
@@ -49,7 +50,7 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
   return {};
 }
 
-/// Returns the finding about the whole recording with the highest priority.
+/// Returns the finding about the whole recording that has the highest priority.
 Status verdict(const RecordingEstimate& whole, const StatedCalibration& stated) {
   if (!whole.findings.all.empty()) return whole.findings.all.front().status;
   if (const Status of_ranges = whole.scale.verdict(); !of_ranges.ok()) return of_ranges;

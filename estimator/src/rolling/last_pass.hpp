@@ -11,18 +11,18 @@
 
 namespace tumble::rolling {
 
-/// LastPass is the final pass of RollingSmoother over stored samples: one Kalman filter with fixed modes, then the
-/// backward pass.
+/// LastPass is the final pass of RollingSmoother over stored samples: a Kalman filter with fixed contact modes, then
+/// the backward pass.
 ///
 /// The backward pass needs more than 10 KiB per node. LastPass therefore divides the nodes into segments, and stores
-/// only the filter at the start of each segment and the adjoint at its end. The records of one segment are recomputed
-/// when needed, bit for bit. A window of one segment is processed one time, and a longer window three times. A LastPass
-/// contains four filters of 13 KiB, so do not put a LastPass on the stack.
+/// only the filter at each segment's start and the adjoint at its end. LastPass recomputes the records of one segment
+/// when needed, bit for bit. LastPass processes a window of one segment once, and a longer window three times. A
+/// LastPass contains four filters of 13 KiB, so do not put it on the stack.
 class LastPass {
  public:
   static constexpr std::size_t kSegment = 128;  ///< number of nodes; 1.6 MiB of records
 
-  /// Checkpoint is the filter and its position in the samples, between two nodes.
+  /// Checkpoint is the state of the filter and its position in the samples, between two nodes.
   struct Checkpoint {
     PathFilter filter;
     Readings::Cursor reading;
@@ -39,14 +39,14 @@ class LastPass {
     std::size_t index;
   };
 
-  /// Constructs the pass; all arguments must outlive the pass. If `distance` is known, the distance is measured at the
-  /// end of the samples. `segment` is the number of nodes whose records are stored at a time. The number of nodes per
-  /// segment affects only memory and computing time.
+  /// Constructs the pass; all arguments must outlive it. If `distance` is known, the filter measures the distance at
+  /// the end of the samples. `segment` is the number of nodes whose records are stored at a time. The segment length
+  /// affects only memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Runs forward from `start`, and then backward. `cut` is the number of nodes after which the filter is copied for
-  /// cut().
+  /// Runs the filter forward from `start`, and then the backward pass. `cut` is the number of nodes after which the
+  /// filter is copied for cut().
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_m2_.size(); }
@@ -82,7 +82,7 @@ class LastPass {
   Checkpoint cut_, end_;
   Checkpoint again_;  ///< filter in a segment that is recomputed
   Adjoint adjoint_;   ///< adjoint of the backward pass
-  // index of the loaded segment
+  // index of the segment whose records are loaded
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;

@@ -5,13 +5,14 @@
 
 #include "rolling_node.hpp"
 
-/// lost_heading.hpp prevents false information about the heading, which contact does not determine. The readings do not
-/// change if a whole run is rotated about the vertical. A linearised filter with a large heading error still gains
-/// false information, because the linearisation points of successive updates differ. See rolling.md (R34) to (R36).
+/// lost_heading.hpp prevents false information about the heading, which contact cannot determine. The readings stay the
+/// same if a whole run is rotated about the vertical. With a large heading error, a linearised filter still gains false
+/// information, because the linearisation points of successive updates differ. The correction is described in
+/// rolling.md (R34) to (R36).
 namespace tumble::rolling {
 
-/// Standard deviation of the heading above which the correction of lost_heading.hpp is applied. The false information
-/// grows with the square of the standard deviation.
+/// kLostHeading_rad is the standard deviation of the heading above which lost_heading.hpp corrects the filter. The
+/// false information grows with the square of the heading's standard deviation.
 inline constexpr double kLostHeading_rad = 0.1;
 
 inline bool heading_lost(const Covariance& P) {
@@ -24,8 +25,8 @@ inline void blind_to_heading(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
 
-/// Returns how a correction `x` of the nominal changes the effect of a rotation about the vertical on velocity,
-/// position and slope, rolling.md (R36).
+/// Returns how a correction `x` of the nominal trajectory changes the effect of a rotation about the vertical,
+/// rolling.md (R36).
 inline Vector turned_by_heading(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
@@ -35,14 +36,13 @@ inline Vector turned_by_heading(const Vector& x) {
   return out;
 }
 
-/// Transforms the covariance P of errors about the old nominal to errors about the new nominal, P <- T P T^T,
-/// rolling.md (R36).
+/// Transforms the covariance P from the old to the new nominal trajectory, P <- T P T^T, rolling.md (R36).
 inline void move_errors(const Vector& turned, Covariance& P) {
   P += (turned * P.row(kAttitude + 2)).eval();
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();
 }
 
-/// Transforms one error about the old nominal to an error about the new nominal.
+/// Transforms one error from the old to the new nominal trajectory.
 inline void move_error(const Vector& turned, Vector& x) {
   x += x[kAttitude + 2] * turned;
 }

@@ -6,17 +6,17 @@
 #include "rolling_node.hpp"
 
 /// node_rows.hpp provides the measurements of a node as scalar rows, for the hypotheses of the filter and for the
-/// smoother, which also stores the rows. `take(row, measured, variance)` processes one measurement: measurement = row x
-/// + noise. `row` is a Row, or the index of a single state. The calls of `take` are in order, and may change `x` and
-/// `P`, from which the next row is computed.
+/// smoother. `take(row, measured, variance)` processes one measurement: measurement = row x + noise. `row` is a Row, or
+/// the index of a single state. The calls of `take` are in order, and may change `x` and `P`, from which the next row
+/// is computed.
 namespace tumble::rolling {
 
-/// Applies the rolling constraint: the contact point does not move, or stays on the floor when slipping. An unknown
-/// velocity is assumed to be small, see rolling.md (R17), (R20).
+/// Applies the rolling constraint: the contact point is at rest, or stays on the floor during slip. An unknown velocity
+/// is assumed to be small, see rolling.md (R17), (R20).
 template <class EstimateCallback>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {
-  // removes the nonlinear part, which is not an error of the state
+  // removes the nonlinear part of the contact velocity, which is not an error of the state
   const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, mode);
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.H.row(axis)), -u[axis], variance[axis]);
@@ -27,8 +27,8 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
   }
 }
 
-/// Applies the measurements at rest: velocity is zero, and rate is zero unless the sphere spins in place. See
-/// rolling.md (R28).
+/// Applies the measurements at rest: zero velocity, and zero rate unless the sphere spins in place, see rolling.md
+/// (R28).
 template <class EstimateCallback>
 void rest_rows(const RollingParams& params, const RollingIntegrals& sums, const RollingNominal& nominal,
                bool spins_in_place, EstimateCallback&& take) {

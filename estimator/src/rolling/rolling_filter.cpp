@@ -63,7 +63,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::process_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // A node is closed by the reading after its end, because the rate at the node's end is between two readings.
+  // The reading after the end of a node closes the node, because the rate at the node's end is between two readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     complete_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -113,7 +113,7 @@ void RollingFilter::complete_node(const Eigen::Vector3d& next_rate_rad_s, State&
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
-  // If the hypotheses about past motion disagree, the uncertainty of the current position increases.
+  // If the hypotheses about past motion disagree, the current position is more uncertain.
   if (state.at_rest && state.count == 1) {
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_spread_m2;
     state.position_covariance_m2 += state.pruned_position_spread_m2;
@@ -142,8 +142,8 @@ void RollingFilter::detect_rest(State& state) const {
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
-/// Returns whether a sphere at rest rotates slowly about its contact point: rolling.md (R29). The criterion is the
-/// difference between the averaged rate and the gyro bias.
+/// Returns whether a sphere at rest rotates slowly about its contact point: rolling.md (R29). The test compares the
+/// averaged rate with the gyro bias.
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -154,9 +154,9 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the position covariance that is due to differences between the hypotheses: rolling.md (R27). The result is
-/// the mean of d d^T, weighted by the hypothesis' weight. The vector d is the difference between a hypothesis' position
-/// and the best hypothesis' position.
+/// Returns the position covariance that differences between the hypotheses cause: rolling.md (R27). The position
+/// covariance is the mean of d d^T, weighted by the weights of the hypotheses. The vector d is the position of a
+/// hypothesis relative to that of the best hypothesis.
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -235,8 +235,8 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable mode over all hypotheses. Several hypotheses may differ in their past, but agree on
-/// whether the contact point moves.
+/// Returns the most probable contact mode over all hypotheses. Several hypotheses may differ in their past, but agree
+/// on whether the contact point moves.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

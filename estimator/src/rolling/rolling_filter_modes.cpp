@@ -21,14 +21,15 @@ namespace {
 constexpr double kDropped = -120.0;   // log weight relative to the best hypothesis, below which a hypothesis is pruned
 constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest; limits the effect of a single bad node
 constexpr double kLongAgo_s = 1.0;    // time in one mode after which the start of the mode no longer matters
-// Mixture for the horizontal change of the contact point's velocity per node during slip. The component kPlateau_m_s is
-// as narrow as grip. A wider component would classify each phase of constant slip velocity as grip.
+// The constants describe a mixture density for the horizontal change of the contact velocity per node during slip. The
+// component kPlateau_m_s is as narrow as the density of grip. A wider component would classify each phase of constant
+// slip velocity as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of contact velocity, on a bump
 constexpr std::int64_t kAgesApart = 4;
-// Minimum number of hypotheses that do not contain the last mode change of the best hypothesis. A slip with constant
-// spin looks like grip until the slip ends. When the slip ends, a hundred hypotheses with other recent modes have
-// higher weights than the slip.
+// kDissenters is the minimum number of hypotheses without the last mode change of the best hypothesis. A slip with
+// constant spin looks like grip until the slip ends. When the slip ends, a hundred hypotheses with other recent modes
+// have higher weights than the correct one.
 constexpr std::size_t kDissenters = 6;
 constexpr double kRoughCost = 0.2;         // cost per node, between the residuals of a slope and of grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // factor for a slope after a bump, because the foot of a ramp is a bump
@@ -41,7 +42,7 @@ double log_normal(double value, double variance) {
 }
 
 /// Returns the log density of a vertical change of the contact velocity u per node on a bump: m1 of rolling.md (R25).
-/// The two components of the mixture are a sphere that rolls over the bump and a sphere that hits the bump.
+/// The two mixture components are a sphere that rolls over the bump and a sphere that hits it.
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -50,7 +51,7 @@ double log_rise(double change) {
 }
 
 /// Returns the log density of a horizontal change of the contact velocity u per node: m2 of rolling.md (R24). During
-/// slip, the contact velocity is constant, drifts, or jumps. `square` is the squared length of the change.
+/// slip, the contact velocity is constant, drifts, or jumps. `square` is the squared length of the velocity change.
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -60,7 +61,7 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// Returns the log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R23).
+/// Returns the log density of a stationary contact point, for hypothesis `h` in contact mode `mode`: rolling.md (R23).
 double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                  const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -82,7 +83,7 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // Roughness lasts for many nodes. The normalisation of the density therefore uses the width of grip, which avoids a
+    // A rough floor lasts for many nodes. The density is therefore normalised with the width of grip, which avoids a
     // penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
@@ -93,8 +94,8 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Returns the log density of a moving contact point, given the change of its velocity `u` since the last node:
-/// rolling.md (R24), (R25).
+/// Returns the log density of a moving contact point whose velocity changed by `u` since the last node: rolling.md
+/// (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
@@ -105,7 +106,7 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   return horizontal + log_normal(u.z(), check_vertical);
 }
 
-/// Returns the log probability of a transition between two modes within a node: rolling.md (R22).
+/// Returns the log probability of a transition between two contact modes within a node: rolling.md (R22).
 double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
   const auto& modes = params.expert.modes;
   const auto rate = [&](RollingMode a, RollingMode b) {
@@ -157,15 +158,16 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.mode_start_node : state.node};
     }
   }
-  // std::stable_sort would allocate memory. Equal weights are ordered by origin, so the order is unique.
+  // The code avoids std::stable_sort, which would allocate memory. Candidates of equal weight are ordered by origin, so
+  // the order is unique.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
 }
 
-/// Returns the start node of a mode after merging. Mode starts that are close in time merge, and the merging distance
-/// grows with the age of the starts.
+/// Returns the start node of a contact mode after merging of mode starts. Mode starts that are close in time merge, and
+/// the merging distance grows with their age.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, long_ago);
@@ -179,8 +181,8 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the candidates that remain: the most probable candidate for each mode and start. The function reserves
-/// `kDissenters` places for candidates that do not contain the last mode change of the best candidate.
+/// Selects the most probable candidate for each contact mode and mode start. The function reserves `kDissenters` places
+/// for candidates without the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -208,7 +210,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A slot can be overwritten if no pending copy reads the slot. The copy into the slot may free another slot.
+  // A slot can be overwritten if no pending copy reads from it. A copy into the slot may free another slot.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -232,7 +234,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 }  // namespace
 
-/// Updates the weights of the hypotheses and selects the most probable hypotheses: rolling.md (R26).
+/// Updates the weights of the hypotheses and selects the most probable ones: rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   if (heading_lost) rolling::blind_to_heading(c);
@@ -293,7 +295,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange(order, count, state.hypotheses);
-  // After some rest, the hypotheses agree about the present. One hypothesis is then sufficient.
+  // After some time at rest, all hypotheses agree about the present state, so one hypothesis is sufficient.
   const bool rested = seconds(state.rest.within_bias_since_ns) > kLongAgo_s;
   if (rested && state.count > 1) state.pruned_position_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;

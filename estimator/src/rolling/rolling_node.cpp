@@ -30,22 +30,23 @@ constexpr double kForceTilt_rad = 0.35;               // direction error of a fo
 constexpr double kLostTilt_rad = kForceTilt_rad;      // if the standard deviation is larger, a force levels the tilt
 constexpr double kUncertainTilt_rad = 0.1;            // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// Difference between force and gravity, as a fraction of gravity, above which the sphere is pushed or rotates fast.
+// kPush is the difference between specific force and gravity, as a fraction of gravity, above which the sphere is
+// pushed or rotates fast.
 constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// Limits of rate and angular acceleration around a gap. If the rates before and after a gap are below kGapRate_rad_s,
-// the sphere was hardly pushed during the gap.
+// kGapRate_rad_s and kGapStill_rad_s2 limit the rate and the angular acceleration around a gap. If the rates before and
+// after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapTurned = 0.5;  // change of velocity in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
 
-/// Returns the variance of the contact velocity in a mode: rolling.md (R18), (R19).
+/// Returns the variance of the contact velocity in a contact mode: rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
       mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
@@ -80,10 +81,11 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // On a pushed sphere, the measured force is not gravity. A rotating sphere may slip with its full rolling speed.
+  // While a sphere is pushed, the measured specific force is not gravity. A rotating sphere may slip with its full
+  // rolling speed.
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
-  // the heading at the start defines the world's x axis, so its prior variance is 0
+  // the initial heading defines the world's x axis, so its prior variance is 0
   prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
   prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.velocity_sigma_m_s) + squared(velocity));
   prior.segment<3>(kGyroBias).setConstant(squared(params.expert.prior.gyro_bias_sigma_rad_s));
@@ -103,8 +105,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< the reading is a lower bound of these components
 };
 
-/// Returns a force for a saturated reading: rolling.md (R8). The result is the larger of two forces: the reading, and
-/// the force that keeps the centre's velocity constant.
+/// Returns a specific force for a saturated reading: rolling.md (R8). The returned force is the larger of two forces:
+/// the reading, and the force that keeps the velocity of the centre constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -124,7 +126,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 
 }  // namespace
 
-/// Integrates a reading: rolling.md (R2) to (R9).
+/// Integrates one reading of the IMU: rolling.md (R2) to (R9).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
@@ -134,8 +136,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // A force that rotates in the sensor is reduced by averaging over the window. The force component across the rotation
-  // axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
+  // Averaging over the window reduces a specific force that rotates relative to the sensor. The component perpendicular
+  // to the rotation axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -151,8 +153,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the force is unknown. With an unknown direction of the force, the
-  // integration keeps the velocity of the centre constant: rolling.md (R7).
+  // If the rate is unknown, the direction of the specific force is also unknown. The integration then keeps the
+  // velocity of the centre constant: rolling.md (R7).
   const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -215,7 +217,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A gap has the duration T. A parabola between the rates before and after the gap has the integral a T^3 / 12:
+  // T is the duration of the gap. A parabola between the rates before and after the gap has the integral a T^3 / 12:
   // rolling.md (R31).
   const double mean_force_tilt_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
@@ -236,7 +238,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_m2_s2 += uncertainty.speed_m2_s2;
 }
 
-/// Returns the transition matrix of the moving states: rolling.md (R10).
+/// Returns the transition matrix of the motion states: rolling.md (R10).
 Moving transition(const RollingIntegrals& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.rotation_integral_s;
@@ -250,7 +252,7 @@ Moving transition(const RollingIntegrals& sums) {
   return B;
 }
 
-/// Predicts the states and their covariance over a node: rolling.md (R11) to (R14).
+/// Predicts the states and their covariance over a node interval: rolling.md (R11) to (R14).
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -276,7 +278,7 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// Computes the contact velocity, its derivatives, and its variance: rolling.md (R15), (R16), (R18).
+/// Computes the contact velocity, its derivatives and its variance: rolling.md (R15), (R16), (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -284,7 +286,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The vector from the IMU to the contact point determines the contact velocity u = v + w x (-arm - r n).
+  // The lever arm from the IMU to the contact point gives the contact velocity u = v + w x (-arm - r n).
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
@@ -320,7 +322,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// If the velocity is too uncertain, returns the variance for an update with velocity zero: rolling.md (R20).
+/// Returns the variance for an update with zero velocity if the velocity is too uncertain: rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -330,14 +332,14 @@ bool resets_slope(RollingMode from, RollingMode to) {
   return from != to && !may_slip(to);
 }
 
-/// Resets the slope of the floor after a change of the contact mode: rolling.md (R21).
+/// Resets the estimated slope of the floor after a change of the contact mode: rolling.md (R21).
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The travelled distance on a
-  // rough floor depends on the steepness of the floor.
+  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The difference depends on
+  // the steepness of the floor.
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
@@ -347,7 +349,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// If the tilt is uncertain, aligns the attitude with the mean specific force: rolling.md (R30).
+/// If the tilt is uncertain, the function aligns the attitude with the mean specific force: rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;

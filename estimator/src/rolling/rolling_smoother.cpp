@@ -13,7 +13,8 @@ namespace tumble {
 
 namespace {
 
-// Maximum number of preallocated samples and nodes. If the lag needs more samples, memory grows during the run.
+// kSetAsideMost is the maximum number of preallocated samples and nodes. If the lag needs more samples, the memory
+// grows during the run.
 constexpr std::size_t kSetAsideMost = 1'000'000;
 constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of the preallocated number
 
@@ -25,7 +26,7 @@ RollingParams quieter(RollingParams params, double share) {
   return params;
 }
 
-/// Returns the contact mode, out of two, that constrains the contact point less.
+/// Returns the one of two contact modes that constrains the contact point less.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
@@ -39,8 +40,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the ratio of the reported variance to the variance of the final pass. The final pass uses reduced process
-/// noise.
+/// Returns the ratio of the reported variance to the variance of the final pass, which uses reduced process noise.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.path_noise * params.path_noise);
 }
@@ -63,7 +63,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
   return J * node.smoothed_P * J.transpose();
 }
 
-/// While the sphere is at rest, keeps the reported position constant.
+/// Keeps the reported position constant while the sphere is at rest.
 void constrain_position(const rolling::PathNode& node, RollingSmoother::FinalPassState& committed,
                         RollingEstimate& estimate) {
   const bool stands = node.stands && !may_slip(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
@@ -183,7 +183,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const FinalPassState& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // A node may be within a gap. The next sample may then be much later than the node.
+    // A node may be within a gap of the data. The next sample may then be much later than the node.
     const TimeNs from_ns = k == 0 && committed.gap_step > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_stamp_order(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
@@ -253,7 +253,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   smooth_window(path, path.nodes.size() + 1, state, take);
 }
 
-/// Returns the modes of the most probable hypothesis, from the newest node back to the committed node.
+/// Returns the contact modes of the most probable hypothesis, from the newest node back to the committed node.
 RollingSmoother::Path RollingSmoother::most_probable_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());

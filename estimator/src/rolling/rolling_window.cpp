@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxSigmas = 5.0;
 constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions whose direction is defined
 
-/// Applies a measurement. If the residual exceeds kMaxSigmas standard deviations, reduces the weight, because a large
+/// Applies a measurement. A residual beyond kMaxSigmas standard deviations gets a reduced weight, because a large
 /// linear correction would distort the whole run: rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
@@ -142,7 +142,7 @@ Reported error_before_update(const NodeRecord& node) {
   return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
 }
 
-/// Applies a known distance between start and end: rolling.md (R41).
+/// Applies a known distance between start and end of the run: rolling.md (R41).
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter) {
   const RollingNominal& nominal = filter.nominal;

@@ -21,7 +21,7 @@ struct PathNode {
 inline constexpr int kReported = 12;  ///< number of states of a pose: attitude, velocity, position, lever arm
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
-/// NodeRecord is a node of the final pass, with all data for the backward pass.
+/// NodeRecord is a node of the final pass, with all data that the backward pass needs.
 struct NodeRecord {
   static constexpr int kRowsMax = 7;  ///< at rest, and with a known distance
   Moving B;
@@ -53,7 +53,7 @@ struct Reading {
 };
 
 /// Readings iterates over stored samples in the form that the live filter processes. Each step costs O(1) and does not
-/// allocate.
+/// allocate memory.
 class Readings {
  public:
   /// Cursor is the position in the samples before the next reading.
@@ -98,16 +98,17 @@ struct PathFilter {
 
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
 
-/// Closes a node: prediction, measurements, and correction of the nominal. `record` must have its initial values.
+/// Closes a node: prediction, measurements, and correction of the nominal trajectory. `record` must have its initial
+/// values.
 void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
                    const PathNode& path, PathFilter& filter, NodeRecord& record);
 
-/// Returns the smoothed error at the node about the nominal before the node's update.
+/// Returns the smoothed error at the node, relative to the nominal trajectory before the node's update.
 Reported error_before_update(const NodeRecord& node);
 
 /// Measures the horizontal distance `distance_m` of the centre of `filter` from the start, at or just after the last
-/// node. Returns the correction of the nominal. The correction is zero if start and end are too close to define a
-/// direction.
+/// node. Returns the correction of the nominal trajectory. The correction is zero if start and end are too close to
+/// define a direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 

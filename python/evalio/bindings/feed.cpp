@@ -14,8 +14,8 @@ namespace tumble::evalio_bindings {
 namespace {
 
 constexpr std::size_t kSamplesMax = 256;  ///< samples that are buffered until a sweep needs them
-/// Sweeps that may wait for samples: ten seconds of most lidars. Without a limit, data without an IMU would fill the
-/// memory.
+/// kSweepsMax is the number of sweeps that may wait for samples: ten seconds of most lidars. Without this limit, data
+/// without an IMU would fill the memory.
 constexpr std::size_t kSweepsMax = 100;
 
 std::string seconds(std::int64_t time_ns) {

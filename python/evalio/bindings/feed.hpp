@@ -17,17 +17,17 @@ namespace tumble::evalio_bindings {
 
 namespace nb = nanobind;
 
-/// An evalio pipeline for an estimator of the package tumble that has add_imu, add_sweep, take_all and map
+/// Feed is an evalio pipeline for an estimator of the package tumble that has add_imu, add_sweep, take_all and map
 /// (TumblingOdometry). A derived Python class passes the estimator to `begin` in `initialize()`.
 ///
-/// evalio passes on a sweep at the time of its first return. The sweep waits here until IMU samples cover it, as on a
-/// robot. The saved poses are the final (smoothed) poses of each sweep, about 0.3 s after its end. evalio has no call
-/// at the end of a run, so the poses of the last half second are saved only if the caller calls `finish`. Data that the
-/// estimator rejects (TumbleError) are skipped with a Python warning. A hundred waiting sweeps are an error: the data
-/// have no IMU, or its clock differs.
+/// evalio passes on a sweep at the time of its first return. Each sweep waits in Feed until IMU samples cover it, as on
+/// a robot. The saved poses are the final (smoothed) poses of each sweep, about 0.3 s after its end. evalio has no call
+/// at the end of a run, so the poses of the last half second are saved only if the caller calls `finish`. Feed skips
+/// data that the estimator rejects (TumbleError), with a Python warning. A hundred waiting sweeps are an error: the
+/// data have no IMU, or its clock differs.
 class Feed : public evalio::Pipeline {
  public:
-  /// `sweep_length_ns`: from the first return's time to the end of the sweep.
+  /// `sweep_length_ns` is the time from the first return to the end of the sweep.
   void begin(nb::object odometry, std::int64_t sweep_length_ns);
   /// Ends the run and saves the remaining poses. A sweep that the IMU did not cover has no pose.
   void finish();
@@ -37,7 +37,7 @@ class Feed : public evalio::Pipeline {
   /// Returns the map as one cloud named "map".
   const evalio::Map<> map() override;
 
-  // members that a derived Python class implements
+  // a derived Python class implements these members
   void set_imu_params(evalio::ImuParams) override {}
   void set_lidar_params(evalio::LidarParams) override {}
   void set_imu_T_lidar(evalio::SE3) override {}

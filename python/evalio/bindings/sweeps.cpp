@@ -43,7 +43,7 @@ Sweep sweep_of(const evalio::LidarMeasurement& given, std::int64_t length_ns) {
     require_within_sweep(point.t.nsec);
     returns.push_back(&point);
   }
-  // evalio orders points by row
+  // evalio expects the points in order of rows
   std::stable_sort(returns.begin(), returns.end(),
                    [](const evalio::Point* a, const evalio::Point* b) { return a->t.nsec < b->t.nsec; });
   Sweep out;

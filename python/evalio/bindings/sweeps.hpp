@@ -7,12 +7,13 @@
 #include <cstdint>
 #include <vector>
 
-/// Conversion of evalio's measurements to the arrays that tumble's classes accept.
+/// sweeps.hpp converts evalio's measurements to the arrays that tumble's classes accept.
 namespace tumble::evalio_bindings {
 
 namespace nb = nanobind;
 
-/// Returns of a sweep in order of time, stored by columns. Times are nanoseconds of evalio's clock.
+/// Sweep contains the returns of a sweep in order of time, stored by columns. The times are nanoseconds of evalio's
+/// clock.
 struct Sweep {
   std::int64_t start_ns = 0, end_ns = 0;
   std::int64_t last_ns = 0;         ///< of the latest return
@@ -22,11 +23,12 @@ struct Sweep {
   std::vector<float> intensity;
 };
 
-/// Converts a sweep. Skips cells without a return: all coordinates 0, or one not finite. Throws std::invalid_argument,
-/// with value and bound, for a return before the start of the sweep or more than four seconds after it.
+/// Converts a lidar sweep of evalio. The conversion skips cells without a return: all coordinates 0, or one not finite.
+/// Throws std::invalid_argument, with value and bound, for a return before the start of the sweep or more than four
+/// seconds after it.
 Sweep sweep_of(const evalio::LidarMeasurement& given, std::int64_t length_ns);
 
-/// Samples of an IMU, stored by columns.
+/// Samples contains samples of an IMU, stored by columns.
 struct Samples {
   std::vector<std::int64_t> time_ns;
   std::vector<double> gyro_I_rad_s, accel_I_m_s2;  ///< x y z each
@@ -41,7 +43,7 @@ evalio::SE3 pose_of(const double* position, const double* quaternion);
 evalio::Stamp stamp_of(std::int64_t time_ns);
 std::int64_t nanoseconds_of(const evalio::Stamp& stamp);
 
-/// Moves numbers to a numpy array of rows x `columns`, or (rows,) for one column. The array owns them.
+/// Moves numbers to a numpy array of rows x `columns`, or (rows,) for one column. The numpy array owns the numbers.
 template <class Scalar>
 nb::object array_of(std::vector<Scalar> numbers, std::size_t columns = 1);
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks of function arguments. Errors name the argument, the value found and its bound."""
+"""Checks function arguments. Each error names the argument, the value found and its bound."""
 from __future__ import annotations
 
 import math
@@ -43,7 +43,7 @@ def path_of(field: str, given: Any) -> str:
 
 
 def whole(field: str, given: Any, low: int, high: int) -> int:
-    """Returns an integer of Python or numpy within bounds. Floats are rejected, not truncated."""
+    """Returns an integer of Python or numpy within bounds. Rejects floats instead of truncating them."""
     try:
         if isinstance(given, (bool, np.bool_)):
             raise TypeError

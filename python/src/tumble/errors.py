@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The error that invalid input raises."""
+"""Defines TumbleError, which invalid input raises."""
 from __future__ import annotations
 
 from typing import Any

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Import of optional packages, and writing of files that are either complete or absent."""
+"""Imports optional packages, and writes files that are either complete or absent."""
 from __future__ import annotations
 
 import contextlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Groups of an HDF5 file. Errors name the place of a missing item or of an item with the wrong type or shape."""
+"""Reads and writes groups of an HDF5 file. Errors name the place of an item that is missing or has the wrong type or shape."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from .files import optional
 Array = npt.NDArray[Any]
 XYZ = "x y z"
 CHUNK_BYTES = 2**20  # chunk size of a compressed dataset, see FORMAT.md
-PLAIN = {"position_L_m", "range_m", "intensity", "hit_W_m"}  # floats of a lidar resemble noise: compression is slow and saves little
+PLAIN = {"position_L_m", "range_m", "intensity", "hit_W_m"}  # lidar floats resemble noise, so compression is slow and saves little
 
 
 class Group:

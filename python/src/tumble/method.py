@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use of a Python function as a method of the program, in runs, sweeps and gates.
+"""Runs a Python function as a method of the program, in runs, sweeps and gates.
 
     import tumble
 
@@ -10,7 +10,7 @@
         tumble.serve("rate", rate)
 
 `tumble.describe_method("mine.yaml", "mine", "rate", "mine.py")` writes the description of this method. The program runs the file for each
-draw in a separate process. The function receives the sensor data without the ground truth.
+simulated run in a separate process. The function receives the sensor data without the ground truth.
 """
 from __future__ import annotations
 

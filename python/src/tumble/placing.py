@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Positions of lidar returns in the world by estimated poses and by ground truth, and the distances between them."""
+"""Computes world positions of lidar returns from estimated poses and from ground truth, and the distances between them."""
 from __future__ import annotations
 
 from typing import Any
@@ -51,7 +51,7 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     Returns positions (N, 3), m, in the world of the estimate, and distances (N,), m, for the returns within the times of both the poses
     and the ground truth. The worlds are aligned in position and yaw at the first pose within the times of the truth, as for the
     program's scores (`ate_m`). The estimated position uses the calibration stated by the recording, the true position uses the true
-    mounting. The distance therefore contains the calibration error. every: uses every n-th return.
+    mounting. The distance therefore contains the calibration error. every: n, to use every n-th return.
     Raises TumbleError `empty` without ground truth or without returns.
     """
     having("recording", recording, "a Recording", "truth", "imus", "lidars")

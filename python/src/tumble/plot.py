@@ -85,7 +85,7 @@ def trajectory(poses: Any, truth: Any = None) -> Any:
 def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: float | None = None) -> Any:
     """Plots the lidar's returns at the positions given by `poses` of the first IMU, from above and from the side.
 
-    The colour of a return is its distance from the true position (`point_errors`). every: uses every n-th return. worst_m: upper end of
+    The colour of a return is its distance from the true position (`point_errors`). every: n, to use every n-th return. worst_m: upper end of
     the colour scale; None: the 99 % quantile.
     """
     points, error_m = point_errors(recording, poses, every)

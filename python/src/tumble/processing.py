@@ -77,7 +77,7 @@ class Tumble(Shown):
     odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig(), calibration()
 
 
-WHOLE_RECORDING = 1e9  # value of lag_s [s]
+WHOLE_RECORDING = 1e9  # value of lag_s [s] for an estimate of the whole recording
 
 
 def tumbling_options(recording: Recording, **options: Any) -> dict[str, Any]:
@@ -128,7 +128,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     for sweep in lidar:
         reached = int(np.searchsorted(imu.time_ns, sweep.end_ns, side="left"))
         if reached == len(imu) and not (whole and sweep.start_ns < imu.time_ns[-1]):
-            break  # the IMU samples end before this sweep does
+            break  # this sweep extends beyond the last IMU sample
         if reached >= given:
             add_until(min(reached + 1, len(imu)))
         odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.position, sweep.offset_ns, sweep.ring, sweep.intensity)

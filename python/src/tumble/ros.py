@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ROS 2 nodes over the package, for robots on which nothing is built.
+"""ROS 2 nodes in Python, for robots on which nothing is compiled.
 
     python -m tumble.ros tumbling --ros-args -p imu_sheet:=mti30 -p "lever_arm_m:=[-0.022, -0.085, 0.055]" -r imu:=/imu/data -r points:=/rslidar_points
     python -m tumble.ros rolling --ros-args -p radius_m:=0.145
@@ -63,7 +63,7 @@ def cloud(frame: str, stamp_ns: int, names: Sequence[str], data: bytes) -> Point
 
 
 class OdometryNode(Node):
-    """What both nodes share: parameters, /tf, odometry and diagnostics. It is the publisher of its adapter."""
+    """Base of both nodes: parameters, /tf, odometry and diagnostics. The node is the publisher of its adapter."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -86,7 +86,7 @@ class OdometryNode(Node):
         self.create_timer(0.2, self.subscribe)
 
     def subscribe(self) -> None:
-        """Subscribes to the inputs that have a publisher, reliably if all its publishers are reliable. Best effort would lose large clouds."""
+        """Subscribes to the inputs that have a publisher, reliably if all its publishers are reliable. A best-effort subscription would lose large clouds."""
         for each in list(self.inputs):
             kind, topic, callback, depth = each
             if self.count_publishers(self.resolve_topic_name(topic)) > 0:
@@ -108,7 +108,7 @@ class OdometryNode(Node):
         return out
 
     def mounting(self, key: str, frame: str) -> list[float] | None:
-        """Returns the pose of a sensor in the base frame, from the parameter or else from TF. Returns None while TF lacks it."""
+        """Returns the pose of a sensor in the base frame, from the parameter or else from TF. Returns None while TF lacks the pose."""
         if len(self.text[key]) > 0:
             return list(self.text[key])
         if not frame:
@@ -129,7 +129,7 @@ class OdometryNode(Node):
         if error:
             self.get_logger().warning(f"{topic}: {error}", throttle_duration_sec=1.0)
 
-    # methods that the adapter calls
+    # the adapter calls these methods
 
     def wants(self, output: str) -> bool:
         if output == "odometry_imu":
@@ -167,7 +167,7 @@ class OdometryNode(Node):
         out.status = [status]
         self.diagnostics_publisher.publish(out)
 
-    # services and topics that change the run
+    # these services and topics change the run
 
     adapter: Any = None
 
@@ -199,7 +199,7 @@ class OdometryNode(Node):
 
 
 class TumblingNode(OdometryNode):
-    """TumblingOdometry: topics imu and points."""
+    """Runs TumblingOdometry with the topics imu and points."""
 
     def __init__(self) -> None:
         super().__init__("tumbling_odometry")
@@ -270,7 +270,7 @@ class TumblingNode(OdometryNode):
 
 
 class RollingNode(OdometryNode):
-    """RollingOdometry: topics imu for one IMU, imu_1 to imu_4 for several. T_base_imu has seven numbers for each IMU."""
+    """Runs RollingOdometry with the topic imu for one IMU, or imu_1 to imu_4 for several. T_base_imu has seven numbers for each IMU."""
 
     def __init__(self) -> None:
         super().__init__("rolling_odometry")

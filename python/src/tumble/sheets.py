@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data sheets of the devices that the simulation models. models/sensors/NAME.yaml has the source of each number."""
+"""Contains the data sheets of the devices that the simulation models. models/sensors/NAME.yaml has the source of each number."""
 from ._tumble import (
     bmi088,
     helios32,

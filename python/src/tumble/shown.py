@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Short texts of data classes with arrays."""
+"""Prints data classes with arrays as short texts."""
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
 
-_LIST_MAX = 4  # longer lists print their length only
+_LIST_MAX = 4  # of a longer list, only the length is printed
 _TEXT_MAX = 60
 
 

@@ -25,7 +25,7 @@ def _none(dtype: str, *columns: int) -> Any:
 class ImuTruth(Shown):
     """Ground truth of one IMU. N is the number of its samples, or 0 if unknown.
 
-    A reading that differs from the unclipped reading was clipped. A real recording may have the rates only.
+    A reading that differs from the unclipped reading was clipped. A real recording may contain only the rates.
     """
 
     name: str = ""
@@ -85,7 +85,7 @@ class Contacts(Shown):
 class Truth(Shown):
     """Ground truth in steps of period_ns from time 0.
 
-    For a real recording, the measurements of a reference instrument; NaN at times without a measurement.
+    The truth of a real recording contains the measurements of a reference instrument, with NaN at times without a measurement.
     """
 
     period_ns: int

@@ -10,11 +10,11 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/tumble.hpp"
 
-/// Parameters of the nodes. The C++ nodes and the Python node declare their parameters from these descriptions, so no
-/// parameter is described twice.
+/// node_params.hpp defines the parameters of the nodes. The C++ nodes and the Python node declare their parameters from
+/// these descriptions, so no parameter is described twice.
 namespace tumble::ros {
 
-/// Parameters of both adapters.
+/// AdapterParams contains the parameters of both adapters.
 struct AdapterParams {
   double diagnostics_period_s = 1.0;
 
@@ -45,7 +45,8 @@ struct TumblingAdapterParams {
   static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
 };
 
-/// Parameters of RollingAdapter. The base frame is the sphere, with its origin in the sphere's centre.
+/// RollingAdapterParams contains the parameters of RollingAdapter. The base frame is that of the sphere, with its
+/// origin in the sphere's centre.
 struct RollingAdapterParams {
   RollingOdometry::Params odometry;
   AdapterParams adapter;
@@ -83,11 +84,11 @@ std::span<const TextParameter> text_parameters();
 Eigen::Isometry3d pose_of(const std::string& parameter, std::span<const double> numbers);
 
 /// Converts the smallest and the largest corner to a box; no numbers give an empty box. Throws InvalidParams with the
-/// name of the parameter for another count.
+/// name of the parameter for another count of numbers.
 Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double> numbers);
 
-/// Return the data sheet with this name, or the default sheet for an empty name. Throw InvalidParams for an unknown
-/// name, with all known names.
+/// Returns the data sheet with this name, or the default sheet for an empty name. Throws InvalidParams for an unknown
+/// name, with a list of all known names.
 ImuSheet imu_sheet(const std::string& name);
 LidarSheet lidar_sheet(const std::string& name);
 

@@ -37,17 +37,19 @@ struct TimedSweep {
   std::vector<LidarPoint> points;
 };
 
-/// Converts the points of lidar drivers to the library's points, sweep by sweep. The reader needs no future sweeps.
+/// PointCloudReader converts the points of lidar drivers to the library's points, sweep by sweep. PointCloudReader
+/// needs only the current and earlier sweeps.
 ///
 /// The fields x, y, z and a time are required. Intensity ("intensity", "reflectivity") and ring ("ring", "line",
-/// "channel") are optional. A time field is called "t", "time", "timestamp", "timestamps", "time_stamp",
-/// "offset_time", "time_offset" or "offset", in any case, with or without the suffix _s, _ms, _us or _ns. If several
-/// fields have such a name, the field whose suffix states the unit is used.
+/// "channel") are optional. A time field is called "t", "time", "timestamp", "timestamps", "time_stamp", "offset_time",
+/// "time_offset" or "offset", in any case, with or without the suffix _s, _ms, _us or _ns. If several fields have such
+/// a name, the field whose suffix states the unit is used.
 ///
-/// The suffix states the unit. Without a suffix, the first sweep of at least 100 points determines the unit. The times
-/// of a sweep span 1 ms to 1 s, and units differ by factors of 1000, so only one unit fits. Times are relative to the
-/// header's stamp or absolute, whichever puts the first point closer to the stamp. If neither is within a second of the
-/// stamp, the times belong to another clock, and the first point is assumed to be measured at the stamp.
+/// The suffix of a time field states the unit. Without a suffix, the first sweep of at least 100 points determines the
+/// time unit. The times of a sweep span 1 ms to 1 s, and units differ by factors of 1000, so only one unit fits. Times
+/// are relative to the header's stamp or absolute, whichever puts the first point closer to the stamp. If neither is
+/// within a second of the stamp, the times belong to another clock, and the first point is assumed to be measured at
+/// the stamp.
 ///
 /// | driver | field | type | times |
 /// | --- | --- | --- | --- |
@@ -60,12 +62,12 @@ class PointCloudReader {
   /// @param time_field  name of the time field; empty: by the names above
   explicit PointCloudReader(std::string time_field = {}) : time_field_(std::move(time_field)) {}
 
-  /// Converts a cloud. Points that are not finite or at the origin are misses and are dropped. Intensities above 1 are
-  /// divided by 255, or by the largest intensity of the sweep if that is more. Returns an error and leaves `sweep`
-  /// unspecified: `empty` (a field is missing, or no point), `too_few` (the unit is unknown, and there are fewer than
-  /// 100 points), `degenerate` (all times are equal: deskewing is impossible), `out_of_range` (big-endian, a layout
-  /// that does not fit the data, two possible time fields, or a time span above 1 s). Cost: O(points). The function
-  /// reuses the memory of `sweep`.
+  /// Converts a point cloud to a sweep. Points that are not finite or at the origin are misses and are dropped.
+  /// Intensities above 1 are divided by 255, or by the largest intensity of the sweep if that is more. Returns an error
+  /// and leaves `sweep` unspecified: `empty` (a field is missing, or no point), `too_few` (the unit is unknown, and
+  /// there are fewer than 100 points), `degenerate` (all times are equal: deskewing is impossible), `out_of_range`
+  /// (big-endian, a layout that does not fit the data, two possible time fields, or a time span above 1 s). Cost:
+  /// O(points). The function reuses the memory of `sweep`.
   Status read(const PointCloudView& cloud, TimedSweep& sweep);
 
  private:

@@ -27,7 +27,7 @@ struct Odometry {
 };
 
 /// RecoveredImu has the contents of sensor_msgs/Imu: an IMU sample whose angular velocity is estimated through
-/// saturation. The axes are those of the IMU.
+/// saturation. The axes of RecoveredImu are those of the IMU.
 struct RecoveredImu {
   RateState rate;
   Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();

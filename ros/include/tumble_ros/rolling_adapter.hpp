@@ -10,12 +10,13 @@
 
 namespace tumble::ros {
 
-/// RollingAdapter connects RollingOdometry to the messages of a robot. It contains the logic of the ROS node and needs
-/// no ROS. The adapter changes no estimate.
+/// RollingAdapter connects RollingOdometry to the messages of a robot. RollingAdapter contains the logic of the ROS
+/// node and needs no ROS. The adapter publishes the estimates unchanged.
 ///
 /// Publisher::odometry receives the smoothed poses, which are lag_s old (live poses if lag_s is 0).
-/// Publisher::odometry_imu receives the newest pose after each accepted sample. The base frame is the sphere, so its
-/// axes turn with the sphere. RollingOdometry reports no covariance of velocities: the twist's covariance is zero.
+/// Publisher::odometry_imu receives the newest pose after each accepted sample. The base frame is that of the sphere,
+/// so its axes turn with the sphere. RollingOdometry reports no covariance of velocities: the twist's covariance is
+/// zero.
 class RollingAdapter {
  public:
   using Params = RollingAdapterParams;

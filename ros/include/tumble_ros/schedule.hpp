@@ -15,7 +15,7 @@ class Schedule {
  public:
   explicit Schedule(double period_s) : period_ns_(static_cast<TimeNs>(1e9 * period_s)) {}
 
-  /// Returns whether a period has passed since the last time that the message was due. The first call returns true. A
+  /// Returns whether a period has passed since the last time that the message was due; the first call returns true. A
   /// clock that steps back makes the message due.
   bool is_due(TimeNs now_ns) {
     if (last_ns_ && now_ns >= *last_ns_ && now_ns - *last_ns_ < period_ns_) return false;

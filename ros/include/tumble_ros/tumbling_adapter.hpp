@@ -14,8 +14,9 @@
 
 namespace tumble::ros {
 
-/// TumblingAdapter connects TumblingOdometry to the messages of a robot. It contains the logic of the ROS nodes and
-/// needs no ROS. The adapter changes no estimate: the library called directly gives the same bits.
+/// TumblingAdapter connects TumblingOdometry to the messages of a robot. TumblingAdapter contains the logic of the ROS
+/// nodes and needs no ROS. The adapter publishes the estimates unchanged: the library called directly gives the same
+/// bits.
 ///
 /// | call | when |
 /// | --- | --- |
@@ -24,9 +25,10 @@ namespace tumble::ros {
 /// | Publisher::odometry_imu | for each accepted IMU sample after the first registered sweep |
 /// | Publisher::map, diagnostics | at the periods of the parameters |
 ///
-/// The odometry frame has z up. Its origin and heading are those of the base frame at the start, if the base is level.
-/// A robot that starts tilted has its origin off by the tilt times the distance from base to IMU. Results are published
-/// within on_imu(). If the clock steps back, the library restarts after 0.2 s at the newest pose.
+/// The odometry frame has its z axis up. Origin and heading of the odometry frame are those of the base frame at the
+/// start, if the base is level. For a robot that starts tilted, the origin is wrong by the tilt times the distance from
+/// base to IMU. Results are published within on_imu(). If the clock steps back, the library restarts after 0.2 s at the
+/// newest pose.
 class TumblingAdapter {
  public:
   using Params = TumblingAdapterParams;
@@ -38,7 +40,7 @@ class TumblingAdapter {
   Status on_imu(const ImuSample& sample);
   /// Processes a point cloud in lidar axes. Returns the status of PointCloudReader::read() or of
   /// TumblingOdometry::add_sweep(). A busy computer may deliver clouds seconds before the IMU samples of their times.
-  /// Such clouds wait, at most 32.
+  /// The adapter keeps at most 32 such clouds until the samples arrive.
   Status on_cloud(const PointCloudView& cloud);
   /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
   void finish();

@@ -36,7 +36,7 @@ struct AccelerometerFilter {
 
   void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
-  // Updates the state iteratively. The covariance uses the last linearisation.
+  // Updates the filter state iteratively. The covariance uses the linearisation of the last iteration.
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
     const RigConstants rig{.lever_arm_m = p_I_m};
     const RateAndAcceleration before = x;

@@ -13,19 +13,20 @@
 
 namespace tumble::baselines {
 
-/// Estimates angular rates from several accelerometers at known positions (gyro-free inertial system), by an extended
-/// Kalman filter.
+/// AccelerometerRate estimates angular rates from several accelerometers at known positions (gyro-free inertial
+/// system), by an extended Kalman filter.
 ///
-/// The state contains the rate and the angular acceleration, driven by white jerk. The measurement is the difference of
-/// the specific force between each auxiliary IMU and the primary IMU: alpha x p + w x (w x p). The filter is valid in
-/// flight, in contact and at rest. The filter also uses the unclipped gyro axes (`use_gyro`), so the accelerometers
-/// only need to supply the clipped axes.
+/// The filter state contains the angular rate and the angular acceleration, driven by white jerk. The measurement is
+/// the difference of the specific force between each auxiliary IMU and the primary IMU: alpha x p + w x (w x p). The
+/// motion model is valid in flight, in contact and at rest. The filter also uses the unclipped gyro axes (`use_gyro`),
+/// so the accelerometers only need to supply the clipped axes.
 ///
-/// The method is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal
-/// acceleration grows with the squared rate, so noise and misalignment hide slow rotation. Free flight, bias and
-/// misalignment of the accelerometers, and the correlation between the auxiliary IMUs' differences are not modelled.
+/// AccelerometerRate is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles).
+/// Centripetal acceleration grows with the squared rate, so noise and misalignment hide slow rotation. The filter
+/// neglects free flight, bias and misalignment of the accelerometers, and the correlation between the auxiliary IMUs'
+/// differences.
 ///
-/// With one auxiliary IMU, the rate about the line between the two IMUs is only observable through products with the
+/// With one auxiliary IMU, the rate about the line between the two IMUs is observable only through products with the
 /// other axes' rates. Without auxiliary IMUs, the filter bridges clipped readings by assuming a smooth rate.
 class AccelerometerRate {
  public:
@@ -70,9 +71,9 @@ class AccelerometerRate {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit AccelerometerRate(const Params& params);
 
-  /// Computes one RateState per sample. On error, `out` is unchanged. Errors: `empty`, `too_few` (fewer than two
-  /// samples, or an auxiliary IMU with a different number of samples), `non_finite`, `time_order`, `gap`. The cost is
-  /// proportional to the number of samples times the number of auxiliary IMUs.
+  /// Computes one RateState per sample. On error, `out` is unchanged. Possible errors are `empty`, `too_few` (fewer
+  /// than two samples, or an auxiliary IMU with a different number of samples), `non_finite`, `time_order` and `gap`.
+  /// The cost is proportional to the number of samples times the number of auxiliary IMUs.
   Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;
 

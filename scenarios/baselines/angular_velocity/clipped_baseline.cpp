@@ -14,7 +14,7 @@ namespace tumble::baselines {
 
 namespace {
 
-// Data of one gyro axis for the smoother: readings, clipping flags and variance.
+// Axis contains the data of one gyro axis for the smoother: readings, clipping flags and variance.
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;    ///< saturated
@@ -37,8 +37,8 @@ double cubic(double share, double span_s, double from, double slope_from, double
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the unclipped readings that end at sample k (step -1) or start at sample k (step +1).
-// Returns 0 if there is only one reading.
+// Returns the derivative of the unclipped readings that end (step -1) or start (step +1) at sample k. Returns 0 if
+// there is only one unclipped reading.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -62,7 +62,7 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic has no variance, so the distance between cubic and reading serves as the standard deviation.
+      // A cubic has no variance, so the distance between the cubic and the reading serves as standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }
@@ -71,7 +71,7 @@ std::vector<Value> interpolate(const Axis& axis) {
   return out;
 }
 
-// Models the rate as a random walk.
+// RandomWalk models the angular rate as a random walk.
 struct RandomWalk {
   static constexpr int kSize = 1;
   using Matrix = Eigen::Matrix<double, 1, 1>;
@@ -82,8 +82,9 @@ struct RandomWalk {
   Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
 };
 
-// Models the rate by the stationary process with Matern 5/2 covariance: white snap over short times, bounded rate over
-// long times. The state is rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
+// BoundedJerk models the angular rate by the stationary process with Matern 5/2 covariance: white snap over short
+// times, bounded rate over long times. The state of this process is rate, acceleration and jerk (Hartikainen and
+// Saerkkae 2010, section 4).
 struct BoundedJerk {
   static constexpr int kSize = 3;
   using Matrix = Eigen::Matrix3d;
@@ -107,8 +108,8 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// Models the rate of one axis as a linear Gaussian process. The model ignores clipped readings, unless `bounds` adds
-// one Gaussian factor per clipped sample.
+// Chain models the rate of one axis as a linear Gaussian process. The process model ignores clipped readings, unless
+// `bounds` adds one Gaussian factor per clipped sample.
 template <typename Process>
 class Chain {
  public:
@@ -130,10 +131,10 @@ class Chain {
     }
   }
 
-  // Returns estimates from all readings up to the sample.
+  // Returns rate estimates that use all readings up to each sample.
   std::vector<Value> filtered() const { return values(after_); }
 
-  // Returns estimates from all readings (Rauch, Tung and Striebel 1965).
+  // Returns rate estimates that use all readings (Rauch, Tung and Striebel 1965).
   std::vector<Value> smoothed() const {
     std::vector<Moment> out = after_;
     for (std::size_t k = out.size() - 1; k-- > 0;) {
@@ -177,7 +178,7 @@ class Chain {
 };
 
 // Computes the most likely rate curve whose magnitude is at least every clipped reading. Each round smooths the curve
-// and adds a hard limit at each clipped reading that the curve violates. The reported variance belongs to the curve
+// and adds a hard limit at each clipped reading that the curve violates. The reported variance is that of the curve
 // without limits, truncated at the reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;

@@ -12,13 +12,13 @@
 
 namespace tumble::baselines {
 
-/// Estimates clipped angular rates from the gyro alone, with one of three models of the hidden rate.
+/// ClippedBaseline estimates clipped angular rates from the gyro alone, with one of three models of the hidden rate.
 ///
-/// Each gyro axis is estimated independently. The filter ignores saturated readings and limits its estimate to the
-/// range from the saturation level to a maximum rate. The filter does not use the accelerometer.
+/// ClippedBaseline estimates each gyro axis independently. The estimate is limited to the range from the saturation
+/// level to a maximum rate. ClippedBaseline ignores the accelerometer.
 ///
 /// - `interpolate`: a cubic over each gap of clipped samples that matches the rate and its derivative at both ends. The
-///   cubic suits gaps that are short compared with the motion.
+///   cubic interpolation suits gaps that are short compared with the motion.
 /// - `reject`: a causal Kalman filter with a random-walk rate; the estimate is constant over a gap. Between lidar
 ///   corrections, Point-LIO also keeps the rate constant during saturation. The `reject` model suits gaps shorter than
 ///   the time between corrections by another sensor.
@@ -29,8 +29,8 @@ namespace tumble::baselines {
 ///   the saturation level. The reported variance then belongs to a curve above the saturation level.
 ///
 /// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative. On tumbles of the
-/// rig, the mean error of `interpolate` and `constant_jerk` exceeds the error of the clipped reading. Impacts within a
-/// gap and the coupling between the axes of a tumbling body are not modelled.
+/// rig, the mean error of `interpolate` and `constant_jerk` exceeds that of the clipped reading. ClippedBaseline
+/// neglects impacts within a gap and the coupling between the axes of a tumbling body.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };
@@ -76,8 +76,8 @@ class ClippedBaseline {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit ClippedBaseline(const Params& params);
 
-  /// Computes one RateState per sample in O(N). On error, `out` is unchanged. Errors: `empty`, `too_few` (fewer than
-  /// two samples), `non_finite`, `time_order`, `gap`.
+  /// Computes one RateState per sample in O(N). On error, `out` is unchanged. Possible errors are `empty`, `too_few`
+  /// (fewer than two samples), `non_finite`, `time_order` and `gap`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -12,22 +12,22 @@
 
 namespace tumble::baselines {
 
-/// Estimates angular rates between standstills with an inertial navigation filter and a backward smoothing pass. At
-/// rest the filter applies zero-velocity and zero-rate updates. The smoother distributes the rotation lost to
-/// saturation over the clipped samples between two rests.
+/// StandstillSmoother estimates angular rates between standstills with an inertial navigation filter and a backward
+/// smoothing pass. At rest the filter applies zero-velocity and zero-rate updates. The smoother distributes the
+/// rotation lost to saturation over the clipped samples between two rests.
 ///
-/// The error state has 12 elements: attitude, velocity, rate, angular acceleration. The filter integrates the specific
-/// force and models the rate as a Matern 3/2 process: white angular jerk over short times, bounded rate over long
-/// times. Unclipped gyro axes are measurements, and clipped gyro axes are limits of the rate. At standstill, the filter
-/// also measures zero velocity, zero rate and the direction of gravity. A backward Rauch-Tung-Striebel pass follows the
-/// forward extended Kalman filter.
+/// The error state has 12 elements: attitude, velocity, rate and angular acceleration. The filter integrates the
+/// specific force and models the rate as a Matern 3/2 process: white angular jerk over short times, bounded rate over
+/// long times. Unclipped gyro axes are measurements, and clipped gyro axes are limits of the rate. At standstill, the
+/// filter also measures zero velocity, zero rate and the direction of gravity. A backward Rauch-Tung-Striebel pass
+/// follows the forward extended Kalman filter.
 ///
-/// The method is based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). The smoother
-/// is designed for motions of one or two seconds between rests with few clipped samples. If the tilt or velocity error
-/// at the next standstill is too large for a linear filter, attitude and velocity restart at that standstill. After a
-/// restart, the rates since the previous standstill follow only from the limits of the clipped readings and from
-/// smoothness. A tumble of several turns causes a restart. Clipped specific force, a lever arm and sensor bias are not
-/// modelled.
+/// The method follows zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh).
+/// StandstillSmoother is designed for motions of one or two seconds between rests with few clipped samples. If the tilt
+/// or velocity error at the next standstill is too large for a linear filter, attitude and velocity restart at that
+/// standstill. After a restart of attitude and velocity, the rates since the previous standstill follow only from the
+/// limits of the clipped readings and from smoothness. A tumble of several turns causes a restart. StandstillSmoother
+/// neglects clipped specific force, a lever arm and sensor bias.
 class StandstillSmoother {
  public:
   struct Params {
@@ -87,8 +87,8 @@ class StandstillSmoother {
   explicit StandstillSmoother(const Params& params);
 
   /// Computes one RateState per sample; the rates of unclipped axes are copied from the gyro. On error, `out` is
-  /// unchanged. Errors: `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order`, `gap`. Time and memory
-  /// are proportional to the number of samples.
+  /// unchanged. Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
+  /// Time and memory are proportional to the number of samples.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

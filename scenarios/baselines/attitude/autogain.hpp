@@ -10,14 +10,15 @@
 
 namespace tumble::baselines {
 
-/// Selects how Autogain converts the angular rate to the factor that weights gyro against accelerometer.
+/// AutogainProfile selects how Autogain converts the angular rate to the factor that weights gyro against
+/// accelerometer.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
   code2021,  ///< the authors' code of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, but not the factors, use 0
   smooth,    ///< smoothstep of the rate's norm between the same bounds; continuous and independent of the mounting
 };
 
-/// Correction factors and gains that Autogain uses for one sample.
+/// AutogainGains contains the correction factors and gains that Autogain uses for one sample.
 struct AutogainGains {
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2); all equal in the smooth profile
   double beta = 0.0;                                 ///< eq 3, as used by the gains
@@ -25,10 +26,10 @@ struct AutogainGains {
   double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
 };
 
-/// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). The
-/// filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the
-/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The filter estimates
-/// neither bias nor heading.
+/// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
+/// 2-5). The filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight
+/// falls with the rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The
+/// filter estimates neither bias nor heading.
 class Autogain {
  public:
   struct Params {
@@ -37,9 +38,9 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// Computes the complementary step as the authors' code does. In that code, the check for gimbal lock is always
-    /// true. As a consequence, the target attitude keeps the current roll, and roll is never corrected. The option
-    /// reproduces the attitudes in the authors' recordings.
+    /// Computes the complementary step as the authors' code does. In the authors' code, the check for gimbal lock is
+    /// always true. As a consequence, the target attitude keeps the current roll, and roll is never corrected. The
+    /// option serves to reproduce the attitudes in the authors' recordings.
     bool roll_error_2021 = false;
     /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw. The
     /// `smooth` profile uses the smallest rotation.

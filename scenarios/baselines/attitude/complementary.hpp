@@ -9,9 +9,10 @@
 
 namespace tumble::baselines {
 
-/// Estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the fraction 1 -
-/// exp(-dt / tau) of the smallest rotation that levels the specific force. The attitude is steady at rest, but
-/// accelerations that last longer than tau cause errors. The filter estimates no bias.
+/// Complementary estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the
+/// fraction 1 - exp(-dt / tau) of the smallest rotation that levels the specific force. The estimated attitude is
+/// steady at rest, but accelerations that last longer than tau cause errors. The complementary filter does not estimate
+/// the gyro bias.
 class Complementary {
  public:
   struct Params {

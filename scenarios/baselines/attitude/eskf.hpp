@@ -9,14 +9,14 @@
 
 namespace tumble::baselines {
 
-/// Estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The
-/// specific force measures the up direction. The textbook form is J. Sola, arXiv 1711.02508, sections 5-7, but with the
-/// error in world axes.
+/// Eskf estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias.
+/// The specific force measures the up direction. The textbook form of the filter is that of J. Sola, arXiv 1711.02508,
+/// sections 5-7, but with the error in world axes.
 ///
-/// The filter models body acceleration as zero-mean white noise on the force. The filter neither normalises the force
-/// nor weights the force by its norm, because normalising or weighting biases the mean. For fast translations,
-/// normalising caused an error of 12 deg instead of 0.8 deg. Real accelerations are not white, and the vertical bias
-/// drifts at rest.
+/// The filter models body acceleration as zero-mean white noise on the force. The filter uses the unnormalised force
+/// with a constant weight, because normalising or weighting by its norm biases the mean. In fast translations,
+/// normalising caused an error of 12 deg instead of 0.8 deg. Real accelerations are not white, and the vertical gyro
+/// bias drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;

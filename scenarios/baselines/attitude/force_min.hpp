@@ -3,7 +3,7 @@
 
 namespace tumble::baselines {
 
-/// Below this norm, the specific force has no usable direction.
+/// A specific force with a norm below kForceMin_m_s2 has no usable direction.
 inline constexpr double kForceMin_m_s2 = 1e-6;
 
 }  // namespace tumble::baselines

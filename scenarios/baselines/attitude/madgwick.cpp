@@ -15,7 +15,7 @@ namespace {
 constexpr double kGradientMin = 1e-12;
 
 /// Returns the gradient J^T F of half the squared distance between predicted and measured up direction, as (x, y, z,
-/// w). The gradient is s in equation (A24) of attitude.md.
+/// w). The tilt gradient is s in equation (A24) of attitude.md.
 Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d& up_I) {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double f1 = 2.0 * (x * z - w * y) - up_I.x();

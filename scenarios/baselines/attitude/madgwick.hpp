@@ -9,13 +9,13 @@
 
 namespace tumble::baselines {
 
-/// Estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report, 2010, eqs
-/// 25-33). The filter integrates q' = q/2 (x) (0, w) - gain * s/|s| by an explicit step with normalisation, as
-/// published. Here s is the gradient of the tilt error. Without a usable gradient (|s| or |f| ~ 0), the filter only
-/// integrates the gyro.
+/// Madgwick estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report,
+/// 2010, eqs 25-33). The filter integrates q' = q/2 (x) (0, w) - gain * s/|s| by an explicit step with normalisation,
+/// as published. The vector s is the gradient of the tilt error. Without a usable gradient (|s| or |f| ~ 0), the filter
+/// only integrates the gyro.
 ///
-/// The filter estimates neither bias nor heading. The correction has a fixed angular speed of 2 gain rad/s, so the
-/// attitude oscillates at rest and follows accelerations.
+/// Madgwick's filter estimates neither bias nor heading. The correction has a fixed angular speed of 2 gain rad/s, so
+/// the attitude oscillates at rest and follows accelerations.
 class Madgwick {
  public:
   struct Params {

@@ -9,10 +9,10 @@
 
 namespace tumble::baselines {
 
-/// Estimates attitude by the explicit complementary filter on SO(3) from gyro and accelerometer (Mahony, Hamel,
+/// Mahony estimates attitude by the explicit complementary filter on SO(3) from gyro and accelerometer (Mahony, Hamel,
 /// Pflimlin, IEEE TAC 53(5), 2008, eq 32). The corrected rate is w + kp e + integral of ki e, with the tilt error e =
-/// f/|f| x R^T z in sensor axes. The integral estimates the gyro bias, but also follows lasting accelerations. The
-/// filter estimates no heading.
+/// f/|f| x R^T z in sensor axes. The integral estimates the gyro bias, but also follows lasting accelerations. Mahony's
+/// filter does not estimate the heading.
 class Mahony {
  public:
   struct Params {

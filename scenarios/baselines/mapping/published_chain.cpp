@@ -16,7 +16,7 @@ namespace {
 
 using Sweep = PublishedChain::Sweep;
 
-/// Sum of the points of one sweep in one voxel.
+/// SweepCell is the sum of the points of one sweep in one voxel.
 struct SweepCell {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   double time_s = 0.0, skew_variance = 0.0;
@@ -28,9 +28,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
 }
 
 /// Returns the time of the registered pose: the start of the sweep, or the common time of all points, as in triage
-/// runs. If points with one common time were moved far to the sweep's start, velocity errors would be fed back with v'
-/// = v_true + (v - v''). The recursion v' = v_true + (v - v'') is unstable, with root -1.6. Points spread over the
-/// sweep halve the feedback term (v - v''), which gives the roots 0.5 and -1.
+/// runs. If points with one common time were moved to the distant start of the sweep, velocity errors would be fed back
+/// with v' = v_true + (v - v''). The recursion v' = v_true + (v - v'') is unstable, with root -1.6. Points spread over
+/// the sweep halve the feedback term (v - v''), which gives the roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(
@@ -39,7 +39,7 @@ TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   return sweep.start_ns + rounded_offset(*first, step_ns);
 }
 
-/// Accepts returns that do not hit the robot and whose range is within the limits.
+/// SweepBounds accepts returns that miss the robot and whose range is within the limits.
 class SweepBounds {
  public:
   explicit SweepBounds(const PublishedChain::Params& params)
@@ -76,7 +76,7 @@ std::vector<TrimmedIcp::Point> means_of(std::span<const SweepCell> cells, double
   return points;
 }
 
-/// Returns the sweep's points, deskewed to the lidar axes at `at_ns` and voxelised, with variances.
+/// Returns the points of a sweep, deskewed to the lidar axes at `at_ns` and voxelised, with variances.
 std::vector<TrimmedIcp::Point> deskewed(const Sweep& sweep, TimeNs at_ns, const PublishedImuOdometry& odometry,
                                         const PublishedChain::Params& params) {
   const double rate = params.skew_sigma_m_s;
@@ -184,7 +184,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// New points are only compared with points that were in the map before the extension.
+/// New points are compared only with points that were in the map before the extension.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
@@ -217,7 +217,7 @@ void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
 }
 
-/// Sets the odometry's velocity to the mean velocity since the last registered sweep.
+/// Sets the velocity of the odometry to the mean velocity since the last registered sweep.
 void PublishedChain::feed_back(TimeNs at_ns) {
   const Eigen::Vector3d here_m = (T_map_odom_ * odometry_.pose(at_ns)).translation();
   if (registered_ns_ && at_ns > *registered_ns_) {

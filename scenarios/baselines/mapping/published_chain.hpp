@@ -16,12 +16,13 @@
 
 namespace tumble::baselines {
 
-/// Estimates trajectory and map from given rates with the published mapping chain (Deschenes et al., ICRA 2024, with
-/// the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer odometry
-/// estimates position with velocity feedback from registration. The chain deskews each sweep, weights its points by
-/// time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers to the
-/// start of the sweep, or to the common time of the sweep's points. The chain only adds points where the map is empty.
-/// A parameter switches each known error of the published chain; the defaults are those of the launch files.
+/// PublishedChain estimates trajectory and map from given rates with the published mapping chain (Deschenes et al.,
+/// ICRA 2024, with the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer
+/// odometry estimates position with velocity feedback from registration. The chain deskews each sweep, weights its
+/// points by time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers
+/// to the start of the sweep, or to the common time of the sweep's points. The published chain adds points only where
+/// the map is empty. A parameter switches each known error of the published chain; the defaults are those of the launch
+/// files.
 class PublishedChain {
  public:
   struct Params {
@@ -81,19 +82,19 @@ class PublishedChain {
   };
   using SweepReport = LidarInertialOdometry::SweepReport;
 
-  /// One lidar sweep in lidar axes; the time offsets of points count from `start_ns`.
+  /// Sweep is one lidar sweep in lidar axes; the time offsets of points count from `start_ns`.
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::span<const LidarPoint> points;
   };
 
-  /// Stores the samples of a whole recording and one rate per sample in `rates`, which replaces the gyro. `samples`
-  /// must outlive this object.
+  /// Stores the samples of a whole recording, and `rates` with one angular rate per sample, which replaces the gyro.
+  /// `samples` must outlive this object.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-  /// Returns true if the IMU samples extend beyond the end of the sweep.
+  /// Returns whether the IMU samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Registers a sweep that `covers` accepts and that is later than all sweeps before. Returns `out_of_range` if a
+  /// Registers a sweep that `covers` accepts and that is later than all earlier sweeps. Returns `out_of_range` if a
   /// point's offset is beyond the end of the samples; the state is then unchanged. Returns `empty`, `degenerate` (all
   /// points have one time) or `too_few` (points in range) without registration; the odometry then continues.
   Status add(const Sweep& sweep, SweepReport& report);

@@ -11,9 +11,9 @@
 
 namespace tumble::baselines {
 
-/// Computes attitude by Madgwick's filter and position from the accelerometer, in the odometry frame "odom".
-/// PublishedChain uses this odometry for deskewing and as the registration prior. The position is constant until the
-/// first velocity feedback.
+/// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
+/// frame "odom". PublishedChain uses this odometry for deskewing and as the registration prior. The estimated position
+/// is constant until the first velocity feedback.
 class PublishedImuOdometry {
  public:
   /// `rates` contains one angular rate per sample, which replaces the gyro. `samples` must outlive this object.
@@ -26,15 +26,15 @@ class PublishedImuOdometry {
   /// again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU. Between samples, position is interpolated linearly and attitude by slerp. Before the
-  /// first sample, the pose is constant.
+  /// Returns the pose of the IMU at a given time. Between samples, the pose is interpolated: position linearly and
+  /// attitude by slerp. Before the first sample, the pose is constant.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the integrated velocity at the first sample at or after the time, without feedback that arrived after that
-  /// sample.
+  /// Returns the integrated velocity at the first sample at or after `time_ns`, without feedback that arrived after
+  /// this sample.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:
-  /// Returns the index of the first integrated sample at or after the time, or of the last sample.
+  /// Returns the index of the first integrated sample at or after `time_ns`, or of the last sample.
   std::size_t sample_at(TimeNs time_ns) const;
   Eigen::Vector3d acceleration_m_s2(std::size_t k) const;
 

@@ -16,12 +16,12 @@
 
 namespace tumble::baselines {
 
-/// Registers sweeps to a map, with a motion model that the caller supplies. Deskews each sweep once, to the sweep's
-/// end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar odometries differ in the
-/// motion model (`Motion`) and in how they use the registered pose; the caller chooses both.
+/// RigidOdometry registers sweeps to a map, with a motion model that the caller supplies. RigidOdometry deskews each
+/// sweep once, to its end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar
+/// odometries differ in the motion model (`Motion`) and in how they use the registered pose; the caller chooses both.
 ///
-/// Motion errors within the sweep, mounting errors, clock offsets, and recovery after tracking failure are not
-/// modelled.
+/// RigidOdometry neglects motion errors within the sweep, mounting errors and clock offsets, and does not recover after
+/// a tracking failure.
 class RigidOdometry {
  public:
   struct Params {
@@ -67,7 +67,7 @@ class RigidOdometry {
     }
   };
 
-  /// Predicted motion over a time interval, with the uncertainty at the end of the interval.
+  /// Motion is the predicted motion over a time interval, with the uncertainty at its end.
   struct Motion {
     MotionState start;                  ///< time_ns at or before the sweep's start
     std::vector<MotionSample> samples;  ///< from the start to the sweep's end
@@ -77,12 +77,12 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers a sweep with points between start_ns and end_ns. The errors are those of
+  /// Registers a sweep with points between start_ns and end_ns. The possible errors are those of
   /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// These functions return the predicted state and the registered state with covariance at the end of the last sweep.
+  /// These functions return the predicted and the registered state at the end of the last sweep, with covariance.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

@@ -14,14 +14,14 @@
 
 namespace tumble::baselines {
 
-/// Aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per point. The
-/// registration chooses the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips et al., 2007,
-/// with lambda). The registration weights each match by the inverse variances of both points. Each iteration solves
-/// small-angle normal equations.
+/// TrimmedIcp aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per
+/// point. The registration determines the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips
+/// et al., 2007, with lambda). The registration weights each match by the inverse variances of both points. Each
+/// iteration solves normal equations for small angles.
 ///
-/// The result has no measure of observability. If a direction is unobservable, as in a corridor, the registration still
-/// reports success. LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to
-/// the number of points times k.
+/// The registration result has no measure of observability. If a direction is unobservable, as in a corridor, the
+/// registration still reports success. LidarInertialOdometry, in contrast, detects unobservable directions. The cost of
+/// an iteration is proportional to the number of points times k.
 class TrimmedIcp {
  public:
   struct Params {
@@ -33,7 +33,7 @@ class TrimmedIcp {
     double trim_lambda = 2.35;
     /// Reproduces an error of the original code. In the original code, the kept fraction refers to all match slots,
     /// although unmatched slots are missing from the sorted list. The original code reads beyond the end of the sorted
-    /// list. This implementation stops at the end of the sorted list.
+    /// list. TrimmedIcp stops at the end of the sorted list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound
@@ -80,15 +80,15 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Aligns `points` to `map`, starting from `prior`. As in the published chain, it is not an error to reach the
-  /// iteration limit. Returns an error if there are no matches or if the correction exceeds its limit.
+  /// Aligns `points` to `map`, starting from `prior`. As in the published chain, reaching the iteration limit is not an
+  /// error. Returns an error if there are no matches or if the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns the number of sorted squared distances d^2 to keep. The kept fraction f minimises (sum of the smallest f n
-  /// distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
+  /// Returns how many of the sorted squared distances d^2 to keep. The kept fraction f minimises (sum of the smallest f
+  /// n distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Clears the cached normals. The caller must call forget_normals after each change of the map.
+  /// Clears the cached normals of the map. The caller must call forget_normals after each change of the map.
   void forget_normals() { normals_.clear(); }
 
  private:

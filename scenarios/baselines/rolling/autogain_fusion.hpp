@@ -10,11 +10,11 @@
 
 namespace tumble::baselines {
 
-/// Estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated accelerometer
-/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only during rotation. The
-/// filter limits the integral to slightly more than the rolling velocity, then averages the integral with the rolling
-/// velocity. Only the sign of the integral matters, so the estimated path of a sphere that rolls without slip is up to
-/// half too short. The class is a baseline for comparisons; its options select the variants of the paper and of the
+/// AutogainFusion estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated
+/// accelerometer (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only during
+/// rotation. The filter limits the integrated acceleration to slightly more than the rolling velocity, then averages
+/// both. Only the sign of the integral matters, so the estimated path of a sphere that rolls without slip is up to half
+/// too short. AutogainFusion is a baseline for comparisons; its options select the variants of the paper and of the
 /// authors' code.
 class AutogainFusion {
  public:
@@ -26,7 +26,7 @@ class AutogainFusion {
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Each option switches one difference between the paper and the authors' code. The defaults are the paper's
+    // Each option switches one difference between the paper and the authors' code. The default options are the paper's
     // equations as printed.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
     bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g

@@ -9,10 +9,10 @@
 
 namespace tumble::baselines {
 
-/// Computes the position of an IMU by integrating the specific force twice, minus gravity at an attitude that the
-/// caller supplies. The integration is second order in the sample period, and exact if the force is constant in W over
-/// each sample. The drift is unbounded: a tilt error of 0.1 deg causes an acceleration error of 1.7 cm/s^2, and a
-/// position error of 1 m after 11 s.
+/// DoubleIntegration computes the position of an IMU by integrating the specific force twice, minus gravity at an
+/// attitude that the caller supplies. The integration is second order in the sample period, and exact if the force is
+/// constant in W over each sample. The drift is unbounded: a tilt error of 0.1 deg causes an acceleration error of 1.7
+/// cm/s^2, and a position error of 1 m after 11 s.
 class DoubleIntegration {
  public:
   struct Params {

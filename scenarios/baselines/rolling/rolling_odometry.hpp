@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Computes the position of a rolling sphere's centre G from the angular velocity. The velocity is v = r w_W x n on a
-/// plane with normal n, integrated by the trapezoid rule. The position is exact without slip; slip, sliding and height
-/// changes are not detected.
+/// RollingOdometry computes the position of a rolling sphere's centre G from the angular velocity. The velocity is v =
+/// r w_W x n on a plane with normal n, integrated by the trapezoid rule. The position is exact without slip;
+/// RollingOdometry does not detect slip, sliding and height changes.
 class RollingOdometry {
  public:
   struct Params {
@@ -38,8 +38,8 @@ class RollingOdometry {
 
   explicit RollingOdometry(const Params& params);
 
-  /// Advances to `time_ns`. `w_I_rad_s` is the mean rate over the sample's averaging window, as measured by an IMU;
-  /// `q_WI` is the attitude at the end of the window. On error the state is unchanged.
+  /// Advances the position to `time_ns`. `w_I_rad_s` is the mean rate over the sample's averaging window, as an IMU
+  /// measures it; `q_WI` is the attitude at the end of the window. On error the state is unchanged.
   Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

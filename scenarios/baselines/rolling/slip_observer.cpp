@@ -74,7 +74,8 @@ void SlipObserver::observe(const ImuSample& sample, const Eigen::Quaterniond& q_
   const Eigen::Vector3d turning = (w - state.last_rate_rad_s) / dt_s;
   // Acceleration of the IMU relative to the centre by rotation, equation (I1) of imu_merge.md.
   const Eigen::Vector3d lever = turning.cross(params_.lever_arm_m) + w.cross(w.cross(params_.lever_arm_m));
-  // The force is a mean over the averaging window, so it is rotated by the attitude in the middle of the window.
+  // The specific force is a mean over the averaging window, so it is rotated by the attitude in the middle of the
+  // window.
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * w);
   const Eigen::Vector3d a_W = q_mid * (sample.specific_force_m_s2 - lever);
   const Eigen::Vector3d w_W = q_WI * w;

@@ -11,18 +11,18 @@
 
 namespace tumble::baselines {
 
-/// Estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of the contact
-/// point: v = r w x n + u.
+/// SlipObserver estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of
+/// the contact point: v = r w x n + u.
 ///
 /// Without slip, the acceleration of the sphere's centre is r w' x n. The residual e is the measured acceleration minus
-/// r w' x n over a window of 11 samples. A slip event starts if e is large. During an event, the observer integrates e
-/// to u. The event ends when e is small and u has returned to zero. At the start of an event, the observer also
-/// integrates e over the last 25 samples, because a slide starts before its detection. At the end of an event, the
-/// observer removes the linear drift of u. An event that lasts too long is undone. The window length is designed for a
-/// sample rate of about 125 Hz.
+/// r w' x n over a window of 11 samples. A slip event starts when e is large. During a slip event, the observer
+/// integrates e to the slip velocity u. The slip event ends when e is small and u has returned to zero. At the start of
+/// a slip event, the observer also integrates e over the last 25 samples, because a slide starts before its detection.
+/// At the end of a slip event, the observer removes the linear drift of u. The observer undoes a slip event that lasts
+/// too long. The window length suits a sample rate of about 125 Hz.
 ///
-/// Tilt changes within a slip event, impacts and slopes are not modelled. In simulations with realistic physics, the
-/// estimated position is hardly better than with the rolling assumption alone.
+/// The observer neglects tilt changes within a slip event, impacts and slopes. In simulations with realistic physics,
+/// the estimated position is hardly better than with the rolling assumption alone.
 class SlipObserver {
  public:
   static constexpr int kWindow = 11;   ///< samples for fitting acceleration and rate; the delay is half of this

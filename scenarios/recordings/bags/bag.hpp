@@ -18,20 +18,21 @@
 
 namespace tumble::scenarios {
 
-/// Points in W that become "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if known).
+/// BagCloud contains points in W that become "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if known).
 struct BagCloud {
   std::vector<Eigen::Vector3f> position_W_m;
   std::vector<float> error_m;  ///< parallel, or empty
 };
 
-/// A series of body poses in W, which becomes the topic "/NAME" (nav_msgs/Odometry) and part of /tf in a bag.
+/// BagTrack is a series of body poses in W, which becomes the topic "/NAME" (nav_msgs/Odometry) and part of /tf in a
+/// bag.
 struct BagTrack {
   struct Pose {
     std::int64_t time_ns = 0;
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
     Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
-    /// Covariance of (position in W, attitude error phi in W), as in PoseState. A block of zeros is unknown.
+    /// Covariance of (position in W, attitude error phi in W), as in PoseState; a block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
     bool exact = false;  ///< a true pose: zeros are the covariance
     inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
@@ -44,7 +45,7 @@ struct BagTrack {
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
-/// Options for writing a recording to a bag.
+/// BagWriting contains options for writing a recording to a bag.
 struct BagWriting {
   std::int64_t origin_ns = 0;          ///< origin of the recording; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< written if not null
@@ -69,7 +70,7 @@ struct BagWriting {
 ///   exported sensor name (export_names). The topic of the primary IMU is the first topic of its type.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields of Velodyne drivers: x
 ///   y z intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
-///   offset_ns states the time in whole nanoseconds. For points without times, the fields time and offset_ns are
+///   offset_ns states the point time in whole nanoseconds. For points without times, the fields time and offset_ns are
 ///   omitted. `sweeps` can choose another point layout.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" are
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu, and an unknown twist is zero.
@@ -85,16 +86,16 @@ void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const s
 /// Writes an MCAP file in a folder with metadata.yaml, the layout of ROS 2 since Iron.
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
-/// Selects the stamp of a message: the header's stamp (time of measurement), or the record's stamp (time of recording)
-/// if headers have no usable stamps. A sweep is recorded at its end. With record stamps, the start of a sweep is
-/// therefore one period earlier than its stamp.
+/// StampSource selects the stamp of a message: the header's stamp (time of measurement), or the record's stamp (time of
+/// recording) if headers have no usable stamps. A sweep is recorded at its end. With record stamps, the start of a
+/// sweep is therefore one period earlier than its stamp.
 enum class StampSource { header, record };
 
-/// Frame of the reference poses. `named` is the frame that the messages name, if the bag contains its transform. `body`
-/// and `lidar` are the body and the first lidar.
+/// ReferenceOf is the frame of the reference poses. `named` is the frame that the messages name, if the bag contains
+/// its transform. `body` and `lidar` are the body and the first lidar.
 enum class ReferenceOf { named, body, lidar };
 
-/// Options for reading a bag.
+/// BagReading contains options for reading a bag.
 struct BagReading {
   std::vector<std::string> imu_topics;    ///< the first is the primary IMU; empty: all Imu topics in the bag's order
   std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
@@ -108,7 +109,7 @@ struct BagReading {
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
   /// Leaves out a topic that cannot be read, with a note, if the caller did not choose the topics and another topic of
-  /// the same kind can be read. Otherwise, one such topic is an error.
+  /// the same kind can be read. If the caller chose the topics, an unreadable topic is an error.
   bool leave_out_topics = false;
 };
 
@@ -116,12 +117,13 @@ struct BagReading {
 /// folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have
 /// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
-/// Times come from the source `stamps`. Notes state how the stamps of headers and records differ. Units are checked
-/// against gravity by the checks for CSV files. Specific force in g at rest, as from Livox drivers, is converted and
-/// noted. Each sensor is named after its topic. The rules of import_sweeps apply to points. Duplicate messages (stamp
-/// and content) are read once. Single faulty messages are left out and noted (left_out.hpp).
+/// Message times come from the source `stamps`. Notes state how the stamps of headers and records differ. Units are
+/// checked against gravity by the checks for CSV files. Specific force in g at rest, as from Livox drivers, is
+/// converted and noted. Each sensor is named after its topic. Points of a bag follow the rules of import_sweeps.
+/// Duplicate messages (equal stamp and content) are read once. Single faulty messages are left out and noted
+/// (left_out.hpp).
 ///
-/// Unless the caller chooses topics, clouds in "world", "map" or "odom" are skipped, because such clouds are not raw
+/// Unless the caller chooses topics, the reader skips clouds in "world", "map" or "odom", because they are not raw
 /// sensor data. Lidars whose points have times then come first.
 ///
 /// The parts of a ROS 1 bag in a folder are merged by time. Files of a ROS 2 bag are read by time. Files that are
@@ -129,9 +131,9 @@ struct BagReading {
 ///
 /// If /tf_static states the pose of a sensor in "body" or "base_link", or else relative to another sensor, this pose is
 /// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (81 bytes per
-/// sample) and some bytes per message. Without `sweeps.scratch`, memory holds all points. Throws BadInput with file and
-/// location for damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty messages, or a cycle
-/// of frames.
+/// sample) and some bytes per message. Without `sweeps.scratch`, the reader keeps all points in memory. Throws BadInput
+/// with file and location for damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty
+/// messages, or a cycle of frames.
 Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

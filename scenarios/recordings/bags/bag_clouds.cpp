@@ -33,7 +33,7 @@ struct ReadType {
   void (*take)(const ros::PointCloud2&, std::size_t, std::size_t, std::vector<double>&);
 };
 
-/// Returns the type with this number, or null if the number is unknown.
+/// Returns the PCL type with this number, or null if the number is unknown.
 const ReadType* type_of(std::uint8_t datatype) {
   static const ReadType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
                                    {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
@@ -48,7 +48,7 @@ bool is_livox_type(const std::string& type) {
   return type == ros::kLivoxRos1 || type == "livox_ros_driver2/CustomMsg" || type == "livox_interfaces/CustomMsg";
 }
 
-// Checks the layout against the data before the conversion.
+// The function checks the layout against the data before the conversion.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   if (message.is_bigendian != 0)
     throw BadInput(where + ": points are big-endian; only little-endian points are supported");

@@ -7,7 +7,7 @@
 #include "scenarios/recordings/bags/ros_messages.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 
-/// Converts point messages to columns. Used only within scenarios/recordings/bags.
+/// bag_clouds.hpp converts point messages to columns. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Returns true if `type` is the CustomMsg of a Livox driver, with its ROS 1 name. The types of livox_ros_driver,

@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit of the specific force. If the caller states no unit and the readings are in g, converts the
-/// readings to m/s^2.
+/// Returns the unit of the specific force. If the caller states no unit and the readings are in g, the function
+/// converts them to m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);

@@ -8,7 +8,7 @@
 #include "scenarios/recordings/bags/opened_bag.hpp"
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
-/// Reads the IMU topics of a bag. Used only within scenarios/recordings/bags.
+/// bag_imu.hpp reads the IMU topics of a bag. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Reads a topic of type sensor_msgs/Imu. Single faulty messages are left out with a note. Returns no readings for a

@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
-/// Describes the topics, frames and point layout that a reader of bags expects. The default layout is that of bag.hpp.
+/// bag_layout.hpp describes the topics, frames and point layout that a reader of bags expects. The default layout is
+/// that of bag.hpp.
 namespace tumble::scenarios {
 
-/// Quantity of a point field.
+/// PointQuantity is the physical quantity of a point field.
 enum class PointQuantity { x_m, y_m, z_m, intensity, ring, time };
 
-/// Number type of a field. Integers are rounded and limited to the type's range.
+/// NumberType is the number type of a point field. Integers are rounded and limited to the type's range.
 enum class NumberType { uint8, uint16, uint32, float32, float64 };
 
-/// One field of a point.
+/// PointColumn is one field of a point.
 struct PointColumn {
   std::string name;
   PointQuantity quantity;
@@ -22,7 +23,7 @@ struct PointColumn {
   bool absolute = false;  ///< time counts from 1970 instead of from the sweep's start in the header
 };
 
-/// Message layout of a sweep.
+/// SweepLayout is the message layout of a sweep.
 struct SweepLayout {
   /// Fields of a sensor_msgs/PointCloud2, in order, without gaps. The time fields are omitted if points have no times.
   std::vector<PointColumn> columns;
@@ -36,7 +37,8 @@ SweepLayout own_sweep_layout();
 /// Returns the layout of the CustomMsg.
 SweepLayout livox_sweep_layout();
 
-/// Topic and frame names for a reader that expects one IMU and one lidar. The names belong to the first IMU and lidar.
+/// ReaderNames contains topic and frame names for a reader that expects one IMU and one lidar. The names belong to the
+/// first IMU and the first lidar.
 struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;

@@ -18,7 +18,7 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// Returns the variance of one sample: density squared times the bandwidth of the output rate.
+/// Returns the noise variance of one sample: density squared times the bandwidth of the output rate.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};

@@ -7,8 +7,8 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// Converts sensor readings, poses and points of estimates to messages (bag.hpp). sweep_messages.hpp converts lidar
-/// sweeps. Used only within scenarios/recordings/bags.
+/// bag_messages.hpp converts sensor readings, poses and points of estimates to messages (bag.hpp); sweep_messages.hpp
+/// converts lidar sweeps. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 ros::Header header_of(std::int64_t stamp_ns, const std::string& frame);

@@ -17,7 +17,7 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
 
-/// Poses and the frame that their messages name; "" if no frame is named.
+/// NamedPoses contains poses and the frame that their messages name; "" if they name no frame.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -29,7 +29,7 @@ ReferencePose pose_in(const ros::TransformStamped& message) {
   return pose;
 }
 
-/// For Odometry and PoseStamped.
+/// The function reads Odometry and PoseStamped messages.
 template <class Message>
 ReferencePose pose_in(const Message& message) {
   ReferencePose pose{0, Eigen::Vector3d::Map(message.position.data()), {}};

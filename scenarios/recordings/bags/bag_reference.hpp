@@ -9,8 +9,8 @@
 namespace tumble::scenarios {
 
 /// Uses the poses of `reading.reference_topic` (Odometry, PoseStamped or TransformStamped) as the truth of the
-/// recording. The user chooses the frame of the poses. Without a choice, the frame is the child_frame_id of the
-/// messages if the bag contains its transform. Throws BadInput with topic and message.
+/// recording. The user chooses the frame of the reference poses. Without a choice, the frame is the child_frame_id of
+/// the messages if the bag contains its transform. Throws BadInput with topic and message.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

@@ -17,9 +17,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header stamp that is later than its record's stamp by more than this belongs to another clock.
+/// A header stamp that is later than its record's stamp by more than kAhead_ns belongs to another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// Largest normal delay between messages; beyond this delay, the clocks drift or stamps are not measurement times.
+/// kSteady_ns is the largest normal delay between messages; beyond this delay, the clocks drift or stamps are not
+/// measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -28,7 +29,7 @@ std::string seconds_text(std::int64_t time_ns) {
   return text.data();
 }
 
-/// Latest time that a header can store.
+/// kLast_ns is the latest time that a header can store.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
 /// Returns the difference of two stamps without overflow.
@@ -38,7 +39,7 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// Describes the change from the previous stamp.
+/// Describes how a stamp changes relative to the previous stamp.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));

@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 /// Returns the header's stamp [ns since 1970].
 std::int64_t stamp_of(const ros::Header& header);
 
-/// Stores two stamps of each message of a topic: the header's stamp (time of measurement) and the record's stamp (time
-/// of recording).
+/// BagStamps stores two stamps of each message of a topic: the header's stamp (time of measurement) and the record's
+/// stamp (time of recording).
 class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}
@@ -32,8 +32,8 @@ class BagStamps {
   /// the other source (header or record) increase, the text names that source.
   std::string disorder(std::size_t k) const;
 
-  /// Returns true if header stamps are used and the stamp equals the previous header's stamp. If the content is also
-  /// equal to the previous message, the message is a duplicate.
+  /// Returns whether header stamps are used and the stamp equals the previous header's stamp. If the content also
+  /// equals that of the previous message, the message is a duplicate.
   bool repeats(std::int64_t header_ns) const {
     return source_ == StampSource::header && !header_ns_.empty() && header_ns_.back() == header_ns;
   }
@@ -41,8 +41,8 @@ class BagStamps {
   /// Describes how far record stamps are behind header stamps, for the stamps in order. The text is empty if the lag is
   /// always below one millisecond. The text is a warning if the lag reaches a second, is negative, or changes.
   std::string remark() const;
-  /// Returns true if header stamps are ahead of record stamps, or if header stamps are a second or more behind. Only
-  /// stamps in order count.
+  /// Returns true if header stamps are ahead of record stamps, or if header stamps are a second or more behind. The
+  /// test considers only stamps in order.
   bool other_clock() const;
 
  private:

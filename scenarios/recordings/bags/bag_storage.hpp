@@ -10,11 +10,12 @@
 
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// Common interface of all bag types. A bag has topics, and messages as bytes sorted by time. Used only within
-/// scenarios/recordings/bags.
+/// bag_storage.hpp defines the common interface of all bag types. A bag has topics, and messages as bytes sorted by
+/// time. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// A topic with its message type. Types have the names of ROS 1 ("sensor_msgs/Imu"); ROS 2 uses "sensor_msgs/msg/Imu".
+/// BagTopic is a topic with its message type. Type names are those of ROS 1 ("sensor_msgs/Imu"); ROS 2 uses
+/// "sensor_msgs/msg/Imu".
 struct BagTopic {
   std::string name, type;
 };
@@ -23,7 +24,7 @@ class BagWriter {
  public:
   virtual ~BagWriter() = default;
   /// Registers these topics before all other topics, in order. Returns false if this bag type registers topics with
-  /// their first messages. Other topics may then be written earlier.
+  /// their first messages. A bag of this type may contain other topics earlier.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
   /// Writes a message. Messages must be sorted by time, and each topic has one message type. Throws BadInput.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
@@ -35,17 +36,17 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
   virtual std::vector<BagTopic> topics() = 0;
-  /// Receives a message and the time of its record [ns since 1970].
+  /// Take receives a message and the time of its record [ns since 1970].
   using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
   /// Calls `take` for each message of the topic in recorded order. Throws BadInput.
   virtual void read(const std::string& topic, const Take& take) = 0;
-  /// Returns true if the topic's messages have CDR encoding, false for ROS 1's layout.
+  /// Returns whether the topic's messages have CDR encoding instead of ROS 1's layout.
   virtual bool cdr(const std::string& topic) const = 0;
 
   std::vector<std::string> notes;  ///< for the user, for example on files that the bag's metadata does not list
 };
 
-/// Note for the user on a bag of several files.
+/// kFilesSorted is a note for the user on a bag of several files.
 inline constexpr const char* kFilesSorted =
     "the bag does not list its files in the order of time; the import reads the files in the order of time";
 

@@ -19,10 +19,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Differences between header and record stamps above this value are noted.
+/// Differences between header and record stamps above kClocksApart_s are noted.
 constexpr double kClocksApart_s = 1e-3;
-/// Points that are later than their record by more than this value are noted; smaller differences are normal between
-/// the clocks of two computers.
+/// Points that are later than their record by more than kAhead_s are noted; smaller differences are normal between the
+/// clocks of two computers.
 constexpr double kAhead_s = 0.01;
 
 /// Calls `take(message, origin)` for each cloud of the topic, of either type.
@@ -50,7 +50,8 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
                   topic, std::to_string(middle_s)));
 }
 
-/// Stores the starts of the sweeps whose stamps are in order. `numbers` are the positions of the stamps' messages.
+/// Stores the starts of the sweeps whose stamps are in order. `numbers` contains the positions of the messages to which
+/// the stamps belong.
 void keep_in_order(const OpenedBag& bag, const std::string& topic, const BagStamps& stamps,
                    const std::vector<std::size_t>& numbers, CloudHeaders& out) {
   const std::vector<bool> in_order = stamps_in_order(stamps.times_ns());

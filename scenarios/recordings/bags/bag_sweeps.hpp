@@ -14,19 +14,18 @@
 /// Reads the cloud topics of a bag. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Stamps and frame of the clouds of a topic, from a first pass that does not read points.
+/// CloudHeaders contains stamps and frame of the clouds of a topic, from a first pass that skips the points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
   std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
-  /// Start of the sweep of each message. Empty for a duplicate of the previous message and for a message that is left
-  /// out.
+  /// Start of the sweep of each message; empty for a duplicate message and for a message that is left out.
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
   bool follow_records = true;  ///< records appear to use the headers' clock and are later than the stamps
   std::string frame;
-  /// Returns true if the caller did not choose the topic and its frame is not a sensor's frame. The clouds are then a
-  /// map, or points that are already transformed.
+  /// Returns whether the caller did not choose the topic and its frame is not a sensor's frame. Clouds in the frame of
+  /// no sensor are a map, or points that are already transformed.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }

@@ -16,7 +16,7 @@
 /// Encodes messages in ROS 2's CDR by Fast-CDR. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
-/// Computes an upper bound of the number of bytes, including padding.
+/// CdrBound computes an upper bound of the number of bytes, including padding.
 class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }
@@ -40,7 +40,7 @@ class CdrBound {
   static constexpr std::size_t kPadding = 7;
 };
 
-/// Writes to a zeroed buffer, because Fast-CDR does not write padding bytes.
+/// CdrWriter writes to a zeroed buffer, because Fast-CDR does not write padding bytes.
 class CdrWriter {
  public:
   explicit CdrWriter(std::size_t bound)

@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// An item to write, at the time when a listener would receive the item; a sweep is received at its end.
+/// Event is an item to write at the time when a listener would receive it; a sweep is received at its end.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
@@ -89,7 +89,7 @@ std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& ev
   return first;
 }
 
-/// Names of a sensor in a bag.
+/// SensorNames contains the names of a sensor in a bag.
 struct SensorNames {
   std::string topic, frame;
 };
@@ -108,7 +108,7 @@ std::vector<SensorNames> names_of_lidars(const sim::Sensors& sensors, const std:
   return out;
 }
 
-/// Writes a recording to a bag.
+/// Export writes a recording to a bag.
 class Export {
  public:
   Export(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag)
@@ -142,8 +142,8 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// Writes the primary IMU first. Readers treat the first IMU in a bag as primary, but the first reading of another
-  /// IMU may be earlier.
+  /// The primary IMU is written first. Readers treat the first IMU in a bag as primary, but the first reading of
+  /// another IMU may be earlier.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };

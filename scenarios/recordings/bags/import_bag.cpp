@@ -45,7 +45,7 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// Notes topics of lidars whose type is not read: raw packets, compressed clouds, and clouds of ROS 0.
+/// Notes topics of lidars that cannot be read: raw packets, compressed clouds, and clouds of ROS 0.
 void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
@@ -91,8 +91,8 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   }
 }
 
-/// Reads the topics of one kind. If the topics are chosen automatically, the error of one topic names the option that
-/// skips the topic.
+/// TopicsOfKind reads the topics of one kind. If the topics are chosen automatically, the error of one topic names the
+/// option that skips the topic.
 class TopicsOfKind {
  public:
   TopicsOfKind(const std::vector<std::string>& topics, bool chosen, bool leave_out, const char* option)
@@ -155,7 +155,7 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
   };
   const std::vector<std::string> topics = bag.chosen(reading.lidar_topics, is_cloud_type, kCloud);
   TopicsOfKind(topics, chosen, reading.leave_out_topics, "--lidar-topic").read(out.notes, read);
-  // Methods map with the first lidar. Depth cameras have no point times and may come first.
+  // The mapping methods use the first lidar. Depth cameras have no point times and may come first.
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {

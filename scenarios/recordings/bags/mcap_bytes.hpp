@@ -19,12 +19,12 @@ namespace tumble::scenarios::mcap {
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 inline constexpr std::uint64_t kHeadBytes = 9;  ///< of a record: kind and length
 
-/// Error for record content that ends before the last field.
+/// BadRecord is the error for record content that ends before the last field.
 struct BadRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Appends fields to bytes.
+/// Put appends fields to bytes.
 class Put {
  public:
   template <std::unsigned_integral Number>
@@ -42,7 +42,7 @@ class Put {
   std::string bytes;
 };
 
-/// Takes fields from the front of a byte range with bounds checks. Throws BadRecord.
+/// Take removes fields from the front of a byte range, with bounds checks. Throws BadRecord.
 class Take {
  public:
   explicit Take(std::string_view bytes) : left(bytes) {}
@@ -85,7 +85,7 @@ class Take {
   }
 };
 
-/// Encodes a whole record. `tail` is appended after the record's fields.
+/// Encodes a whole MCAP record. `tail` is appended after the fields of the record.
 template <class Record>
 std::string to_bytes(Record record, std::string_view tail = {}) {
   Put content, out;
@@ -95,7 +95,8 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Decodes a record from its content. Fields that later versions of the format append are ignored. Throws BadRecord.
+/// Decodes an MCAP record from its content. Fields that later versions of the format append are ignored. Throws
+/// BadRecord.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

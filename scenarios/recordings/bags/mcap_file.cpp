@@ -15,9 +15,9 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// Largest size of a chunk (compressed or not), of a record outside chunks, and of the summary.
+/// kBytesMax is the largest size of a chunk (compressed or not), of a record outside chunks, and of the summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
-/// Block size for reading records outside chunks.
+/// kLooseBytes is the block size for reading records outside chunks.
 constexpr std::uint64_t kLooseBytes = 1u << 22;
 constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
 
@@ -178,7 +178,7 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   });
 }
 
-/// Uses the chunk index if the index is complete. A file without an index is scanned.
+/// The reader uses the chunk index if the index is complete. A file without an index is scanned.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),

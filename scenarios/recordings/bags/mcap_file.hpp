@@ -13,22 +13,22 @@
 #include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// Reads an MCAP file chunk by chunk. Validates every length, position, time and checksum before use. Used only within
-/// scenarios/recordings/bags.
+/// File reads an MCAP file chunk by chunk, and validates every length, position, time and checksum before use. Used
+/// only within scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
-/// Consecutive records of a file: one chunk, or records outside chunks.
+/// Segment is a run of consecutive records of a file: one chunk, or records outside chunks.
 struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< position in the file, including record heads
   std::uint64_t first_ns = 0, last_ns = 0;
   std::optional<ChunkIndex> chunk;  ///< for a chunk; its index is complete if the file has a summary
-  /// Returns true if the segment may contain messages of the channel.
+  /// Returns whether the segment may contain messages of the channel.
   bool may_hold(std::uint16_t channel) const {
     return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
   }
 };
 
-/// One record: its kind, the position of its head, and its content.
+/// Record is one MCAP record: its kind, the position of its head, and its content.
 struct Record {
   std::uint8_t op = 0;
   std::uint64_t at = 0;
@@ -47,12 +47,12 @@ class File {
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
   /// Returns the segments in the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
-  /// Returns the number of messages of a channel that the file states. Empty if the file states no number.
+  /// Returns the number of messages of a channel that the file states, or nothing.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
   /// Returns the uncompressed records of a segment and verifies the segment's checksum.
   std::string records(const Segment& segment);
-  /// Returns the message index of the channel after the segment's chunk. Empty if there is no index.
+  /// Returns the message index of the channel after the segment's chunk, or nothing if there is no index.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
   /// Calls `take(record)` for each of `records`. For uncompressed records, `at` is their position in the file.

@@ -16,7 +16,7 @@ namespace mcap {
 
 namespace {
 
-/// Limit for messages that wait because later chunks may contain earlier messages.
+/// kWaitingMax limits the messages that wait because later chunks may contain earlier messages.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
 /// Returns true for CDR messages, false for ROS 1 encoding.
@@ -27,7 +27,8 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// Iterates over one topic of one file by time; memory holds one chunk and the chunks that overlap it in time.
+/// TopicWalk iterates over one topic of one file by time; memory holds one chunk and the chunks that overlap it in
+/// time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -105,7 +106,7 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // Times beyond int64 are invalid in ROS; such times are limited to int64.
+    // Times beyond int64 are invalid in ROS; the reader limits them to int64.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -177,8 +178,8 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// Returns ROS 1's type name. If the topic is not a ROS message, returns the type with its encoding, which no reader
-  /// matches.
+  /// Returns ROS 1's type name. If the topic is not a ROS message, the function returns the type with its encoding,
+  /// which no reader matches.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

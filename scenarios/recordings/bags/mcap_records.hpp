@@ -9,7 +9,7 @@
 
 /// Record types of MCAP files (mcap.dev/spec, version 0). Each type lists its fields in the specified order. Numbers
 /// are little-endian. Texts have a 32-bit length prefix. Lists and maps have a prefix with their size in bytes. An
-/// encoded record consists of its kind (8 bits), its length (64 bits) and its content. mcap_bytes.hpp encodes and
+/// encoded record consists of its kind (8 bits), its length (64 bits) and its content; mcap_bytes.hpp encodes and
 /// decodes records. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
@@ -53,14 +53,14 @@ struct Channel {
   std::map<std::string, std::string> metadata;
   bool operator==(const Channel&) const = default;
 };
-/// Header of a message, before the bytes of the message.
+/// Message is the header of a message, before its bytes.
 struct Message {
   static constexpr Op op = kMessage;
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;
 };
-/// Header of a chunk, before the records of the chunk.
+/// Chunk is the header of a chunk, before its records.
 struct Chunk {
   static constexpr Op op = kChunk;
   std::uint64_t message_start_time = 0, message_end_time = 0, uncompressed_size = 0;

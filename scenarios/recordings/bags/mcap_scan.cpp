@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans the data of files whose summary is missing or incomplete.
+// mcap_scan.cpp scans the data of files whose summary is missing or incomplete.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tumble::scenarios::mcap {
 namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
-/// Largest segment of records outside chunks.
+/// kSegmentBytes is the largest segment of records outside chunks.
 constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
 /// Extends the time range of a segment.
@@ -70,7 +70,7 @@ void File::scan() {
   close();
 }
 
-/// Registers the channels in a chunk and the times of the chunk's messages.
+/// Registers the channels in a chunk and the times of its messages.
 void File::scan_chunk(const ChunkIndex& index) {
   Segment segment{index.chunk_start_offset, index.chunk_length, 0, 0, index};
   bool empty = true;

@@ -20,10 +20,10 @@ namespace mcap {
 
 namespace {
 
-/// Size at which a chunk is closed.
+/// A chunk is closed when it reaches kChunkBytes.
 constexpr std::size_t kChunkBytes = 1u << 20;
 
-/// The output file with a running checksum.
+/// Output is the output file with a running checksum.
 class Output {
  public:
   explicit Output(const std::filesystem::path& path) : file_(path) { put(kMagic); }
@@ -43,7 +43,7 @@ class Output {
   std::uint32_t crc_ = 0;
 };
 
-/// Records that are not yet compressed, with the message positions of each channel.
+/// OpenChunk contains records that are not compressed yet, with the message positions of each channel.
 struct OpenChunk {
   std::string records;
   std::map<std::uint16_t, MessageIndex> index;

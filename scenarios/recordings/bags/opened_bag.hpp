@@ -13,14 +13,14 @@
 /// Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Origin of a message: the location for error messages, and the time of the record.
+/// MessageOrigin is the origin of a message: the location for error messages, and the time of the record.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
   std::size_t number;  ///< position in the topic
 };
 
-/// An open bag with its topics and its location for error messages.
+/// OpenedBag is an open bag with its topics and its location for error messages.
 struct OpenedBag {
   BagReader& reader;
   std::string place;
@@ -37,7 +37,7 @@ struct OpenedBag {
                    (near.empty() ? "" : "; did you mean '" + near + "'?") + " (existing topics:" + topic_list() + ")");
   }
 
-  /// Lists the topics with their types, for messages.
+  /// Lists the topics with their types, for error messages.
   std::string topic_list() const {
     std::string out;
     for (const BagTopic& each : topics) out += (out.empty() ? " " : ", ") + each.name + " " + each.type;
@@ -48,7 +48,8 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the named topics, which must have a matching type. Without names, returns all topics of a matching type.
+  /// Returns the named topics, which must have a matching type. Without topic names, the function returns all topics of
+  /// a matching type.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;

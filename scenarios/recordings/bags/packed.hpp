@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// Compresses bag chunks and computes their checksums. Used only within scenarios/recordings/bags.
+/// packed.hpp compresses bag chunks and computes their checksums. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Returns an LZ4 frame of the bytes with independent blocks of at most 4 MiB, without checksums.

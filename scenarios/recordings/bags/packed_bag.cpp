@@ -23,7 +23,7 @@ namespace {
 
 using std::filesystem::path;
 
-/// Returns an upper bound of the decompressed size; sensor messages compress by a few dozen times at most.
+/// Returns an upper bound of the decompressed size, because sensor messages compress by a few dozen times at most.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;
@@ -67,7 +67,7 @@ void unpack(const path& file, const path& to) {
   if (!unpacked.flush()) fail("cannot be unpacked into " + to.parent_path().string());
 }
 
-/// A reader that removes its decompressed files when destroyed.
+/// UnpackedFiles is a reader that removes its decompressed files when destroyed.
 class UnpackedFiles : public BagReader {
  public:
   UnpackedFiles(const std::vector<path>& files,

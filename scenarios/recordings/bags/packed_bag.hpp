@@ -19,8 +19,8 @@ std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);
 
-/// Wraps a bag whose messages are Zstandard frames with a stated size. The size may be at most 64 MiB and 200 times the
-/// compressed size. Reading a damaged message throws BadInput, with a message that starts with `place`.
+/// Wraps a bag whose messages are Zstandard frames with a stated size. The decompressed size may be at most 64 MiB and
+/// 200 times the compressed size. Reading a damaged message throws BadInput, with a message that starts with `place`.
 std::unique_ptr<BagReader> with_packed_messages(std::unique_ptr<BagReader> bag, std::string place);
 
 }  // namespace tumble::scenarios

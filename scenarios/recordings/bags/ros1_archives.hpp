@@ -16,7 +16,7 @@ namespace tumble::scenarios::ros {
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// Error for a message that ends before its last field, or that states more data than it contains.
+/// BadMessage is the error for a message that ends before its last field, or that states more data than it contains.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -30,7 +30,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bytes with type information, in the form that librosbag expects.
+/// TypedBytes contains bytes with type information, in the form that librosbag expects.
 struct TypedBytes {
   std::string type, md5sum, definition;
   ros::Bytes bytes;
@@ -75,7 +75,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Suppresses the messages of librosbag during the object's lifetime.
+/// QuietBag suppresses the messages of librosbag during the object's lifetime.
 class QuietBag {
  public:
   QuietBag() { console_bridge::noOutputHandler(); }
@@ -185,7 +185,8 @@ class Ros1BagWriter : public BagWriter {
   }
 
   /// Abandons a bag after an error. The destructor of librosbag's bag closes and writes the file, which throws on a
-  /// full disk where no code catches the exception. If closing fails here, the object is leaked until the process ends.
+  /// full disk where no code catches the exception. If closing fails here, the bag object is leaked until the process
+  /// ends.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -202,7 +203,7 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Parts of one recording that are farther apart are separate recordings.
+/// Bag files that are more than kPartsApart_s apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {
@@ -290,8 +291,8 @@ class Ros1BagReader : public BagReader {
   void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(file, folder);
-    // The file is unlinked once it is open, so it disappears with the reader or the process; until then, a signal
-    // removes it.
+    // The decompressed file is unlinked once it is open, so it disappears with the reader or the process; until then, a
+    // signal removes it.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
-/// One record: its header fields, and the position of its data.
+/// CheckedRecord is one record: its header fields, and the position of its data.
 struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
@@ -29,7 +29,7 @@ struct CheckedRecord {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// Reads ranges of a file with bounds checks.
+/// Walk reads ranges of a file with bounds checks.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {

@@ -9,7 +9,7 @@
 /// Copies and decompresses chunks of ROS 1 bags. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// A chunk as stored in the file.
+/// Ros1Chunk is a chunk as stored in the file.
 struct Ros1Chunk {
   std::string compression;           ///< "none", "lz4", "bz2"
   std::uint32_t unpacked_bytes = 0;  ///< uncompressed size of its data
@@ -29,8 +29,8 @@ std::uint64_t bytes_unpacked(const std::filesystem::path& file);
 void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,
                    const std::function<void(Ros1Chunk&)>& change);
 
-/// Decompresses a chunk with any LZ4 frame (linked blocks, checksums, content size). ROS's library only supports
-/// independent blocks. Throws BadInput if the chunk is damaged or if its size differs from the stated size.
+/// Decompresses a chunk with any LZ4 frame (linked blocks, checksums, content size). The ROS 1 library only supports
+/// independent LZ4 blocks. Throws BadInput if the chunk is damaged or if its size differs from the stated size.
 void unpack_lz4(Ros1Chunk& chunk);
 
 }  // namespace tumble::scenarios

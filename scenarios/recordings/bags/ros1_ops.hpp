@@ -3,7 +3,8 @@
 
 #include <cstdint>
 
-/// Kinds of records in a ROS 1 bag. The header field "op" states the kind. Used only within scenarios/recordings/bags.
+/// ros1_ops.hpp lists the kinds of records in a ROS 1 bag. The header field "op" states the kind of a record. Used only
+/// within scenarios/recordings/bags.
 namespace tumble::scenarios::ros1 {
 
 enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };

@@ -96,7 +96,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// Returns the id of a topic; registers the topic if it is new.
+  /// Returns the id of a topic, and registers a new topic.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -148,7 +148,8 @@ class Ros2BagWriter : public BagWriter {
   std::set<std::string> defined_;  ///< types already defined
 };
 
-/// The files of a bag in order, their storage ("sqlite3" or "mcap"), and their compression: "", "file" or "message".
+/// StoredBag contains the files of a bag in order, their storage ("sqlite3" or "mcap"), and their compression: "",
+/// "file" or "message".
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
@@ -156,7 +157,7 @@ struct StoredBag {
   std::string note = {};
 };
 
-/// Returns the compression of the bag from the bag's metadata.
+/// Returns the compression of the bag from its metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";
@@ -172,7 +173,7 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
-/// Adds files of the folder that are named like the listed files, except for their number, but are not listed.
+/// Adds unlisted files of the folder that are named like the listed files except for their number.
 void add_unlisted(const path& folder, StoredBag& bag) {
   const auto stem = [](const path& file) { return stem_of(file.extension() == ".zstd" ? file.stem() : file); };
   const path& listed = bag.files.front();
@@ -263,7 +264,7 @@ class Ros2BagReader : public BagReader {
   bool cdr(const std::string&) const override { return true; }
 
  private:
-  /// Sorts the files by their first messages.
+  /// Sorts the files of the bag by their first messages.
   void sort_files() {
     std::map<path, std::int64_t> first_ns;
     for_files([&](const path& file, SQLite::Database& database) {

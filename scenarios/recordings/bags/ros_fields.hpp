@@ -10,7 +10,7 @@
 /// Lists the fields of each message type in the order of the message definition. ROS 1 and ROS 2 encode these fields
 /// differently. The archives in ros_bytes.hpp implement both encodings. Used only within scenarios/recordings/bags.
 ///
-/// An archive has the following members.
+/// An archive of message fields has the following members.
 /// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles)
 /// - ros1_only(uint32) is for a field that ROS 2 removed.
 /// - count(number of entries, minimum bytes of an entry) is for the length before a list. A reader returns the stored

@@ -7,7 +7,8 @@
 #include <variant>
 #include <vector>
 
-/// Message types of an exported recording. ros_fields.hpp lists the fields. Used only within scenarios/recordings/bags.
+/// ros_messages.hpp defines the message types of an exported recording; ros_fields.hpp lists their fields. Used only
+/// within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -75,14 +76,14 @@ struct Clock {
   std::uint32_t sec = 0, nanosec = 0;
 };
 
-/// A return of a Livox lidar (Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message").
+/// LivoxPoint is a return of a Livox lidar (Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message").
 struct LivoxPoint {
   std::uint32_t offset_time = 0;  ///< ns after the message's `timebase`
   float x = 0, y = 0, z = 0;      ///< m
   std::uint8_t reflectivity = 0, tag = 0, line = 0;
 };
 
-/// Message type "CustomMsg" of the vendor's drivers.
+/// LivoxCustomMsg is the message type "CustomMsg" of the vendor's drivers.
 struct LivoxCustomMsg {
   Header header;
   std::uint64_t timebase = 0;  ///< ns, of the first point

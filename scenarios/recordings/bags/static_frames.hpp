@@ -14,7 +14,8 @@ namespace tumble::scenarios {
 /// Removes the leading slash of ROS 1's frame names.
 std::string without_slash(const std::string& frame);
 
-/// Tree of frames from /tf_static. Each frame has one parent. Used only within scenarios/recordings/bags.
+/// StaticFrames is the tree of frames from /tf_static. Each frame of the tree has one parent. Used only within
+/// scenarios/recordings/bags.
 class StaticFrames {
  public:
   /// Adds a transform. For a repeated frame the last transform is used, and a changed parent is noted (`remarks`). An
@@ -31,7 +32,7 @@ class StaticFrames {
   /// Returns the name of the body's frame: "body", else "base_link", else "".
   std::string body() const;
 
-  /// Returns T_AB if the two frames are connected, else empty. Throws BadInput, with a message that starts with
+  /// Returns T_AB if the two frames are connected, otherwise nothing. Throws BadInput, with a message that starts with
   /// `where`, if a transform between the two frames is invalid or if the frames form a cycle.
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
@@ -42,7 +43,7 @@ class StaticFrames {
     Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
     std::string problem;         ///< why the transform is invalid; "" if valid
   };
-  /// Returns the frame and all its ancestors. Each entry contains the pose of `frame` in the ancestor.
+  /// Returns the frame and all its ancestors. Each returned FrameLink contains the pose of `frame` in one ancestor.
   std::vector<FrameLink> path_to_root(const std::string& frame, const std::string& where) const;
   std::map<std::string, FrameLink> frames_;
   std::vector<std::string> remarks_;

@@ -38,7 +38,7 @@ Number as(double value) {
   }
 }
 
-/// Returns one field of a point. An absolute time in a double is accurate to 0.25 us.
+/// Returns one field of a point. A time since 1970 in a double is accurate to 0.25 us.
 double value_of(const sim::LidarRecord& lidar, std::size_t point, const PointColumn& column, std::int64_t start_ns) {
   switch (column.quantity) {
     case PointQuantity::x_m:

@@ -7,7 +7,7 @@
 #include "scenarios/recordings/bags/ros_messages.hpp"
 #include "sim/recording.hpp"
 
-/// Converts sweeps to messages. Used only within scenarios/recordings/bags.
+/// sweep_messages.hpp converts lidar sweeps to messages. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Returns sweep number `sweep` of a lidar as a message. The sweep starts at `start_ns` since 1970, as stated in

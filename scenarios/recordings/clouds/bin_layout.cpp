@@ -22,15 +22,15 @@ constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// No coordinate in metres and no intensity is outside these limits. The smallest limit is needed because sines of 180
-/// degrees times a range are about 1e-16.
+/// No coordinate in metres and no intensity is outside the limits kSmallest and kLargest. The smallest limit exists
+/// because sines of 180 degrees times a range are about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// Factor by which the columns must differ more; for valid sweeps, the difference grows by 0.08 at most, where every
-/// second ring looks down.
+/// A larger number of columns is chosen only if the columns differ more by the factor kMultipleDiffers. For valid
+/// sweeps, the difference grows by at most 0.08, where every second ring looks down.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
-/// Sampled numbers of a file, and the position of each number in the file.
+/// NumberSample contains sampled numbers of a file, and the position of each number in the file.
 struct NumberSample {
   std::vector<double> values;
   std::vector<std::size_t> index;

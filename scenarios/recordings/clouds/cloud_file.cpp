@@ -75,7 +75,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   out.points = points;
   for (const pcl::PCLPointField& field : cloud.fields) {
     std::vector<double> column(points);
-    // skip fields of several numbers and padding ("_")
+    // the reader skips fields of several numbers and padding ("_")
     if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
     out.names.push_back(plain_name(field.name));
     out.columns.push_back(std::move(column));
@@ -83,7 +83,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Returns true if the whole word is a number: "nan" and "inf" are numbers, "0,5" and "x" are not.
+/// Returns whether the whole word is a number: "nan" and "inf" are numbers, "0,5" and "x" are not.
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -92,7 +92,7 @@ bool is_number_of_pcl(std::string_view word) {
 }
 
 /// Checks that all words of a text file are numbers, and that each line has as many numbers as the header states. The
-/// check is needed because PCL silently reads a prefix, or 0 or NaN.
+/// check of the words is needed because PCL silently reads a prefix, or 0 or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -136,7 +136,7 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   return out;
 }
 
-/// Types of the columns of a .bin file, named as NumPy writes them.
+/// kBinTypes lists the types of the columns of a .bin file, named as NumPy writes them.
 constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f4", pcl::PCLPointField::FLOAT32},
                                                                              {"f8", pcl::PCLPointField::FLOAT64},
                                                                              {"u1", pcl::PCLPointField::UINT8},

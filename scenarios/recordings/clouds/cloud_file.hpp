@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Points of a file or message as uninterpreted named columns. A 64-bit integer keeps its 53 leading bits, so stamps
-/// since 1970 in nanoseconds are accurate to 256 ns.
+/// Cloud contains the points of a file or message as uninterpreted named columns. A 64-bit integer keeps its 53 leading
+/// bits, so stamps since 1970 in nanoseconds are accurate to 256 ns.
 struct Cloud {
   std::vector<std::string> names;            ///< as written, without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
@@ -23,8 +23,8 @@ struct Cloud {
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
 /// Reads the points of a file; the extension selects the format. The formats are PLY and PCD of any encoding (by PCL),
-/// legacy VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. Checks
-/// the header against the file size before any allocation.
+/// legacy VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. The
+/// reader checks the header against the file size before any allocation.
 ///
 /// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a
 ///                     NumPy type after a colon ("x:f8"); the name "_" skips bytes. An empty text means KITTI's
@@ -33,7 +33,7 @@ inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 /// more than 2^26 points or impossible columns, or if its content contradicts KITTI's columns.
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
-/// Content of a PLY or PCD header.
+/// CloudHeader is the content of a PLY or PCD header.
 struct CloudHeader {
   std::uint64_t points = 0;
   std::uint64_t point_bytes = 0;  ///< 0 for text
@@ -44,7 +44,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// These functions read and check only the header. They throw BadInput like read_cloud.
+/// These functions read and check only the header of a point file. The header readers throw BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

@@ -18,25 +18,25 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// LZF expands 3 bytes to at most 264.
+/// LZF expands 3 bytes to at most 264 bytes.
 constexpr std::uint64_t kLzfMost = 88;
-/// A longer header is invalid.
+/// A header longer than kCloudHeaderMax is invalid.
 constexpr std::size_t kCloudHeaderMax = 65536;
 
-/// The lines of a header with their locations.
+/// HeaderLines contains the lines of a header with their locations.
 class HeaderLines {
  public:
   explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
     bytes_in_file_ = std::filesystem::file_size(path);
   }
 
-  /// Returns the words of the next line, which must have a line end.
+  /// Returns the words of the next header line, which must have a line end.
   std::vector<std::string> next() {
     if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end; the file may be truncated");
     ++number_;
     bytes_ += line_.size() + 1;
     if (bytes_ > kCloudHeaderMax) fail(fmt::format("the header is longer than {} bytes", kCloudHeaderMax));
-    // PCL's reader of points separates words by blanks and tabs only.
+    // PCL's reader of points separates words only by blanks and tabs.
     if (line_.find_first_of("\v\f") != std::string::npos) fail("the header contains a form feed or a vertical tab");
     std::istringstream words(line_);
     std::vector<std::string> out;
@@ -44,7 +44,7 @@ class HeaderLines {
     return out;
   }
 
-  /// Returns true if the last line is completely empty.
+  /// Returns whether the last header line is completely empty.
   bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -137,12 +137,12 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// Words in the order of the format; the last word is an alternative name of FIELDS.
+/// kPcdWords lists the header words in the order of the format; the final entry is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// Reads the lines of a PCD header by their first words. Each word must occur once and in order, because PCL misreads
-/// unknown, repeated, misplaced or blank lines and does not check the result.
+/// Reads the lines of a PCD header by their first words. Each header word must occur once and in order, because PCL
+/// misreads unknown, repeated, misplaced or blank lines and does not check the result.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;

@@ -7,11 +7,11 @@
 
 namespace tumble::scenarios {
 
-/// Formats read by PCL.
+/// PclFormat lists the file formats that PCL reads.
 enum class PclFormat : int { ply, pcd };
 
-/// Function of the module `pcl_reader_module.cpp`, which reads the points of a file without console output. Returns
-/// false if PCL fails or throws.
+/// PclRead is the function of the module `pcl_reader_module.cpp`, which reads the points of a file without console
+/// output. PclRead returns false if PCL fails or throws.
 extern "C" using PclRead = bool(const char* path, PclFormat format, pcl::PCLPointCloud2* cloud);
 inline constexpr const char* kPclRead = "tumble_pcl_read";  ///< its symbol name
 

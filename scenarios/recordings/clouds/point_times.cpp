@@ -25,17 +25,17 @@ struct TimeUnit {
 constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
 constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
                                                "time_stamp", "offset_time", "time_offset", "offset"};
-/// The times of a sweep must span this fraction of the period: at least a sector of 7 degrees, at most some overlap.
-/// Units differ by factors of 1000, so at most one unit fits. A shorter span, as of times that count from each packet,
-/// still fits exactly one unit.
+/// The point times of a sweep must cover a fraction of the period between kSpanMin (a sector of 7 degrees) and kSpanMax
+/// (some overlap). Time units differ by factors of 1000, so at most one unit fits. A shorter range of times, for
+/// example if times count from each packet, still fits exactly one unit.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
-/// Stamps after 1973, in seconds, exceed this value.
+/// Time stamps after 1973, in seconds, exceed kEpochMin_s.
 constexpr double kEpochMin_s = 1e8;
-/// With at least this many points, the times of a sweep span the sweep's period. Fewer points may span any short part
-/// of the period and do not contradict a stated unit.
+/// A sweep with at least kPointsThatSpan points covers the sweep's period in time. A sweep with fewer points may cover
+/// a short part of the period, so its times do not contradict a stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// Among this many clouds with absolute times, at least two clouds start more than two periods after time zero.
+/// Among kCloudsToCompare clouds with absolute times, at least two start more than two periods after time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 std::string lower(std::string text) {
@@ -43,7 +43,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Returns the unit suffix of a name, or null.
+/// Returns the time unit that the suffix of a name states, or null.
 const TimeUnit* unit_of_name(const std::string& name) {
   const auto ends = [&](const TimeUnit& unit) { return name.ends_with(std::string("_") + unit.name); };
   const auto* found = std::find_if(kUnits.begin(), kUnits.end(), ends);
@@ -77,7 +77,7 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   return found;
 }
 
-/// Times farther from the median than this many interquartile ranges are damaged.
+/// Point times farther from the median than kDamaged interquartile ranges are damaged.
 constexpr double kDamaged = 20.0;
 
 /// Returns the first and last time of the valid points.
@@ -112,7 +112,7 @@ std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   return text + " % of the sweep period";
 }
 
-/// Rejects a unit, stated by option or field name, that the numbers contradict.
+/// Rejects a time unit, stated by option or field name, that the numbers contradict.
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
@@ -126,11 +126,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
                              share_of(span, *read, period_ns)));
 }
 
-/// Determines the unit from the size of the numbers.
+/// Determines the time unit from the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns, kShortSpanMin)) return unit.ns;
-    // For stamps since 1970, returns the largest plausible unit.
+    // For time stamps since 1970, the function returns the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Number of clouds that determine the time unit; a single cloud may be incomplete.
+/// kProbe is the number of clouds that determine the time unit; a single cloud may be incomplete.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
@@ -26,7 +26,7 @@ constexpr double kBeyond = 2.0;         // multiple of the data sheet's range
 constexpr double kFarthest_m = 500.0;   // default limit without a data sheet: beyond the range of robot lidars
 constexpr std::size_t kBackwards = 20;  // ratio of falling to rising point times, in the order of storage
 constexpr double kOverlapMost = 1.05;   // longest sweep relative to the time between sweeps
-/// Longest point offset while the period is unknown.
+/// kOffsetMax_ns is the longest point offset while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 constexpr std::array<const char*, 3> kRingNames = {"ring", "line", "channel"};
@@ -48,7 +48,7 @@ const std::vector<double>* first_of(const Cloud& cloud, const std::array<const c
   return nullptr;
 }
 
-/// Returns the indices of valid points.
+/// Returns the indices of the valid points of a cloud.
 std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
   const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
         &z = coordinate(cloud, "z", where);
@@ -64,14 +64,14 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-/// Describes how point times were read.
+/// Describes how the point times were read.
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return fmt::format("point times: field '{}', in {}{}", rule.field, unit,
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// A time in the middle of a sweep; points farther than the longest sweep from this time are mistimed.
+/// Returns a time in the middle of a sweep; points farther from this time than the longest sweep are mistimed.
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
   std::vector<std::int64_t> known;
   for (const auto& time : times_ns) {
@@ -80,7 +80,7 @@ std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns)
   return upper_median(std::move(known));
 }
 
-/// Returns the ring numbers. Throws BadInput for an invalid number.
+/// Returns the ring numbers of the points. Throws BadInput for an invalid number.
 std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::size_t>& kept,
                                     const std::string& where) {
   const std::vector<double>* column = first_of(cloud, kRingNames);
@@ -177,8 +177,8 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Returns the times of the points in the stamps' clock, or the start for points without times. Removes a few mistimed
-/// points from `kept`. Throws BadInput if there are many.
+/// Returns the times of the points in the clock of the stamps, or the sweep's start for points without times. The
+/// function removes a few mistimed points from `kept`, and throws BadInput if there are many.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns) throw BadInput(sweep.where + ": neither the sweep nor its points have a time stamp");
@@ -229,7 +229,7 @@ std::int64_t SweepBuilder::longest_sweep_ns() const {
   return period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
 }
 
-/// Returns the start of the sweep. Moves the times of another clock to the stamp.
+/// Returns the start of the sweep, and moves times of another clock to the stamp.
 std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64_t>& times_ns) const {
   if (times_ns.empty()) return *sweep.stamp_ns;
   const std::int64_t first = *std::min_element(times_ns.begin(), times_ns.end()), bound = longest_sweep_ns();
@@ -253,7 +253,7 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   return start;
 }
 
-/// Returns true, and counts the cloud as left out, if most points are beyond twice the lidar's range.
+/// Returns whether most points are beyond twice the lidar's range, and counts the cloud as left out if so.
 bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   if (kept.empty()) return false;
   const std::vector<double>&x = *sweep.cloud.find("x"), &y = *sweep.cloud.find("y"), &z = *sweep.cloud.find("z");
@@ -304,7 +304,7 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Throws BadInput if ranges are probably in mm. Single points beyond the range in the data sheet are accepted.
+/// Throws BadInput if ranges are probably in mm. Single points beyond the range of the data sheet are accepted.
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;

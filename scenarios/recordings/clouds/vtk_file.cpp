@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Splits a text into words and tracks the line number.
+/// VtkWords splits a text into words and tracks the line number.
 class VtkWords {
  public:
   explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
@@ -29,7 +29,7 @@ class VtkWords {
     throw BadInput(name_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  /// Returns and skips the rest of the line.
+  /// Returns the rest of the line and skips it.
   std::string_view line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view out = std::string_view(text_).substr(at_, end - at_);

@@ -8,10 +8,11 @@
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
-/// Describes recording formats that published estimators expect. Used only within scenarios/recordings/dialects.
+/// dialect.hpp describes recording formats that published estimators expect. Used only within
+/// scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
-/// Source that documents the format.
+/// Source documents the recording format.
 struct Source {
   std::string repository, path, commit;
 };
@@ -30,8 +31,8 @@ struct Dialect {
   bool takes_empty = true;   ///< accepts sweeps without points; else empty sweeps are omitted
   ReaderNames (*names)(const SensorFacts&) = nullptr;
   SweepLayout (*sweeps)(const SensorFacts&) = nullptr;
-  /// Returns the configuration files of the published estimator with this recording's sensors. All other values are
-  /// those of the estimator's authors.
+  /// Returns the configuration files of the published estimator with this recording's sensors. All other values of the
+  /// configuration are those of the estimator's authors.
   std::vector<ConfigurationFile> (*configuration)(const SensorFacts&, const ReaderNames&) = nullptr;
   std::string run = {};                 ///< command that starts the published estimator on these files
   std::vector<std::string> notes = {};  ///< remarks for the user
@@ -55,8 +56,8 @@ std::span<const Dialect> all_dialects();
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 
-/// These functions return the names and the sweep layout for FAST-LIO and its derivatives. A Livox has the topics of
-/// its driver with CustomMsg. Any other lidar has the topics of a Velodyne.
+/// These functions return the names and the sweep layout for FAST-LIO and its derivatives. A Livox lidar has the topics
+/// of its driver, with CustomMsg. Any other lidar has the topics of a Velodyne lidar.
 ReaderNames fast_lio_names(const SensorFacts& facts);
 SweepLayout fast_lio_layout(const SensorFacts& facts);
 

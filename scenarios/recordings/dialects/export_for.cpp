@@ -32,7 +32,7 @@ const Dialect& dialect_of(const std::string& peer) {
                              near.empty() ? "" : "; did you mean '" + near + "'?", known));
 }
 
-/// Rejects non-finite points, because the range in the configuration cannot be computed from such points.
+/// Non-finite points are rejected, because they would give no range for the configuration.
 void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
   for (std::size_t number = 0; number < lidar.sweep_start_ns.size(); ++number) {
     const sim::LidarRecord sweep = sweep_alone(lidar, &aside, number);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FAST-LIO2 (hku-mars/FAST_LIO, GPL-2): this file only contains facts about the interface, and no text of the sources.
+// fast_lio.cpp describes FAST-LIO2 (hku-mars/FAST_LIO, GPL-2), with facts about the interface only and no text of the
+// sources.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"

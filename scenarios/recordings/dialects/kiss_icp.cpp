@@ -26,8 +26,8 @@ data:
 }  // namespace
 
 Dialect kiss_icp_dialect() {
-  // Version 1.3.0 reads ROS 1 bags, and ROS 2 bags with definitions, with packages from PyPI only. For MCAP,
-  // mcap-ros2-support 0.5.7 and 0.6.0 do not find the point fields.
+  // KISS-ICP 1.3.0 reads ROS 1 bags, and ROS 2 bags with definitions, with packages from PyPI only. In MCAP files,
+  // mcap-ros2-support 0.5.7 and 0.6.0 cannot find the point fields.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
   out.takes_empty = false;

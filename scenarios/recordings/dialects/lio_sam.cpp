@@ -13,7 +13,7 @@ ReaderNames lio_sam_names(const SensorFacts&) {
   return {"/imu_raw", "imu", "/points_raw", "lidar", "base_link", ""};
 }
 
-/// Returns the density of the data sheet, or the authors' value if none is stated.
+/// Returns the noise density of the data sheet, or the authors' value if none is stated.
 std::string density_text(double stated, const char* authors) {
   return stated > 0.0 ? decimal(stated) : authors;
 }

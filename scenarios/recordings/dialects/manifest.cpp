@@ -31,7 +31,7 @@ const char* word(NumberType type) {
   return "float64";
 }
 
-/// Returns the unit of a field.
+/// Returns the unit of a point field.
 std::string unit(const PointColumn& column) {
   switch (column.quantity) {
     case PointQuantity::x_m:

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Returns the text of manifest.json (keys: dialects/README.md). The text lists the files with units, stamps and
+/// Returns the text of manifest.json (keys: dialects/README.md). manifest.json lists the files with units, stamps and
 /// frames, the noise, ranges and mounting of the sensors, and the estimator's documentation. Used only within
 /// scenarios/recordings/dialects.
 std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,

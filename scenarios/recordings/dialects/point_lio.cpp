@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point-LIO (hku-mars/Point-LIO, GPL-2): this file only contains facts about the interface, and no text of the sources.
+// point_lio.cpp describes Point-LIO (hku-mars/Point-LIO, GPL-2), with facts about the interface only and no text of the
+// sources.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the saturation threshold for the published estimator. The data sheet may state less than the device reaches;
-/// in this case the largest reading is used.
+/// Returns the saturation threshold for the published estimator. If the device exceeds the range of its data sheet, the
+/// threshold is the largest reading.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
 }

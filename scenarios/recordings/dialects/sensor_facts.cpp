@@ -12,7 +12,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kStillRate_rad_s = 0.2, kStillForce_m_s2 = 1.0;
-/// The farthest corner of the box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m around the rig's lidar, rounded up.
+/// kRigCage_m is the distance to the farthest corner of the box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m around the rig's
+/// lidar, rounded up.
 constexpr double kRigCage_m = 0.7;
 
 bool is_livox(const std::string& device) {
@@ -40,7 +41,7 @@ ImuFacts facts_of(const sim::ImuRecord& imu, double gravity_m_s2) {
   return out;
 }
 
-/// A lidar and its points.
+/// Sweeps is a lidar with its points.
 struct Sweeps {
   const sim::LidarRecord& lidar;
   const PointStore* aside;
@@ -73,8 +74,8 @@ std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t 
 }
 
 /// Returns the number of firings of a ring per sweep: the sweep period divided by the upper median step between returns
-/// of one ring. There are as many steps as points, so the upper 16 bits are counted first, then the lower 16 bits
-/// within the bin of the median.
+/// of one ring. A sweep has as many steps as points, so the function counts the upper 16 bits first, then the lower 16
+/// bits within the bin of the median.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
   std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);

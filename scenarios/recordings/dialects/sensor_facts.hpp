@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// Properties of the first IMU that configuration files state.
+/// ImuFacts contains properties of the first IMU that configuration files state.
 struct ImuFacts {
   std::string device;
   std::size_t samples = 0;
@@ -22,7 +22,7 @@ struct ImuFacts {
   double still_at_start_s = 0.0;  ///< time until a rate above 0.2 rad/s or a force 1 m/s^2 off gravity
 };
 
-/// Properties of the first lidar.
+/// LidarFacts contains properties of the first lidar.
 struct LidarFacts {
   std::string device;
   bool livox = false;                                    ///< by the device's name
@@ -32,12 +32,12 @@ struct LidarFacts {
   int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Points closer than this distance belong to the robot. For the rig, the distance is 0.7 m, the extent of its cage
-  /// from the lidar (the box that the mapper excludes). For other robots, it is the distance of the nearest return.
+  /// Points closer than this distance belong to the robot. For the rig, this distance is 0.7 m, the extent of its cage
+  /// from the lidar (the box that the mapper excludes). For other robots, this distance is that of the nearest return.
   double own_body_m = 0.0;
 };
 
-/// Properties of the sensors that a published estimator reads, without the truth.
+/// SensorFacts contains the properties of the sensors that a published estimator reads, without the truth.
 struct SensorFacts {
   std::optional<ImuFacts> imu;
   std::optional<LidarFacts> lidar;

@@ -9,8 +9,9 @@
 
 #include "scenarios/recordings/number_text.hpp"
 
-/// Writes numbers that every YAML reader accepts as doubles. All numbers have a decimal point, which ROS 2 requires for
-/// a double and YAML 1.1 requires before an exponent. Used only within scenarios/recordings/dialects.
+/// yaml_numbers.hpp writes numbers that every YAML reader accepts as doubles. All numbers have a decimal point, which
+/// ROS 2 requires for a double and YAML 1.1 requires before an exponent. Used only within
+/// scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
 inline std::string decimal(double value) {

@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kAirbrakesAttribution =
     "AirbrakesV2, NCSU High-Powered Rocketry Club (github.com/NCSU-High-Powered-Rocketry-Club/AirbrakesV2), MIT; ";
 constexpr double kAirbrakesStampMax_s = 1e9;
-/// Estimators do not bridge longer gaps.
+/// Estimators do not bridge gaps longer than kBridgedGap_ns.
 constexpr std::int64_t kBridgedGap_ns = 1'000'000'000;
 
 using Columns3 = std::array<std::size_t, 3>;

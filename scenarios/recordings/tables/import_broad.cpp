@@ -24,8 +24,9 @@ constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-/// Half of the time span for differentiating the reference: 70 ms. With this span, the noise at rest stays below the
-/// thresholds that scores use for rest (measured: 0.022 rad/s at half of the span). The span blurs fast rotations.
+/// kSlopeReach is half of the time span for differentiating the reference: 70 ms. With kSlopeReach, the noise at rest
+/// stays below the thresholds that scores use for rest (measured: 0.022 rad/s at half of the span). A time span of 140
+/// ms blurs fast rotations.
 constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
@@ -37,14 +38,14 @@ sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
   if (root.has("imu_mag")) root.read("imu_mag", imu.magnetic_field_t);
   for (Eigen::Vector3d& field : imu.magnetic_field_t) field *= kTeslaPerMicrotesla;
   for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k) {
-    // computed from the rate, because multiples of a rounded period would drift
+    // the stamp is computed from the rate, because multiples of a rounded period would drift
     imu.time_ns.push_back(std::llround(static_cast<double>(k) * 1e9 / rate_hz));
   }
   imu.clip_flags.assign(imu.time_ns.size(), 0);
   return imu;
 }
 
-/// Returns unit quaternions; NaN where the cameras saw too few markers.
+/// Returns the attitudes as unit quaternions, with NaN where the cameras saw too few markers.
 std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   std::vector<Eigen::Vector4d> rows;
   root.read("opt_quat", rows);

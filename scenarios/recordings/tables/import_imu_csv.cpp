@@ -17,8 +17,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit in the column names, else the unit that the caller states. Throws BadInput if a unit that the
-/// caller states contradicts the names.
+/// Returns the unit in the column names, otherwise the unit that the caller states. Throws BadInput if a unit that the
+/// caller states contradicts the column names.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
@@ -36,7 +36,7 @@ std::string unit_of_stamps(int decimals) {
   return decimals == 9 ? "s" : decimals == 6 ? "ms" : decimals == 3 ? "us" : "ns";
 }
 
-/// Notes the interpretation of ambiguous column names.
+/// Adds a note about the interpretation of ambiguous column names.
 void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string>& notes) {
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)
@@ -51,8 +51,8 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// Several IMUs in one table alternate row by row. Keeps the rows of the first IMU; returns a note, or "" if the table
-/// has one IMU. More numbers than this are a counter of rows.
+/// If a table contains several IMUs, their rows alternate. The function keeps the rows of the first IMU; it returns a
+/// note, or "" if the table has one IMU. A column with more than kImusMax different numbers counts rows, not IMUs.
 std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::map<std::string, std::size_t> rows;
@@ -74,7 +74,7 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
       first, others);
 }
 
-/// Reads the samples of the columns and their places in the file. Faulty rows are counted in `left_out`.
+/// Reads the samples of the IMU columns and their places in the file. Faulty rows are counted in `left_out`.
 sim::ImuRecord readings_of(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit, LeftOut& left_out, std::vector<std::string>& places) {
   sim::ImuRecord imu = without_readings(device);

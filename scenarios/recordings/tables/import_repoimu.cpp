@@ -32,11 +32,11 @@ constexpr const char* kRepoimuAttribution =
 
 constexpr double kBadNormShareMax = 0.2;
 constexpr double kRepoimuStampMax_s = 86400.0;
-/// Number of rows on either side that determine the precision of printed stamps.
+/// kDigitsReach is the number of rows on either side that determine the precision of printed stamps.
 constexpr std::size_t kDigitsReach = 50;
 constexpr double kCoarse = 0.02;  // fraction of a step above which coarse printing is noted
 
-/// Positions of the columns by group.
+/// RepoimuColumns contains the positions of the columns by group.
 struct RepoimuColumns {
   std::size_t time = 0;
   std::array<std::size_t, 4> attitude{};  ///< w x y z
@@ -54,7 +54,7 @@ struct Log {
   LeftOut left_out{"readings"};
 };
 
-/// Returns names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
+/// Returns column names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
     fail(names, fmt::format("this line has {} columns, but the line above has {}; the numbers must be equal",
@@ -96,7 +96,8 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   return columns;
 }
 
-/// Accepts a decimal comma, which one published file contains; between ';' separators, a decimal comma is unambiguous.
+/// DecimalNumbers accepts a decimal comma, which one published file contains; between ';' separators, it is
+/// unambiguous.
 class DecimalNumbers {
  public:
   DecimalNumbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
@@ -192,7 +193,7 @@ Log read_log(const std::filesystem::path& path) {
   return log;
 }
 
-/// Regularises the stamps, with a note if printing was coarse.
+/// Regularises the time stamps, with a note if they were printed coarsely.
 void steady(Log& log, std::vector<std::string>& notes) {
   const std::vector<std::int64_t> printed = log.readings.time_ns;
   log.readings.time_ns = steady_stamps(printed, log.rounding);

@@ -18,18 +18,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Minimum number of columns of a sensor_msgs/Imu table without header.
+/// kColumnsByPlace is the minimum number of columns of a sensor_msgs/Imu table without header.
 constexpr std::size_t kColumnsByPlace = 15;
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
-/// Columns that `export` writes: each column once, and no other columns.
+/// The command `export` writes exactly these columns, each once.
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// Returns the only column that `fits` accepts; a second such column would belong to another sensor.
+/// Returns the only column that `fits` accepts; a second column would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
@@ -51,7 +51,7 @@ std::optional<std::size_t> find_ending(const CsvLine& header, const std::string&
   });
 }
 
-/// Finds a column under one of several endings.
+/// Finds a column whose name has one of several endings.
 std::optional<std::size_t> find_any_ending(const CsvLine& header, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (const auto found = find_ending(header, name)) return found;
@@ -65,7 +65,7 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// Collects the columns of a header that must all exist.
+/// RequiredColumns collects the columns of a header that must all exist.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}
@@ -75,7 +75,7 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// Returns false if no column exists; throws BadInput if only some columns exist.
+  /// Returns false if no required column exists; throws BadInput if only some exist.
   bool complete() const {
     if (found_ == 0) return false;
     if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
@@ -89,7 +89,7 @@ class RequiredColumns {
 };
 
 /// Finds the stamp of a message's header. `rostopic echo -p` names it "field.header.stamp" and writes nanoseconds;
-/// other tools write seconds, or seconds and nanoseconds in two columns. Returns false if there is none.
+/// other tools write seconds, or seconds and nanoseconds in two columns. Returns false if the header contains no stamp.
 bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   const auto seconds = find_any_ending(header, {"header/stamp/sec", "header/stamp/secs"});
   const auto rest = find_any_ending(header, {"header/stamp/nsec", "header/stamp/nsecs", "header/stamp/nanosec"});
@@ -105,7 +105,8 @@ bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   return true;
 }
 
-/// Finds columns of flattened messages. The stamp of the header takes precedence over the time of recording.
+/// Finds the columns of flattened ROS messages. The stamp of the message header takes precedence over the time of
+/// recording.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   if (!find_header_stamp(header, layout)) return std::nullopt;
@@ -164,7 +165,7 @@ std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
   fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, line.fields[column]));
 }
 
-/// Returns true if seconds and nanoseconds are in separate columns.
+/// Returns whether seconds and nanoseconds are in separate columns.
 bool has_split_stamp(const CsvLine& header) {
   return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
 }

@@ -18,15 +18,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// At rest, rolling or hand-held, the median is near g in m/s^2; the median of readings in g, mg or raw counts is
-/// outside these limits.
+/// For a body at rest, rolling or hand-held, the median is near g in m/s^2; the median of readings in g, mg or raw
+/// counts is outside these limits.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// Returns the unit in which the median would be close to gravity; no unit for raw counts.
+/// Returns the unit in which the median would be close to gravity, or nothing for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -54,7 +54,7 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// Limit of the readings of both triads [rad/s, m/s^2], as in the estimator.
+/// kSensorReadingMax limits the readings of both triads [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
 /// Returns the largest absolute value of the triad, or a non-finite value if any axis is non-finite.
@@ -62,7 +62,7 @@ double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// The limits are 0.5 Hz to 50 kHz, the range of IMU sample rates.
+/// The limits on the period are 0.5 Hz to 50 kHz, the range of IMU sample rates.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
@@ -74,9 +74,9 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
-/// Largest plausible rate of a robot's device without a data sheet.
+/// kLargestRate_rad_s is the largest plausible rate of a robot's device without a data sheet.
 constexpr double kLargestRate_rad_s = 100.0;
-/// Allowed fraction of the samples; single samples beyond the range are glitches.
+/// At most the fraction kBeyondShare of the samples may exceed the range; single samples beyond the range are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
@@ -110,10 +110,11 @@ constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // rotation of t
                                                                 // one degree
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// Change of gravity's direction that ends a brisk window.
+/// A change of the gravity direction by kBriskRotation ends a brisk window.
 constexpr double kBriskRotation = 0.25;
 
-/// Steps within a burst, relative to the mean step. Half of the steps must be this short.
+/// A time step within a burst is at most the fraction kBurstStep of the mean step. At least half of the time steps must
+/// be this short.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
@@ -127,7 +128,7 @@ std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t
       times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 
-/// Distributes the readings of each burst evenly over the time since the previous burst, whose last reading was just
+/// Distributes the readings of each burst evenly over the time since the previous burst; the last reading was just
 /// taken when the burst arrived. Returns a note, or "" without bursts.
 std::string even_out_bursts(sim::ImuRecord& imu) {
   std::vector<std::int64_t>& times = imu.time_ns;
@@ -238,7 +239,7 @@ GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
-/// Explains why the motion does not suffice.
+/// Explains why the motion is insufficient for the check.
 std::string undetermined_text(const GravityRotation& turn) {
   if (turn.windows < kLeastWindows)
     return "unit and axes are not checked, because gravity rotates too little in the accelerometer axes";

@@ -27,7 +27,7 @@ void drop_open_end(CsvLine& line) {
   if (line.fields.size() > 1 && line.fields.back().empty()) line.fields.pop_back();
 }
 
-/// Removes the sign of a comment from the first name.
+/// Removes the comment sign from the first name.
 void uncomment(CsvLine& line) {
   std::string_view& first = line.fields.front();
   first.remove_prefix(std::min(first.find_first_not_of("#%/ \t"), first.size()));

@@ -9,14 +9,14 @@
 
 #include "scenarios/recordings/tables/csv_text.hpp"
 
-/// Reads text tables of loggers: IMU readings and poses. Used only within scenarios/recordings.
+/// logged_table.hpp reads text tables of loggers: IMU readings and poses. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// A table of samples below an optional header. Comments (csv_text.hpp) are skipped, and also an empty field after the
-/// last separator of a line. The header is the first line that is no comment and has fewer numbers than other texts. If
-/// the samples follow comments directly, the last comment is the header, provided that it has as many fields as a
-/// sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is added to the names in
-/// brackets.
+/// LoggedTable is a table of samples below an optional header. LoggedTable skips comments (csv_text.hpp), and an empty
+/// field after the last separator of a line. The header is the first line that is no comment and has fewer numbers than
+/// other texts. If the samples follow comments directly, the last comment is the header, provided that it has as many
+/// fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is added to the
+/// names in brackets.
 class LoggedTable {
  public:
   /// Throws BadInput like CsvText.
@@ -24,13 +24,14 @@ class LoggedTable {
   LoggedTable(const LoggedTable&) = delete;
   LoggedTable& operator=(const LoggedTable&) = delete;
 
-  /// Returns the names of the columns. If the table has no header, returns the fields of the first sample.
+  /// Returns the names of the columns, or the fields of the first sample if the table has no header.
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Reads the next sample. Returns false at the end. Throws BadInput with file and line for a wrong number of fields.
+  /// Reads the next sample; returns false at the end of the table. Throws BadInput with file and line for a wrong
+  /// number of fields.
   bool next(CsvLine& line);
-  /// Continues at the first sample.
+  /// Continues reading at the first sample.
   void restart() { text_.back_to(samples_); }
   /// After this call, `next` only returns samples with the text `value` in the column.
   void keep(std::size_t column, const std::string& value) { kept_ = {column, value}; }

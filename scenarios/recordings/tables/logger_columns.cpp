@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A column name and its unit, both in lower case without separators.
+/// Name is a column name and its unit, both in lower case without separators.
 struct Name {
   std::string quantity, unit;
 };
@@ -28,7 +28,7 @@ const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "tim
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
 constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
 
-/// Times that loggers write next to the stamp.
+/// Loggers write these times next to the stamp.
 const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
 const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "gyroscope", "angularvelocity",
                                               "angularrate", "w",    "omega",  "angvel",    "rate",
@@ -36,7 +36,7 @@ const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "
 const std::vector<std::string_view> kForces = {
     "a", "acc",           "accel", "accelerometer", "acceleration",    "linearacceleration",
     "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
-/// Columns that number the IMUs of a table.
+/// Columns with these names number the IMUs of a table.
 const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
 const UnitNames<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
@@ -100,7 +100,7 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   return name;
 }
 
-/// An axis of a triad, and the number of the IMU in the name ("" if the name has none).
+/// NamedAxis is an axis of a triad, with the number of the IMU in the name ("" if the name has none).
 struct NamedAxis {
   std::size_t axis = 0;
   std::string number;
@@ -132,7 +132,7 @@ std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std
   return is_one_of(names, quantity) ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the unit that a name states, if any, for a quantity with any name.
+/// Returns the unit that a column name states, if any, for a quantity with any name.
 template <class Value>
 std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& units) {
   if (const std::size_t open = field.find_first_of("[("); open != std::string_view::npos)
@@ -142,7 +142,7 @@ std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& uni
   return std::nullopt;
 }
 
-/// Takes the columns of one quantity from a header.
+/// HeaderReader takes the columns of one quantity from a header.
 class HeaderReader {
  public:
   explicit HeaderReader(const CsvLine& header) : header_(header), taken_(header.fields.size(), false) {}
@@ -205,7 +205,7 @@ class HeaderReader {
            kExample);
     return true;
   }
-  /// Finds a column that numbers the IMUs.
+  /// Finds the column that numbers the IMUs.
   std::optional<std::size_t> id() {
     for (std::size_t i = 0; i < header_.fields.size(); ++i)
       if (is_one_of(kIds, letters(header_.fields[i]))) return i;

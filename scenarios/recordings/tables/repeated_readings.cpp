@@ -15,7 +15,7 @@ constexpr double kHeldShare = 0.05, kFrozenShare = 0.98;
 constexpr double kRailLeast_m_s2 = 14.7;
 constexpr int kRailReadings = 5, kRailContrast = 3;
 
-/// Returns the rows whose reading differs from the previous row's reading, and the first row.
+/// Returns the rows whose reading differs from that of the previous row, and the first row.
 std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings) {
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < readings.size(); ++k) {
@@ -24,8 +24,8 @@ std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings
   return rows;
 }
 
-/// Returns the regularised times of the readings in `rows`. Each reading was taken between the time of the previous row
-/// and the time of the row that contains the reading.
+/// Returns the regularised times of the readings in `rows`. Each reading was taken between the times of the previous
+/// row and of the row that contains it.
 std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
   std::vector<std::int64_t> stamps;
   std::vector<StampBounds> bounds;
@@ -40,8 +40,7 @@ double repeated_share(std::size_t fresh, std::size_t rows) {
   return rows < 2 ? 0.0 : static_cast<double>(rows - fresh) / static_cast<double>(rows - 1);
 }
 
-/// A sensor whose readings almost always repeat is not in sample-and-hold mode: the sensor is frozen or noise-free at
-/// rest, and its period is unknown.
+/// A sensor whose readings almost always repeat is frozen or noise-free at rest, so its period is unknown.
 bool is_repeated(double share) {
   return share > kHeldShare && share < kFrozenShare;
 }

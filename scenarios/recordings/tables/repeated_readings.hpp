@@ -8,17 +8,17 @@
 
 #include "sim/recording.hpp"
 
-/// Removes sample-and-hold repetitions, which occur if a log is faster than its sensor. Used only within
-/// scenarios/recordings.
+/// repeated_readings.hpp removes sample-and-hold repetitions, which occur if a log is faster than its sensor. Used only
+/// within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// Rows of a log. Each row has the latest reading of each sensor.
+/// LoggedReadings contains the rows of a log. Each row has the latest reading of each sensor.
 struct LoggedReadings {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> gyro_rad_s, accel_m_s2;
 };
 
-/// Result of remove_repeats for a note. Each number is a fraction of the rows.
+/// RepeatReport is the result of remove_repeats for a note. Each number is a fraction of the rows.
 struct RepeatReport {
   double gyro_repeated = 0.0, accel_repeated = 0.0;
   bool gyro_repeats = false, accel_repeats = false;
@@ -27,10 +27,10 @@ struct RepeatReport {
 };
 
 /// Extracts the readings of a log without repetitions. A sensor repeats readings (sample-and-hold) if 5 to 98 % of its
-/// rows repeat all three axes. Above 98 % the sensor is frozen. Only new gyro readings are kept. Their times are
-/// regularised within the log step in which they arrived. If the accelerometer repeats readings for longer than the
-/// gyro, its readings are interpolated linearly at the gyro's times, which low-passes the specific force. Fills
-/// time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
+/// rows repeat all three axes. A sensor whose rows repeat more often counts as frozen. The function keeps only new gyro
+/// readings. The times of the readings are regularised within the log step in which they arrived. If the accelerometer
+/// repeats readings for longer than the gyro, its readings are interpolated linearly at the gyro's times, which
+/// low-passes the specific force. The function fills in time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
 RepeatReport remove_repeats(const LoggedReadings& log, sim::ImuRecord& imu);
 
 /// Returns a note on probable accelerometer saturation, or "". An axis and sign counts as saturated if readings

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kLineReach = 10;
 constexpr double kGapSteps = 1.3;
-/// Smaller differences between a line and a raster are rounding.
+/// Smaller differences between a line and a raster of stamps are rounding.
 constexpr std::int64_t kSame_ns = 1000;
 
 /// Fits a line to the samples `first` to `last`; returns the line's offset from `stamps[k]` at k.

@@ -24,13 +24,13 @@ constexpr int kSearch_ms = 100;
 constexpr double kSlopeStep_s = 4e-3;
 constexpr int kAlignmentParts = 8;
 constexpr int kRounds = 20;
-/// Standard deviations of the pairs, and the number of consecutive samples with correlated errors.
+/// The pairs have these standard deviations and this number of consecutive samples with correlated errors.
 constexpr double kRateSigma_rad_s = 0.15, kForceSigma_m_s2 = 1.0;
 constexpr double kRateRun = 5.0, kForceRun = 25.0;
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-/// A sample with known gyro and reference.
+/// SamplePair is a sample for which gyro and reference are known.
 struct SamplePair {
   std::int64_t time_ns = 0;
   Eigen::Vector3d w_I, f_I;
@@ -113,7 +113,7 @@ double deviation_of_mean(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
-/// Returns the bounds of part i of n samples.
+/// Returns the first and last index of part i of n samples.
 std::array<std::size_t, 2> part(std::size_t i, std::size_t n) {
   return {i * n / kAlignmentParts, (i + 1) * n / kAlignmentParts};
 }
@@ -139,7 +139,7 @@ void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<S
   alignment.delay_sigma_s = deviation_of_mean(steps);
 }
 
-/// Sets the reference values for a delay; removes pairs without a known reference.
+/// Sets the reference values for a delay, and removes pairs without a known reference.
 void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vector<SamplePair>& pairs) {
   std::vector<std::int64_t> times;
   for (const SamplePair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
@@ -159,8 +159,8 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   pairs = std::move(kept);
 }
 
-/// Returns the up direction in the reference's world for a rotation between IMU and reference. Averages all samples,
-/// because accelerations cancel over the recording.
+/// Returns the up direction in the reference's world for a rotation between IMU and reference. The function averages
+/// all samples, because accelerations cancel over the recording.
 Eigen::Vector3d up_in_world(const std::vector<SamplePair>& all, const Eigen::Quaterniond& q_IV) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const SamplePair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);

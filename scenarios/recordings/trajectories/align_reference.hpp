@@ -6,7 +6,8 @@
 
 #include "scenarios/recordings/trajectories/reference.hpp"
 
-/// Aligns an optical reference with the IMU in time and rotation. Used only within scenarios/recordings.
+/// align_reference.hpp aligns an optical reference with the IMU in time and rotation. Used only within
+/// scenarios/recordings.
 namespace tumble::scenarios {
 
 /// The alignment is w_I(t) = R_IV w_V(t + delay), where V is the reference's body frame and I the IMU frame. `R_WV`
@@ -34,7 +35,7 @@ struct ReferenceAlignment {
 /// Astronautical Sciences 36(3), 1988). The cost is about fifty passes over the samples.
 ReferenceAlignment align_reference(const std::vector<ReferencePose>& poses, const sim::ImuRecord& imu);
 
-/// Removes delay, rotation and tilt: converts the poses to poses of the IMU, in the IMU's clock and a level world.
+/// Applies the alignment: converts the poses to poses of the IMU, in the IMU's clock and a level world.
 void apply(const ReferenceAlignment& alignment, std::vector<ReferencePose>& poses);
 
 }  // namespace tumble::scenarios

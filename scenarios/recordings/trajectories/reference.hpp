@@ -9,36 +9,36 @@
 
 #include "sim/recording.hpp"
 
-/// Reads the motion of a real recording that a reference instrument measured (FORMAT.md, "References").
+/// reference.hpp reads the motion of a real recording that a reference instrument measured (FORMAT.md, "References").
 namespace tumble::scenarios {
 
-/// A pose of frame A (body or lidar) in the instrument's world with z up. An unknown position is NaN.
+/// ReferencePose is a pose of frame A (body or lidar) in the instrument's world with z up. An unknown position is NaN.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// Tolerance of the norm of a reference quaternion.
+/// kReferenceNormTolerance is the tolerance of the norm of a reference quaternion.
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
 /// Returns why a pose is invalid, or "" if the pose is valid. Faults are non-finite numbers, a quaternion norm that
-/// differs from 1 by more than 1 %, and a stamp that is not later than the stamp of `before`. Normalises valid
-/// quaternions.
+/// differs from 1 by more than 1 %, and a stamp that is not later than the stamp of `before`. The function normalises
+/// valid quaternions.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// Checks the poses of a file. If `sorted`, sorts the poses by time and keeps the first of several poses with equal
-/// stamps. Throws BadInput with the file for fewer than two poses.
+/// Checks the poses of a file. If `sorted` is true, the function sorts the poses by time and keeps the first of several
+/// poses with equal stamps. Throws BadInput with the file for fewer than two poses.
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
 
-/// Returns the format of a pose file. The first line with 8 or 12 numbers gives "tum" or "kitti"; the header of a table
-/// of poses gives "odometry". Throws BadInput for any other file.
+/// Returns the format of a pose file: "tum", "kitti" or "odometry". A first line with 8 or 12 numbers gives "tum" or
+/// "kitti"; the header of a table of poses gives "odometry". Throws BadInput for any other file.
 std::string pose_format(const std::filesystem::path& file);
 
-/// Reads a TUM file: "t x y z qx qy qz qw" per line, with t in seconds. '#' starts a comment; blanks or commas
-/// separate. `sorted` is described at finish_poses. Throws BadInput with file and line for a line without eight finite
-/// numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput also for a stamp that does not
-/// increase (unless sorted), or fewer than two poses.
+/// Reads a TUM file with "t x y z qx qy qz qw" per line, t in seconds; '#' starts a comment, and blanks or commas
+/// separate. finish_poses explains the argument `sorted`. Throws BadInput with file and line for a line without eight
+/// finite numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput also for a stamp that
+/// does not increase (unless sorted), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
 /// Reads a KITTI file, in which each line has the upper three rows of a pose matrix. `times_ns` are the times of the
@@ -47,11 +47,11 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
-/// Returns true if the file is a table of poses with a header that names time, position and quaternion.
+/// Returns whether the file is a table of poses with a header that names time, position and quaternion.
 bool is_pose_table(const std::filesystem::path& file);
 
 /// Reads a table of poses, one per line, separated like the IMU tables (tables/logged_table.hpp). The names in the
-/// header identify the columns, in any order. The following tables are known.
+/// header identify the columns, in any order. The following tables of poses are known.
 /// - the ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...")
 /// - flattened messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",
 ///   "field.transform.translation.x")
@@ -66,10 +66,10 @@ std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// Converts body poses to a truth. The stamps of `poses` increase in the recording's clock and may start before time 0.
 /// If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid, and poses are unchanged.
-/// Otherwise, the truth has steps of 1 ms, or longer steps for recordings above two million samples. Between poses at
-/// most 2.5 median steps apart, position is interpolated linearly and attitude by slerp. In larger gaps, position and
-/// attitude are unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose
-/// is known, or if the truth would be longer than a day.
+/// If the poses are irregular, the truth has steps of 1 ms, or longer steps for recordings above two million samples.
+/// Between poses at most 2.5 median steps apart, position is interpolated linearly and attitude by slerp. In larger
+/// gaps, position and attitude are unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws
+/// BadInput if no pose is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 /// Returns the rotation vector of `q`, with an angle of at most pi.

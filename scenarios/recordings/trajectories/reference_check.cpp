@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Limits of the rotation difference, as fractions of the rotation: a larger difference than kContradicts contradicts
-/// the gyro, a smaller difference than kReferenceAgrees agrees.
+/// kContradicts and kReferenceAgrees limit the rotation difference as a fraction of the rotation: a larger difference
+/// contradicts the gyro, a smaller one agrees.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
 /// A difference beyond kExplained is a fault of the file if another order or direction of the quaternions leaves less
 /// than the fraction kExplanationLeaves of the difference.
@@ -21,8 +21,8 @@ constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// In valid recordings, filters of the IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// Returns the candidate frames with the stated frame first, so that poses that fit the stated frame are never assigned
-/// to another frame.
+/// Returns the candidate frames with the stated frame first, so that poses that fit this frame are never assigned to
+/// another frame.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
@@ -37,7 +37,7 @@ std::string share_text(double share) {
   return fmt::format("{:.0f} %", 100.0 * share);
 }
 
-/// Describes the fault of the file and the correction.
+/// Describes the fault of a pose file and its correction.
 std::string remedy(QuaternionConvention written, double delay_s) {
   std::string out;
   if (written == QuaternionConvention::w_first || written == QuaternionConvention::w_first_inverse)
@@ -98,7 +98,7 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
                               "in first position");
 }
 
-/// Returns true if the reference differs from the gyro only by a delay, which may be accepted.
+/// Returns whether the reference differs from the gyro only by a delay, which may be accepted.
 bool fits_as_stated(const TurningCheck& check) {
   const TurningFit& fit = check.reading.likely();
   return fit.written == QuaternionConvention::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;

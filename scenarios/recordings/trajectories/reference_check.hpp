@@ -8,7 +8,8 @@
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "sim/recording.hpp"
 
-/// Checks whether reference poses may become the truth of a recording. Used only within scenarios/recordings.
+/// reference_check.hpp checks whether reference poses may become the truth of a recording. Used only within
+/// scenarios/recordings.
 namespace tumble::scenarios {
 
 /// Compares the rotations of a reference with the rotations that the primary IMU's gyro measures (turning.hpp).

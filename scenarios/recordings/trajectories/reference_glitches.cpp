@@ -47,7 +47,7 @@ double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdi
   return *middle;
 }
 
-/// Returns the first and last step of each jump.
+/// Returns the first and last step of each jump of the attitude.
 std::vector<std::array<std::size_t, 2>> find_leaps(const std::vector<double>& rates, double& fastest_rad_s) {
   std::vector<std::array<std::size_t, 2>> leaps;
   for (std::size_t k = 0; k < rates.size(); ++k) {

@@ -64,7 +64,7 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
     return fmt::format("the quaternion's norm is {:f}; it must be 1 within 1 %", norm);
-  // keep quaternions that are normalised up to rounding
+  // quaternions that are normalised up to rounding stay unchanged
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(

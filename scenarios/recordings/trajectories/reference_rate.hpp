@@ -6,7 +6,8 @@
 
 #include "scenarios/recordings/trajectories/reference.hpp"
 
-/// Computes angular rates from the attitudes of an optical reference. Used only within scenarios/recordings.
+/// reference_rate.hpp computes angular rates from the attitudes of an optical reference. Used only within
+/// scenarios/recordings.
 namespace tumble::scenarios {
 
 /// kRateWindow_ns is half of the time window for differentiating attitudes. kRateSteps is the minimum half window in
@@ -19,7 +20,7 @@ inline constexpr double kRateSteps = 2.0;
 /// rotation vectors, relative to the nearest attitude, of all poses in the window (at least two median steps). The rate
 /// is the derivative of the parabola at the requested time. The rate is NaN if the window has a gap (2.5 median steps),
 /// fewer than three poses, or no pose on one side. A third derivative j of the angle gives a bias of about j h^2 / 10
-/// for a window of +-h: 1.4 % at 20 ms and 3 Hz. O(N).
+/// for a window of +-h: 1.4 % at 20 ms and 3 Hz. Cost: O(N).
 std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& poses,
                                              std::span<const std::int64_t> times_ns);
 

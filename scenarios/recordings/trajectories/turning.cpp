@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kTurnShortest_ns = 50'000'000, kTurnLongest_ns = 1'000'000'000;
 constexpr std::int64_t kReadingHole_ns = 100'000'000;
 constexpr double kLeast_rad = 0.02, kMost_rad = 2.5;
-/// A pair of attitudes extends until it has rotated by this angle, so that noise of the attitudes is a small fraction
+/// A pair of attitudes extends until it has rotated by kEnough_rad, so that noise of the attitudes is a small fraction
 /// of the rotation.
 constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
@@ -28,12 +28,12 @@ constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
 /// A delay of kShown_s is detectable if it multiplies the rotation difference by kShows.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// Other interpretations are considered only if the attitudes as stated differ from the gyro by less than this
-/// fraction.
+/// Other interpretations are considered only if the attitudes as stated differ from the gyro by less than
+/// kAgreesAsStated, a fraction of the rotation.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 
-/// Integrates the gyro's rotation since the first sample.
+/// GyroIntegral integrates the gyro's rotation since the first sample.
 class GyroIntegral {
  public:
   explicit GyroIntegral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -49,7 +49,7 @@ class GyroIntegral {
     }
   }
 
-  /// Returns empty beyond the readings, across a gap, or if a reading is saturated.
+  /// Returns nothing beyond the readings, across a gap, or if a reading is saturated.
   std::optional<Eigen::Quaterniond> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const std::size_t first = sample_at(from_ns), last = sample_at(to_ns);
     if (last == imu_.time_ns.size() || from_ns < imu_.time_ns.front()) return std::nullopt;
@@ -58,7 +58,7 @@ class GyroIntegral {
   }
 
  private:
-  /// Returns the sample whose averaging window contains the instant: the first sample that is not earlier.
+  /// Returns the sample whose averaging window contains `time_ns`: the first sample that is not earlier.
   std::size_t sample_at(std::int64_t time_ns) const {
     return static_cast<std::size_t>(std::ranges::lower_bound(imu_.time_ns, time_ns) - imu_.time_ns.begin());
   }
@@ -79,8 +79,8 @@ double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return 2.0 * std::acos(std::min(std::abs(a.dot(b)), 1.0));
 }
 
-/// Returns a pair from `first` to the first attitude with sufficient rotation, else to the last attitude within the
-/// time limit; empty if the rotation is too small or too large or the attitudes are too close in time.
+/// Returns a pair from `first` to the first attitude with sufficient rotation, otherwise to the last attitude within
+/// the time limit.
 std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, std::size_t first) {
   std::optional<AttitudePair> out;
   for (std::size_t k = first + 1; k < attitudes.size(); ++k) {
@@ -95,8 +95,8 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs begin 50 ms apart and may overlap. Pairs with too little rotation only count if there are few other pairs,
-/// because pairs at rest show only the noise of the attitudes.
+/// Pairs of attitudes begin 50 ms apart and may overlap. Pairs with too little rotation only count if there are few
+/// other pairs, because pairs at rest show only the noise of the attitudes.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -122,7 +122,7 @@ Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, QuaternionConvention
                                                                                                       : q;
 }
 
-/// Compares the rotations of attitude pairs under one interpretation with the gyro's rotations over these pairs.
+/// TurningComparison compares the rotations of attitude pairs under one interpretation with the gyro's rotations.
 class TurningComparison {
  public:
   TurningComparison(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
@@ -158,8 +158,7 @@ class TurningComparison {
             share([&](const Measured& said) { return angle_rad(each.seen_I[said.pair], said.turn); })};
   }
 
-  /// Returns the best fit over all interpretations; among equal fits, the first fit, which is the interpretation as
-  /// stated.
+  /// Returns the best fit over all interpretations; among equal fits, the interpretation as stated comes first.
   TurningFit best() const {
     TurningFit out = fit(0);
     for (std::size_t k = 1; k < readings_.size(); ++k) {
@@ -254,7 +253,7 @@ void take_better(const Fit& found, Fit& best) {
   if (found.difference < best.difference) best = found;
 }
 
-/// Searches coarsely over all delays, then finely around the best coarse delay.
+/// Searches the best delay coarsely over all delays, then finely around the best coarse delay.
 template <class Fit, class FitNow>
 void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t least, FitNow&& fit_now, Fit& best) {
   const auto search = [&](double centre_s, double reach_s, double step_s) {
@@ -278,7 +277,7 @@ double uprightness(const TurningComparison& comparison, const sim::ImuRecord& im
 }
 
 /// If the rotations do not determine the order and direction of the quaternions, gravity may decide. The comparison
-/// uses the delay of `fit`.
+/// with gravity uses the delay of `fit`.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);
@@ -334,7 +333,7 @@ TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::
   compare_with_gravity(comparison, imu, out);
   prefer_upright(comparison, imu, out.reading.undelayed);
   out.reading.delayed = out.reading.undelayed;
-  // a delay that leaves few of the pairs fits these pairs by chance
+  // a delay that leaves few of the pairs fits them by chance
   const std::size_t least = std::max(kDelayPairsMin, out.pairs / 2);
   if (delay_max_s <= 0.0 || out.pairs < least) return out;
   out.clock_known = clock_shows(comparison, out.stated.difference, least);

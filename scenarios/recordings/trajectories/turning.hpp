@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// Compares attitudes with a gyro. A pose file does not state the frame of its poses, the order and direction of its
-/// quaternions, or its clock. The gyro reveals frame, quaternion convention and clock.
+/// turning.hpp compares attitudes with a gyro. A pose file does not state the frame of its poses, the order and
+/// direction of its quaternions, or its clock. The gyro reveals frame, quaternion convention and clock.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -21,17 +21,17 @@ struct TimedAttitude {
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// A frame that the attitudes of a pose file may describe.
+/// CandidateFrame is a frame that the attitudes of a pose file may describe.
 struct CandidateFrame {
   std::string name;
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< rotates IMU coordinates to the frame
 };
 
-/// Possible meanings of the quaternions in a pose file.
+/// QuaternionConvention lists the possible meanings of the quaternions in a pose file.
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
-/// Difference between the gyro and the attitudes under one interpretation. The difference is the median rotation
-/// difference over pairs of attitudes, as a fraction of the median rotation.
+/// TurningFit is the difference between the gyro and the attitudes under one interpretation. The difference between
+/// gyro and attitudes is the median rotation difference over pairs of attitudes, as a fraction of the median rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
@@ -39,13 +39,13 @@ struct TurningFit {
   double difference = 0.0;
 };
 
-/// Mounting of the IMU in the frame that fits best, with attitudes as stated in the file.
+/// MountingFit is the mounting of the IMU in the frame that fits best, with attitudes as stated in the file.
 struct MountingFit {
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();
   double delay_s = 0.0, difference = 0.0;
 };
 
-/// The best fit without a delay and the best fit with a delay.
+/// DelayedFit contains the best fit without a delay and the best fit with a delay.
 template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
@@ -62,8 +62,8 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< a delay of 0.3 s would be detected
   bool order_known = false;  ///< another order or direction of the quaternions would be detected
-  /// Another order or direction of the quaternions that agrees equally well with the gyro and makes gravity vertical.
-  /// Empty if the stated order makes gravity vertical.
+  /// Another order or direction of the quaternions that agrees equally well with the gyro and makes gravity vertical;
+  /// empty if the stated order does.
   std::optional<TurningFit> upright;
 };
 
@@ -75,12 +75,13 @@ inline bool is_delayed(double delay_s) {
 }
 /// Returns "0.300 s too late" or "0.300 s too early".
 std::string delay_text(double delay_s);
-/// Returns the fault and its correction: "stamps are 0.300 s too late, at most 0.15 s is accepted: subtract ...".
+/// Returns the fault of a delay and its correction: "stamps are 0.300 s too late, at most 0.15 s is accepted: subtract
+/// ...".
 std::string delay_remedy(double delay_s);
 
 /// Compares rotations between attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations that the gyro
-/// measures. The gyro's rotation is the product of exponentials of unsaturated samples without a gap above 0.1 s. Uses
-/// at most 400 pairs, spread evenly over the recording; fewer than 6 pairs give no result.
+/// measures. The gyro's rotation is the product of exponentials of unsaturated samples without a gap above 0.1 s. The
+/// function uses at most 400 pairs, spread evenly over the recording; fewer than 6 pairs give no result.
 ///
 /// @param frames       Candidate frames; the first candidate is the stated frame.
 /// @param delay_max_s  Largest delay in either direction; searched in steps of 20 ms, then of 2 ms. Fewer than 20 pairs

@@ -3,8 +3,8 @@
 
 namespace tumble::sim {
 
-/// A slope that falls along +x between a level top at height 0 and a level run-out, with two rounded corners
-/// (softplus).
+/// SlopeProfile is a slope that falls along +x between a level top at height 0 and a level run-out, with two rounded
+/// corners (softplus).
 struct SlopeProfile {
   double edge_x_m = 0.0;     ///< upper corner
   double slope_rad = 0.6;    ///< steepness, below a right angle
@@ -15,8 +15,8 @@ struct SlopeProfile {
   double height_m(double x_m) const;
 };
 
-/// Describes terraces below a level top at height 0. All drops have equal height and are vertical within `face_m`. A
-/// sloping ledge follows each drop, and a level run-out follows the last ledge.
+/// LedgeProfile describes terraces below a level top at height 0. All drops of the terraces have equal height and are
+/// vertical within `face_m`. A sloping ledge follows each drop, and a level run-out follows the last ledge.
 struct LedgeProfile {
   double edge_x_m = 0.0;  ///< first drop
   int drops = 2;          ///< at least 1

@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// A horizontal rectangle along the axes.
+/// Rectangle is a horizontal rectangle along the axes.
 struct Rectangle {
   double low_x_m = 0.0, high_x_m = 0.0, low_y_m = 0.0, high_y_m = 0.0;
 };
@@ -19,8 +19,8 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// Draws uniform positions from the area until `fits` accepts a position. Throws InvalidSituation with `what` after
-/// 1000 rejections.
+/// Draws uniform positions from the area until `fits` accepts one. Throws InvalidSituation with `what` after 1000
+/// rejections.
 template <typename Fits>
 Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;

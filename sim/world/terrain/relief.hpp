@@ -8,9 +8,9 @@
 
 namespace tumble::sim {
 
-/// Spectrum of a rough surface. The power per wave number E(k), integrated over directions, is proportional to
-/// k^-exponent for wavelengths within [shortest_m, longest_m], and zero outside. The spectrum of a cut through the
-/// surface has an equal exponent.
+/// ReliefSpectrum is the spectrum of a rough surface. The power per wave number E(k), integrated over directions, is
+/// proportional to k^-exponent for wavelengths within [shortest_m, longest_m], and zero outside. The spectrum of a cut
+/// through the surface has an equal exponent.
 struct ReliefSpectrum {
   double rms_m = 0.1;       ///< root mean square of the height over phases, at least 0
   double shortest_m = 1.0;  ///< above 0
@@ -19,8 +19,8 @@ struct ReliefSpectrum {
   bool ruled = false;       ///< true: the height depends only on x, so that every contour line is straight
 };
 
-/// Relief of a stated spectrum: a sum of plane waves of random phase and direction with log-uniform wavelengths. The
-/// random numbers of the stream determine the relief.
+/// Relief is a surface of a stated spectrum: a sum of plane waves of random phase and direction with log-uniform
+/// wavelengths. The random numbers of the stream determine the relief.
 class Relief {
  public:
   Relief(Stream& stream, const ReliefSpectrum& spectrum);

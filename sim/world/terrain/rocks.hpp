@@ -10,7 +10,7 @@
 
 namespace tumble::sim {
 
-/// Positions and sizes of rocks.
+/// RockField describes the positions and sizes of rocks.
 struct RockField {
   int count = 0;
   double largest_m = 0.3;       ///< largest half axis
@@ -20,7 +20,7 @@ struct RockField {
   Disc clear;  ///< no rock reaches into this disc
 };
 
-/// A rock: an ellipsoid with more than a third below the ground.
+/// Rock is an ellipsoid with more than a third below the ground.
 struct Rock {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_axes_m;
@@ -28,7 +28,7 @@ struct Rock {
 };
 
 /// Places rocks on the ground, uniformly over the area; rocks may overlap. Throws InvalidSituation if the clear disc
-/// leaves no room.
+/// leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
 /// Adds the rocks as surfaces "rock_0", "rock_1", ...
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);

@@ -7,7 +7,7 @@
 
 namespace tumble::sim {
 
-/// A straight flight of steps that descends along +x from a level top at height 0.
+/// Flight is a straight flight of steps that descends along +x from a level top at height 0.
 struct Flight {
   double edge_x_m = 0.0;  ///< edge of the top: the first riser
   int steps = 12;         ///< number of risers, at least 1
@@ -20,7 +20,7 @@ struct Flight {
   double length_m() const { return steps * tread_m; }
 };
 
-/// Box of step i = 1 .. steps. The top of step i is i risers below the top of the flight; the top of the last step is
+/// Step is the box of step i = 1 .. steps. The top of step i is i risers below the top of the flight; the last step is
 /// level with the ground below the flight.
 struct Step {
   Eigen::Vector3d centre_W_m;

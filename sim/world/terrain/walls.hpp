@@ -7,7 +7,7 @@
 
 namespace tumble::sim {
 
-/// A vertical block on the ground, for a wall or a house.
+/// Block is a vertical block on the ground, for a wall or a house.
 struct Block {
   double x_m = 0.0, y_m = 0.0;
   double half_x_m = 1.0, half_y_m = 1.0;  ///< along its own axes

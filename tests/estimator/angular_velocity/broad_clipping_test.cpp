@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A real recording without tumbles must not be made worse: trials of BROAD (a sensor moved by hand) where they are at
-// hand, and their stand-in everywhere, of which the gyro
-// is clipped at a third of its peak. A hand-held sensor is not in flight, so physics gives little back: the bounds and
-// the smoothness of the motion, no more.
+// A real recording without tumbles must not become worse: BROAD trials (a hand-moved sensor) if available, and a
+// synthetic replacement, with the gyro clipped at a third of its peak. For a hand-held sensor, only the bounds and the
+// smoothness of the motion recover clipped rates.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -97,7 +96,8 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
                 GetParam().c_str(), name, e.median, e.mean, e.largest, f.median, f.mean);
   }
 
-  // the rail is found without anybody stating it, down to a third of the slowest peak, and none where nothing clips
+  // the saturation level is found without a stated range, down to a third of the slowest peak, and no level where
+  // nothing clips
   double found = 0.0;
   for (int j = 0; j < 3; ++j) found = std::max(found, report.rail[static_cast<std::size_t>(j)].value_or(0.0));
   EXPECT_NEAR(found, trial.rail_rad_s, 1e-9);
@@ -106,12 +106,12 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   for (const ImuSample& sample : recorded.samples) rails.observe(sample, whole);
   for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(whole, c).has_value()) << c;
 
-  // the noise of that gyro, three axes: what "worse" must exceed
+  // the noise of this gyro on three axes, which a worse result must exceed
   const double noise = params.model.gyro_noise_density * std::sqrt(3.0 * 285.714);
   EXPECT_LT(clipped.median, raw_clipped.median + noise);
   EXPECT_LT(clipped.mean, raw_clipped.mean + noise);
   EXPECT_LT(clipped.largest, 1.5 * raw_clipped.largest);
-  // against the reading itself: the bias that is taken away (0.01 rad/s, as the prior has it) and the noise
+  // compared with the reading: the removed bias (0.01 rad/s, as in the prior) and the noise
   EXPECT_LT(free.median, 0.01 + noise);
   EXPECT_LT(free.mean, 0.02 + noise);
 }

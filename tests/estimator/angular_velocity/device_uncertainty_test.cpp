@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a stream holds open of a device's errors: the mixture against closed forms, and a RateStream of a device whose
-// errors it does not correct for and may not be silent about.
+// Tests how a stream treats uncertain device errors: the mixture against closed forms, and a RateStream of a device
+// whose errors are not corrected.
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
 #include <gtest/gtest.h>
@@ -43,8 +43,8 @@ TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
   EXPECT_EQ((posterior.covariance - SensorErrors::Matrix(posterior.covariance.diagonal().asDiagonal())).norm(), 0.0);
 }
 
-// One number alone: odds, mean and variance by hand. Of what samples say of the odds three tenths are believed, of
-// where the errors lie three hundredths.
+// With one unknown, odds, mean and variance follow by hand. The information of samples has weight 0.3 for the odds, and
+// 0.03 for the errors.
 TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
   const SensorErrorPriors sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
@@ -120,8 +120,8 @@ void add(const TumbleRecording& recording, const RateStream::Params& params, Hel
   }
 }
 
-// Scales 1 % off and an accelerometer that says what it said a sample before: none of it corrected for. A device of
-// which the sheet is believed states too little.
+// The device has scales that are 1 % wrong and an accelerometer that is one sample late, without correction. Negative
+// control: if the data sheet is accepted, the stated uncertainty is too small.
 TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
   Held consumer, believed, as_stated;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {

@@ -14,7 +14,7 @@
 
 namespace tumble {
 
-/// Rows along which the elements of a drawn device sense: 1 on the diagonal, `sigma` beside it.
+/// Returns the sensing directions of a drawn device: 1 on the diagonal, standard deviation `sigma` off the diagonal.
 inline Eigen::Matrix3d drawn_rows(std::uint64_t seed, double sigma) {
   oracles::Gaussian noise(seed + 7000);
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
@@ -24,7 +24,7 @@ inline Eigen::Matrix3d drawn_rows(std::uint64_t seed, double sigma) {
   return rows;
 }
 
-/// A tumble of a gyro with such elements; without any tilt when `sigma` is 0.
+/// Returns a tumble of a gyro with these elements; `sigma` 0 means no tilt.
 inline TumbleRecording tilted_tumble(std::uint64_t seed, double sigma) {
   TumbleOptions options;
   options.seed = seed;
@@ -32,8 +32,8 @@ inline TumbleRecording tilted_tumble(std::uint64_t seed, double sigma) {
   return make_tumble(options);
 }
 
-/// Over several drawn devices and tumbles: errors at samples in which an element hides something, and what was called
-/// clipped.
+/// Pool contains, over several devices and tumbles, errors at samples with a saturated element, and the samples that
+/// were called clipped.
 struct Pool {
   std::vector<double> raw, ours, free_axes;
   int within = 0, axes = 0, deep = 0, found = 0, called = 0, right = 0;
@@ -46,7 +46,7 @@ struct Pool {
         deep += is_deep;
         found += is_deep && clipped;
         called += clipped;
-        // at the rail within the noise counts as there
+        // a reading at the saturation level within the noise counts as saturated
         right += clipped && (tumble.hidden[k][j] != 0.0 || std::abs(tumble.samples[k].angular_velocity_rad_s[j]) > 9.0);
       }
       if (tumble.hidden[k].isZero()) continue;

@@ -26,8 +26,8 @@ ImuSample flight_sample(int k, const Eigen::Vector3d& rate_rad_s, const Eigen::V
   return out;
 }
 
-/// A body of three unlike moments that flies without torque for a second (Euler's equations, small steps) after half a
-/// second of rest, with a sheet's noise.
+/// Returns a body with three different moments that flies without torque for a second (Euler's equations, small steps)
+/// after half a second of rest, with data sheet noise.
 std::vector<ImuSample> thrown_flight() {
   constexpr int kSteps = 100;
   const Eigen::Vector3d inertia(2.2, 1.6, 1.0);
@@ -53,7 +53,8 @@ std::vector<ImuSample> thrown_flight() {
   return out;
 }
 
-/// Swung about a hand, gravity left out, at 4 rad/s and more: the arm from the hand is not that from the mass centre.
+/// Returns a body that a hand swings, without gravity, at 4 rad/s or more; its lever arm from the hand differs from
+/// that to the mass centre.
 std::vector<ImuSample> swung(const Eigen::Vector3d& arm_m) {
   std::vector<ImuSample> out;
   for (int k = 0; k < 150; ++k) {
@@ -109,7 +110,7 @@ TEST(FlightSignCheck, EachOtherSensorIsToldByItsName) {
     EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, 100.0, harm), name);
 }
 
-// The rate of the axis that clips comes of the force, and what is left of the force tells the sense.
+// The force determines the rate of the clipped axis, and the remaining force determines the sign.
 TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
   constexpr double kRange_rad_s = 6.5;
   std::size_t clipped = 0;
@@ -124,8 +125,8 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
   }
 }
 
-// Swung about a point on the other side of the mass centre, or about one with x on the other side, a body feels what a
-// mirrored sensor would in flight.
+// A body that is swung about a point on the other side of the mass centre feels what a mirrored sensor would feel in
+// flight.
 TEST(FlightSignCheck, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
   const auto nothing = [](ImuSample&) {};
   const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kSampling_s = 0.01, kGyroRail_rad_s = 5.0, kAccelRail_m_s2 = 40.0;
 
-/// Rests for two seconds, turns and is pushed for four, rests for four: readings with noise, clipped at the rails.
+/// Returns a body that rests for two seconds, turns and is pushed for four, and rests for four: readings with noise,
+/// clipped.
 std::vector<ImuSample> moving_body() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
@@ -90,7 +91,7 @@ TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel y"), std::string::npos);
 }
 
-// The body lies still at the end, and the axis goes on to read its rail: no body rests that turns so.
+// The body rests at the end while the axis still reads its saturation level, which no body at rest does.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
     std::vector<ImuSample> samples = clipped_samples(moving_body());
@@ -100,7 +101,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
     ASSERT_NE(at_rail, samples.end());
     for (auto sample = at_rail; sample != samples.end(); ++sample) sample->angular_velocity_rad_s.z() = kGyroRail_rad_s;
     EXPECT_NE(watch_axes(samples, params).first.find("gyro z"), std::string::npos);
-    // and so from the beginning
+    // the axis is frozen from the beginning
     for (ImuSample& sample : samples) sample.angular_velocity_rad_s.z() = -kGyroRail_rad_s;
     EXPECT_NE(watch_axes(samples, params).first.find("gyro z"), std::string::npos);
   }
@@ -109,7 +110,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel x"), std::string::npos);
 }
 
-// A pendulum never lies still: what its axis goes on to read is its rail, and no swing lasts so long.
+// A pendulum never rests; its axis keeps reading the saturation level for longer than any swing.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
   const auto swinging = [](double railed_s, double reading = kGyroRail_rad_s) {
     std::mt19937 random(2);
@@ -135,7 +136,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
       << "beside axes that are held";
 }
 
-// The element meets its rail and is flagged, while what is read out stays at another value.
+// The element is flagged at its saturation level, while the output stays at another value.
 TEST(FrozenAxes, AFlagMakesNoRailOfAReadingThatIsFarFromIt) {
   std::vector<ImuSample> samples = clipped_samples(moving_body());
   for (std::size_t k = 205; k < samples.size(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A gyro that is slower than its log: its readings are means over its own period, and old when they are said.
+// The gyro is slower than its log, so its readings are means over its own period and are old when they are logged.
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
 #include <gtest/gtest.h>
@@ -19,13 +19,13 @@ using Eigen::Vector3d;
 
 constexpr double kPeriod_s = 0.01;
 
-/// Rates with a bend of `jerk` that never changes, read every `period` samples of the log, the mean over that time;
-/// each reading is taken half a sample before the log says it first.
+/// Bent is a rate with constant jerk, read every `period` samples of the log as a mean; each reading is taken half a
+/// sample before it is logged.
 struct Bent {
   double jerk_rad_s3 = 40.0;
 
   double rate(double s) const { return 1.0 + 2.0 * s + 0.5 * jerk_rad_s3 * s * s; }
-  /// Over a window that ends at `end_s`.
+  /// Returns the mean over a window that ends at `end_s`.
   double mean(double end_s, double window_s) const {
     return rate(end_s - 0.5 * window_s) + jerk_rad_s3 * window_s * window_s / 24.0;
   }
@@ -45,8 +45,8 @@ struct Bent {
   }
 };
 
-// What is asked for is the mean over the sample's own window. A cubic has the parabola exactly but for what the mean
-// over the longer window adds to it, which is stated as a deviation.
+// The requested rate is the mean over the sample's own window. A cubic reproduces a parabola exactly, except for the
+// effect of the longer window, which is stated as a deviation.
 TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
   const Bent motion;
   for (const std::size_t period : {2u, 3u, 4u}) {
@@ -59,7 +59,7 @@ TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
       const double truth = motion.mean(kPeriod_s * static_cast<double>(k), kPeriod_s);
       EXPECT_NEAR(found->rate_rad_s.x() - truth, hidden, 1e-9) << k;
       EXPECT_GT(found->variance_rad2_s2.x(), hidden * hidden);
-      // the reading itself is as late as its window is
+      // the reading itself is as late as its window
       EXPECT_GT(std::abs(window[k].observation.sample.angular_velocity_rad_s.x() - truth), 4.0 * hidden) << k;
     }
   }
@@ -76,8 +76,8 @@ TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has its own
 }
 
-// Forces along a line come back at the middle of the sample's own window, but for what the search leaves of the clock;
-// as said they are later by the reading's age and by its longer window.
+// Interpolated forces along a line are correct at the middle of the sample's window, up to the error of the clock;
+// logged forces are later by the reading's age and longer window.
 TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   constexpr std::size_t kEach = 4;
   constexpr double kSlope_m_s3 = 10.0;
@@ -90,7 +90,7 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has its own
   all = samples;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    // taken half a sample before it is said; the middle of a window of half the period
+    // taken half a sample before it is logged, at the middle of a window of half the period
     const double taken = static_cast<double>(k - k % kEach) - 0.5, middle = taken - 0.25 * kEach;
     samples[k].specific_force_m_s2.x() = kSlope_m_s3 * kPeriod_s * middle;
   }
@@ -103,7 +103,7 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   }
 }
 
-/// A tumble of 100 Hz whose gyro gives the mean over each `window` thousandths of a second.
+/// Returns a tumble at 100 Hz whose gyro gives the mean over each `window` thousandths of a second.
 TumbleRecording slow_gyro(std::uint64_t seed, std::size_t window) {
   constexpr std::size_t kFine = 10;
   TumbleOptions options;
@@ -131,7 +131,7 @@ TumbleRecording slow_gyro(std::uint64_t seed, std::size_t window) {
   return out;
 }
 
-/// How late the rates of samples without a clipped axis are: least squares over the true acceleration.
+/// Returns how late the rates of samples without a clipped axis are: least squares over the true acceleration.
 double late_s(const TumbleRecording& recording, const std::vector<RateState>& rates) {
   double product = 0.0, square = 0.0;
   for (std::size_t k = 1; k + 1 < rates.size(); ++k) {
@@ -143,9 +143,9 @@ double late_s(const TumbleRecording& recording, const std::vector<RateState>& ra
   return product / square;
 }
 
-// Means over tumbles: what is open of the gyro's clock makes one late or early by as much where an impact outweighs all
-// others. Measured 11.1 ms as read, 0.9 of the batch, 2.1 live: until it has seen 30 samples in motion a stream does
-// not know that readings repeat, and the push lies there.
+// The test averages over tumbles, because one dominant impact makes the remaining clock error of a single tumble early
+// or late. The measured delay is 11.1 ms as read, 0.9 ms in batch and 2.1 ms live, because a stream detects repetitions
+// only after 30 moving samples.
 TEST(HeldRates, BatchAndStreamAreInTime) {
   double read = 0.0, batch = 0.0, live = 0.0;
   constexpr double kTumbles = 8.0;

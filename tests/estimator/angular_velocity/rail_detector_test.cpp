@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// x swings slowly beyond the rail, y stays inside, z is still; noise of an MTi-30
+// x swings slowly beyond the saturation level, y stays below it, z is stationary; noise of an MTi-30
 std::vector<ImuSample> swinging_run(double amplitude, double rail) {
   oracles::Gaussian noise(5);
   std::vector<ImuSample> run(600);
@@ -67,7 +67,7 @@ TEST(RailDetector, NoisyPeaksAreNoPlateau) {
   for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(state, c).has_value()) << c;
 }
 
-// of the swing with the noise and the digits of a device
+// Returns the saturation level found in a swing with the noise and quantisation of a device.
 std::optional<double> rail_of(double amplitude, double rail, double noise_rad_s, double digit_rad_s) {
   oracles::Gaussian noise(7);
   const RailDetector rails({});
@@ -92,7 +92,7 @@ TEST(RailDetector, FindsAPlateauAtAnyLevel) {
   }
 }
 
-// the tops of slow swings are flat in coarse digits, and an axis that stands still is flat all along
+// coarse quantisation makes the tops of slow swings flat, and a stationary axis is flat throughout
 TEST(RailDetector, WhatIsFlatByNatureIsNoPlateau) {
   for (const double amplitude : {0.03, 0.1, 0.5, 0.95}) {
     for (const double digit : {0.0, 1e-3, 5e-3}) {

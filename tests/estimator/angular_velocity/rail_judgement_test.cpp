@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one judgement of rails: accelerometers with tilted elements, other IMUs on the body, families that keep upright
-// rails.
+// Tests the shared judgement of saturation levels: accelerometers with tilted elements, other IMUs on the body, and
+// published methods with axis-aligned levels.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -36,7 +36,7 @@ struct Tumble {
   Matrix3d rows;
 };
 
-// A tumble whose accelerometer clips along tilted elements.
+// Returns a tumble whose accelerometer clips along tilted elements.
 Tumble railed_tumble(std::uint64_t seed, double tilt, double rail_m_s2 = kRail_m_s2) {
   TumbleOptions options;
   options.seed = seed;
@@ -88,14 +88,15 @@ TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
     }
   }
   ASSERT_GT(seen.deep, 300);
-  // measured: 0.864; elements that clip together leave a slope untold, and the plane misses readings elsewhere
+  // measured: 0.864; elements that clip together leave a cross-axis sensitivity undetermined, and the plane misses
+  // readings elsewhere
   EXPECT_GE(seen.found, 0.85 * seen.deep);
   EXPECT_GE(all.right, 0.98 * all.called);
-  // measured: 0.744; the others lie on elements and signs that met their rail in a few samples of impacts
+  // measured: 0.744; the others belong to elements and signs that saturated only in a few samples of impacts
   EXPECT_GE(all.found, 0.7 * all.deep);
 }
 
-// Negative control: what never met a rail has none, rest and gravity included.
+// Negative control: an accelerometer that never saturated has no level, including rest and gravity.
 TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.02, 1e4);
@@ -105,8 +106,8 @@ TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
   }
 }
 
-/// A wand that is swung to and fro about x, beyond its rail: an element without a tilt, whose offset the device takes
-/// off behind it, so that the rails of the two signs differ.
+/// Returns a wand that swings about x beyond its saturation level; the device subtracts the element's offset after
+/// clipping, so the levels of both signs differ.
 std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) {
   constexpr double kSwungRail_rad_s = 7.44;
   oracles::Gaussian noise(5);
@@ -186,7 +187,7 @@ ErrorsAtRails errors_with(Params params, double distance_min) {
 
 TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
   ErrorsAtRails ours = errors_with(with_lever_arm<RateSmoother::Params>(), 15.0);
-  // negative control: the same smoother that knows no planes believes forces that are none
+  // negative control: the same smoother without planes uses wrong forces
   ErrorsAtRails blind = errors_with(with_lever_arm<RateSmoother::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, within 0.990 and 0.938
@@ -210,7 +211,7 @@ TumbleRecording tilted_gyro() {
   return make_tumble(options);
 }
 
-// What an auxiliary IMU with tilted elements says of free ones is true while another clips; axis by axis it is not.
+// An auxiliary IMU with tilted elements is correct along its free elements while another clips, but not axis by axis.
 TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found found = ClippingFinder({}).find(tumble.samples);
@@ -237,7 +238,7 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code, ErrorCode::too_few);
 }
 
-// Published with the upright rail of each axis, judged by planes on demand.
+// Published methods use the axis-aligned level of each axis, and planes only on request.
 TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
   std::vector<RateState> upright, planes;
@@ -257,13 +258,13 @@ TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   EXPECT_GT(by_planes.found, 0.95 * by_planes.deep);
 }
 
-// The first readings, at rest as a rule, tell the noise however much is forgotten after them.
+// The first readings, usually at rest, determine the noise even if later readings are forgotten.
 TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   for (const int readings_max : {64, 1024}) {
     const StreamingClippingFinder watch({.clipping = {}, .readings_max = readings_max});
     StreamingClippingFinder::State state = watch.start();
     const auto reading = [](int k) {
-      // a slow wobble near one level: none of it is dull
+      // a slow motion near one level, in which every reading is different
       return Vector3d(9.0 + 0.3 * std::sin(0.7 * k) + 1e-6 * k, 0.1 * std::cos(0.3 * k), 1e-3 * k);
     };
     constexpr int kSamples = 3000;
@@ -284,8 +285,8 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   }
 }
 
-// What stands before a segment at a rail, and met the rail in a part of its window, is told by the sample after it.
-// With the rails learnt the stream judges as the batch does.
+// The next sample reveals that the sample before a saturated segment was partly saturated. With calibrated saturation
+// levels, the stream judges like the batch.
 TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found batch = ClippingFinder({}).find(tumble.samples);

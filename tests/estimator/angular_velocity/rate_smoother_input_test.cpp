@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bad and odd input of the batch smoother: a status, or a finite and bounded answer.
+// Tests bad and unusual input of the batch smoother, which returns a status or a finite and bounded answer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -108,7 +108,7 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
   TumbleRecording tumble = make_tumble(options);
   std::size_t flips = 0;
   for (std::size_t k = 1; k < tumble.samples.size(); ++k) {
-    // every third reading at the rail after another one overflows
+    // every third reading at the saturation level, after another such reading, overflows
     Vector3d& reading = tumble.samples[k].angular_velocity_rad_s;
     for (int j = 0; j < 3; ++j) {
       const double before = tumble.samples[k - 1].angular_velocity_rad_s[j];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Accuracy, covariance and symmetry of the batch smoother on synthetic tumbles.
+// Tests accuracy, covariance and symmetry of the batch smoother on synthetic tumbles.
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 #include <gtest/gtest.h>
@@ -101,13 +101,13 @@ TEST(RateSmoother, CoverageInFlight) {
   }
   ASSERT_GT(inside, 1500u);
   ASSERT_GT(inside_impact, 50u);
-  // 99.73 % are expected; neighbouring samples err together, so the count is worth about a tenth of its size
+  // 99.73 % are expected; errors of neighbouring samples are correlated, so the count is worth about a tenth of its
+  // size
   EXPECT_GT(static_cast<double>(inside) / static_cast<double>(inside + outside), 0.99);
-  // measured 0.05: the model grants a real device a drifting clock, drag, a joint that gives; nothing of it is drawn
-  // here
+  // measured 0.05: the model allows for a drifting clock, drag and a loose joint, which this simulation lacks
   EXPECT_GT(normalised / static_cast<double>(inside + outside), 0.02);
   EXPECT_LT(normalised / static_cast<double>(inside + outside), 1.5);
-  // no torque or force of an impact is modelled: 95 % of the axes measured
+  // torque and force of an impact are not modelled: measured 95 % of the axes
   EXPECT_GT(static_cast<double>(inside_impact) / static_cast<double>(inside_impact + outside_impact), 0.9);
 }
 
@@ -116,8 +116,8 @@ struct Consistency {
   double normalised = 0.0;  // mean squared error over reported variance
 };
 
-// Of clipped axes in flight, sensors with matrices of scale and misalignment of `sigma` an entry, the smoother told
-// `stated`.
+// Returns the consistency at clipped axes in flight, for sensors with scale and misalignment errors `sigma` per entry,
+// when the smoother assumes `stated`.
 Consistency consistency_with_matrices(double sigma, double stated) {
   std::size_t inside = 0, all = 0;
   double normalised = 0.0;
@@ -153,11 +153,11 @@ TEST(RateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
   constexpr double kSigma = 3e-3;
   const Consistency honest = consistency_with_matrices(kSigma, kSigma);
   EXPECT_GT(honest.coverage, 0.99);
-  // the same sensors taken for perfect ones, or for much worse ones: the check sees it
+  // if the same sensors are assumed perfect or much worse, the check detects it
   const Consistency perfect = consistency_with_matrices(kSigma, 0.0),
                     rough = consistency_with_matrices(kSigma, 10.0 * kSigma);
   EXPECT_LT(perfect.coverage, 0.95);
-  // twenty draws of matrices: 1, but for what each run learns of its own; measured 0.62, 4.1, 0.01
+  // twenty draws of matrices: 1, except for what each run calibrates; measured 0.62, 4.1, 0.01
   EXPECT_GT(honest.normalised, 0.4);
   EXPECT_LT(honest.normalised, 1.5);
   EXPECT_GT(perfect.normalised, 1.5);
@@ -199,7 +199,8 @@ TEST(RateSmoother, IsEquivariantToARotatedMounting) {
   ASSERT_TRUE(RateSmoother(params).estimate(turned.samples, states, report).ok());
   std::size_t same = 0;
   for (std::size_t k = 0; k < states.size(); ++k) {
-    // the start goes by the published method, which treats the axes in order: only its solution is compared
+    // the initial values come from the published method, which treats the axes in order, so only its solution is
+    // compared
     same += (states[k].w_WI_I_rad_s - R * run.states[k].w_WI_I_rad_s).norm() < 1e-3;
   }
   EXPECT_GT(static_cast<double>(same), 0.97 * static_cast<double>(states.size()));

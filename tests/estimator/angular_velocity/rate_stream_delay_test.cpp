@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stream whose accelerometer speaks later than its gyro: the delay told by strokes against closed forms and against
-// the batch, taken, carried on, and not found where there is none.
+// Tests a stream whose accelerometer is later than its gyro: the delay is estimated from impacts against closed forms
+// and the batch, applied, saved, and not found where there is none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ using Eigen::Vector3d;
 
 constexpr double kStrokePeriod_s = 0.01;
 
-// Struck every tenth interval, the accelerometer `late` eighths of a sample behind: turns that go with the force.
+// Returns sums with an impact every tenth interval and an accelerometer `late` eighths of a sample late; the rotation
+// follows the force.
 ImpactSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0) {
   ImpactSums out;
   for (int k = 0; k < intervals; ++k) {
@@ -38,7 +39,7 @@ ImpactSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0
   return out;
 }
 
-// The accelerometer says what it said `samples` before, or, of a negative number, what it will say; from `from` on.
+// Delays the accelerometer by `samples` from sample `from` on; a negative number makes it early.
 void delay_force(int samples, std::size_t from, TumbleRecording& recording) {
   const std::vector<ImuSample> in_time = recording.samples;
   const auto size = static_cast<std::ptrdiff_t>(in_time.size());
@@ -80,14 +81,14 @@ TEST(ImpactSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
   EXPECT_EQ(struck_every_tenth(8, 200, 10.0).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
       << "never without a force";
   EXPECT_EQ(struck_every_tenth(36, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
-  // what is forgotten counts for less of each, and for the same delay
+  // forgotten readings have less weight, for an equal delay
   ImpactSums half = struck_every_tenth(8, 200);
   half.decay(0.5);
   EXPECT_NEAR(half.intervals, 100.0, 1e-12);
   EXPECT_NEAR(half.estimate_delay(kStrokePeriod_s, kStrokePeriod_s).delay_s, kStrokePeriod_s, 1e-9);
 }
 
-// Two Gaussians and their shares, by hand.
+// Two Gaussians and their fractions are computed by hand.
 TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
   const SensorErrorPriors sizes;
   const double sigma_s = 1.5e-3;
@@ -103,7 +104,7 @@ TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
   EXPECT_LT(DeviceUncertainty(sizes, 0.3).data_sheet_odds(6e-3, sigma_s), 0.05);
 }
 
-// One number alone: of what readings say three hundredths are believed, and strokes are entered to be believed in full.
+// With one unknown, readings have weight 0.03, and impacts are entered with full weight.
 TEST(RateStreamDelay, AFurtherDelayIsTheWeightedMean) {
   SensorErrorEvidence told;
   const double of_readings_s = 2e-4, of_strokes_s = 1.5e-3, reach_s = 0.04;
@@ -140,7 +141,7 @@ TEST(RateStreamDelay, IsThatOfTheBatch) {
   EXPECT_GE(found, 4);
 }
 
-// Negative controls: in time, and of a device whose sheet is believed.
+// Negative controls: synchronous sensors, and a device whose data sheet is accepted.
 TEST(RateStreamDelay, IsNotFoundWhereThereIsNone) {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
     const RateStream method(looking()), believes(looking(false));
@@ -157,7 +158,7 @@ TEST(RateStreamDelay, IsNotFoundWhereThereIsNone) {
   }
 }
 
-// A clock that is none: late, and early from the middle on. At the end it is held for what it was last, or for none.
+// The clock changes: late at first, and early from the middle on. At the end, the stream uses the last delay, or none.
 TEST(RateStreamDelay, OneThatChangesItsSignIsFollowedOrDropped) {
   int dropped = 0;
   for (const std::uint64_t seed : {2u, 3u, 5u}) {
@@ -179,7 +180,7 @@ TEST(RateStreamDelay, OneThatChangesItsSignIsFollowedOrDropped) {
   EXPECT_GE(dropped, 2);
 }
 
-// After it was found, in the next run from its start: errors as of an accelerometer in time.
+// In the run after the delay was found, the errors are those of a synchronous accelerometer.
 TEST(RateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
   double unknown = 0.0, carried = 0.0, in_time = 0.0;
   std::size_t inside = 0, all = 0, found = 0;
@@ -217,7 +218,8 @@ TEST(RateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
   EXPECT_GE(static_cast<double>(inside), 0.97 * static_cast<double>(all));
 }
 
-// Split about the sample at which it is found, and long after; a state that differs in it differs.
+// The stream is split around the sample at which the delay is found, and long after; a state with another delay
+// differs.
 TEST(RateStreamDelay, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = long_late_tumble(3, 1).samples;
   const RateStream method(looking());
@@ -256,8 +258,8 @@ TEST(RateStreamDelay, SplittingAnywhereChangesNothing) {
   EXPECT_STREQ(method.check_state(other).field, "delay.in_use_s");
 }
 
-// A delay that is stated is where readings are taken from the start on: forces stand beside the rates of their
-// instants, in the newest sample too. A gyro that is late says the rate of a sample some time after.
+// A stated delay applies from the start: forces are paired with the rates at their own times, also in the newest
+// sample. A late gyro reports the rate of a later time.
 TEST(RateStreamDelay, AStatedOneIsTakenFromTheStart) {
   for (const int late : {2, -2}) {
     double stated = 0.0, ignored = 0.0;

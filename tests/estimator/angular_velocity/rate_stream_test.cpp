@@ -14,11 +14,11 @@
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace {
-// allocations of this program, to show that push() makes none
+// counts the allocations of this program, to show that push() makes none
 thread_local std::size_t allocations = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// the function is not inlined, so that the compiler does not report mismatched new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* memory = std::malloc(size);
@@ -75,8 +75,8 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
     of_batch.push_back(clipped_errors(recording, rates_of(batch), 10.49).median);
     close += errors.median < 0.05 && errors.median < 0.02 * raw.median;
   }
-  // measured 0.008 to 0.02 rad/s, and 0.88 with seed 2: it spins about one axis for two seconds, and all that has
-  // passed until then fits a wrong lever arm as well; the batch looks ahead
+  // measured 0.008 to 0.02 rad/s, and 0.88 with seed 2, which spins about one axis for two seconds, so a wrong lever
+  // arm also fits; the batch uses later data
   EXPECT_GE(close, 5);
   EXPECT_LT(*std::max_element(of_batch.begin(), of_batch.end()), 0.05);
 }
@@ -142,7 +142,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   RateStream::State other = whole;
   other.window[3].estimate.knot.rate_rad_s.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
-  // all that a later step reads of a sample counts
+  // every part of a sample that a later step uses counts
   other = whole;
   other.window[3].observation.subsample_saturated ^= 1;
   EXPECT_FALSE(RateStream::equal(other, whole));
@@ -158,7 +158,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   EXPECT_FALSE(RateStream::equal(other, whole));
 }
 
-/// A step that fails says nothing of the newest sample: its deviation is that of any rate, not none at all.
+/// After a failed step, the newest sample's deviation is that of any rate, not zero.
 TEST(RateStream, AFailedStepStatesNoCertainty) {
   const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
   const RateStream method(wrong_lever(3));
@@ -175,7 +175,7 @@ TEST(RateStream, AFailedStepStatesNoCertainty) {
   EXPECT_GT(newest->covariance_rad2_s2.diagonal().minCoeff(), 100.0);
 }
 
-// Samples that come faster than steps are made: all of them come out, once and in order, as good as with a step each.
+// If samples are faster than steps, all samples are reported, once and in order, as accurately as with a step each.
 TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   TumbleOptions options = options_of(2);
   options.rate_hz = 1000;
@@ -198,7 +198,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   params.step_s = 0.0;
   EXPECT_LT(five_ms, 1.2 * median_of(params));
 
-  // and it can be split between two steps
+  // the stream can also be split between two steps
   params.step_s = 0.005;
   const RateStream method(params);
   RateStream::State whole = method.start(), split = method.start();
@@ -213,7 +213,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   EXPECT_FALSE(RateStream::equal(whole, split));
 }
 
-/// Share of the recovered rates whose clipped axes lie within three stated deviations.
+/// Returns the fraction of recovered rates whose clipped axes are within three stated deviations.
 double share_within(const TumbleRecording& recording, const std::vector<RateState>& rates) {
   double within = 0.0, recovered = 0.0;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -227,7 +227,8 @@ double share_within(const TumbleRecording& recording, const std::vector<RateStat
   return within / recovered;
 }
 
-// what is left of the rig's doubt counts by time: twenty times as many samples of a flight do not tell more of it
+// the remaining uncertainty of the rig decreases with time: twenty times as many samples of a flight contain no more
+// information
 TEST(RateStream, AFasterGyroIsNotSurerOfTheRig) {
   TumbleOptions options = options_of(4);
   options.rate_hz = 2000;
@@ -240,7 +241,7 @@ TEST(RateStream, AFasterGyroIsNotSurerOfTheRig) {
   params.lag_s = 0.1;
   const RateStream method(params);
   RateStream::State state = method.start();
-  // measured 0.990, and 0.145 counted by samples; at 100 Hz 1.000
+  // measured 0.990, and 0.145 if samples are counted; at 100 Hz 1.000
   EXPECT_GT(share_within(recording, streamed_rates(method, recording.samples, state)), 0.95);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A log that is faster than its sensor, told as the samples come.
+// Tests the detection, sample by sample, of a log that is faster than its sensor.
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ struct Watched {
   double least_age = 100.0, largest_age = 0.0;
 };
 
-/// Samples of a body that turns: the gyro reads every `period` of them, a quarter of one after the first. Its rate
-/// rises by 1e-4 rad/s a sample.
+/// Simulates a turning body: the gyro reads every `period` samples, a quarter of a sample after the first. The rate
+/// rises by 1e-4 rad/s per sample.
 Watched detect_frozen_units(double period, double rate_rad_s, bool clipped = false) {
   Watched out;
   const RepeatDetector holds;
@@ -47,10 +47,10 @@ TEST(RepeatDetector, TellsPeriodAndRepeats) {
     ASSERT_TRUE(gyro.is_slower_than_log()) << period;
     EXPECT_NEAR(gyro.period_samples, period, 0.01 * period);
     EXPECT_EQ(found.wrong, 0) << period;
-    // what is taken for half a sample lies within one
+    // the age that counts as half a sample is within one sample
     EXPECT_GE(found.least_age, 0.0);
     EXPECT_LT(found.largest_age, 1.0);
-    // the accelerometer of the same log has a reading of its own in each sample
+    // the accelerometer of the same log has a new reading in each sample
     EXPECT_FALSE(found.state.of(Triad::accelerometer).is_slower_than_log());
   }
 }
@@ -63,7 +63,7 @@ TEST(RepeatDetector, WhatIsStaleIsTheSlopeTimesTheAge) {
   EXPECT_EQ(gyro.change_since_reading().x(), 0.0);
 }
 
-// Controls: new readings each time, a body that rests, a sensor that froze.
+// Controls: new readings each time, a body at rest, a frozen sensor.
 TEST(RepeatDetector, SaysNothingOfOthers) {
   EXPECT_FALSE(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).is_slower_than_log());
   EXPECT_EQ(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).change_since_reading(), Eigen::Vector3d::Zero());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bad input and splitting of the recursion.
+// Tests bad input and splitting of the recursion.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-/// What a body does at a sample of a synthetic tumble.
+/// Phase is what a body does at a sample of a synthetic tumble.
 enum class Phase : std::uint8_t { rest, push, flight, impact, roll };
 
 struct TumbleOptions {
@@ -27,9 +27,9 @@ struct TumbleOptions {
   double accel_sigma_m_s2 = 5.9e-3;
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
-  /// Scale and misalignment: readings before noise are (1 + this) times the truth.
+  /// Scale and misalignment: readings before noise are (1 + error) times the truth.
   Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero(), accel_error = Eigen::Matrix3d::Zero();
-  /// Rows along which the gyro's elements sense; they clip there, and readings are brought back to the axes.
+  /// Rows along which the gyro's elements sense and clip; readings are converted back to the axes.
   Eigen::Matrix3d gyro_rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gyro_offset_rad_s = Eigen::Vector3d::Zero();  ///< of the elements, taken off after they clip
   double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;        ///< of the flights
@@ -46,11 +46,12 @@ struct TumbleRecording {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< in IMU axes
 };
 
-/// Rest, a push, torque-free flights (in closed form) joined by impacts that change rate and force within 20 ms,
-/// rolling, rest. Readings are means over the window of a sample, with noise, clipped after averaging.
+/// The tumble consists of rest, a push, torque-free flights (in closed form) joined by impacts that change rate and
+/// force within 20 ms, rolling, and rest. The readings are means over the window of a sample, with noise, clipped after
+/// averaging.
 TumbleRecording make_tumble(const TumbleOptions& options);
 
-/// Parameters of a RateSmoother or a RateStream that know the lever arm, which has no default.
+/// Returns parameters of a RateSmoother or a RateStream with the lever arm, which has no default.
 template <class Params>
 Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever_arm_m) {
   Params out;
@@ -58,7 +59,7 @@ Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever
   return out;
 }
 
-/// The same with a lever arm that is off by `error_m` in a direction of the seed's.
+/// Returns these parameters with a lever arm that is wrong by `error_m` in a random direction.
 template <class Params>
 Params with_wrong_lever_arm(double error_m, std::uint64_t seed) {
   auto out = with_lever_arm<Params>();
@@ -68,7 +69,7 @@ Params with_wrong_lever_arm(double error_m, std::uint64_t seed) {
   return out;
 }
 
-/// Quantiles of the error norm over the samples in which at least one gyro axis was clipped.
+/// ClippedErrors contains quantiles of the error norm over the samples with at least one clipped gyro axis.
 struct ClippedErrors {
   std::size_t count = 0;
   double median = 0.0, p99 = 0.0, maximum = 0.0;

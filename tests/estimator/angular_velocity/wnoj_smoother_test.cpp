@@ -36,8 +36,8 @@ std::vector<Smoothed> smooth(const std::vector<Measurement>& run, double psd = 1
   return out;
 }
 
-// Independent reference: the full problem with the angle, as published (3 states per knot, angle locked at the first
-// knot), dense normal equations in long double.
+// Dense is an independent reference: the full problem with the angle, as published (3 states per knot, angle fixed at
+// the first knot), with dense normal equations in long double.
 struct Dense {
   Eigen::Matrix<long double, Eigen::Dynamic, 1> rate, acceleration, variance;
 };
@@ -65,7 +65,7 @@ Dense dense_reference(const std::vector<Measurement>& run, double psd, int axis)
     H.block(3 * k + 3, 3 * k + 3, 3, 3) += Qi;
   }
   const Matrix free = H.bottomRightCorner(3 * n - 1, 3 * n - 1);
-  // symmetric scaling: angle, rate and acceleration differ by many orders of magnitude
+  // symmetric scaling, because angle, rate and acceleration differ by many orders of magnitude
   const Eigen::Matrix<Real, Eigen::Dynamic, 1> scale = free.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix scaled = scale.asDiagonal() * free * scale.asDiagonal();
   const Matrix covariance =
@@ -98,7 +98,7 @@ TEST(WnojSmoother, AgreesWithTheDenseProblemThatKeepsTheAngle) {
       const Dense want = dense_reference(run, 1e6, axis);
       for (std::size_t k = 0; k < run.size(); ++k) {
         const auto i = static_cast<Eigen::Index>(k);
-        // relative to the size of the readings; the reference itself is good to about 1e-10 in long double
+        // relative to the size of the readings; the reference itself is accurate to about 1e-10 in long double
         EXPECT_NEAR(got[k].rate_rad_s[axis], static_cast<double>(want.rate[i]), 1e-8) << k;
         EXPECT_NEAR(got[k].acceleration_rad_s2[axis], static_cast<double>(want.acceleration[i]), 1e-5) << k;
         EXPECT_NEAR(got[k].variance_rad2_s2[axis] / static_cast<double>(want.variance[i]), 1.0, 1e-7) << k;
@@ -107,7 +107,7 @@ TEST(WnojSmoother, AgreesWithTheDenseProblemThatKeepsTheAngle) {
   }
 }
 
-// weight of the reading `offset` samples away on the smoothed rate in the middle of a long run
+// returns the weight of the reading `offset` samples away on the smoothed rate in the middle of a long run
 double weight(double variance, int offset) {
   std::vector<Measurement> run = constant_run(201, variance);
   run[static_cast<std::size_t>(100 + offset)].rate_rad_s.setOnes();
@@ -137,7 +137,7 @@ TEST(WnojSmoother, ReturnsUnclippedReadingsUnchanged) {
     run[k].rate_rad_s = 8.0 * Vector3d(std::sin(0.1 * k), std::cos(0.2 * k), 1.0) + 0.005 * noise.vector();
   }
   const std::vector<Smoothed> got = smooth(run);
-  // (1 - 0.9996) of a noise of 0.005 rad/s and of the bend of the curve; measured 1.1e-5
+  // (1 - 0.9996) of a noise of 0.005 rad/s and of the curvature; measured 1.1e-5
   for (std::size_t k = 0; k < run.size(); ++k) EXPECT_LE((got[k].rate_rad_s - run[k].rate_rad_s).norm(), 5e-5) << k;
 }
 
@@ -150,7 +150,7 @@ TEST(WnojSmoother, DeviationInTheMiddleOfRejectedGaps) {
     std::vector<Measurement> run = constant_run(anchor.length + 200, kMeasured);
     for (std::size_t k = 100; k < 100 + anchor.length; ++k) run[k].variance_rad2_s2.setConstant(kRejected);
     const std::vector<Smoothed> got = smooth(run);
-    // stated with two digits; for an even length the middle lies between two samples
+    // published with two digits; for an even length the middle is between two samples
     EXPECT_NEAR(std::sqrt(got[100 + anchor.length / 2].variance_rad2_s2.x()) / anchor.deviation, 1.0, 0.03)
         << anchor.length;
   }

@@ -11,10 +11,11 @@
 #include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/attitude/hand_held_motion.hpp"
 
-/// Errors of rates of a carried body against its motion in closed form.
+/// hand_held_errors.hpp computes errors of the rates of a hand-held body against its motion in closed form.
 namespace tumble::testing {
 
-/// Norms of the errors at clipped samples from `from_s` on; a rate stands for each sample, at its stamp [rad/s].
+/// Returns the norms of the errors at clipped samples from `from_s` on; there is one rate per sample, at its stamp
+/// [rad/s].
 inline std::vector<double> clipped_errors(const HandHeldRecording& recording, const std::vector<RateState>& rates,
                                           double from_s) {
   std::vector<double> out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each factor of the carried body against its own cost: the gradient that it adds is the numerical one, its curvature
-// that of the squared residuals.
+// Each factor of the hand-held model is tested against its own cost: its gradient is the numerical one, and its
+// curvature is that of the squared residuals.
 #include "tumble/attitude/detail/hand_held_model.hpp"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ void expect_gradient(const Factor& factor, const Point& at) {
       sides[side] = factor(moved, unused, unused_next, unused_corner);
     }
     const double numerical = -(sides[1] - sides[0]) / (4.0 * kStep);
-    // central differences of a cost of some size lose 1e-16 cost / kStep
+    // central differences of a cost lose 1e-16 cost / kStep
     EXPECT_NEAR(gradient[i], numerical, 2e-6 * gradient.cwiseAbs().maxCoeff() + 1e-10 * cost / kStep) << i;
   }
 }
@@ -94,7 +94,7 @@ NodeReadings random_readings(std::uint64_t seed) {
   return readings;
 }
 
-/// The weights that depend on the state are left out: they are held within an iteration.
+/// State-dependent weights are omitted, because they are constant within an iteration.
 ReadingNoise plain_noise() {
   ReadingNoise noise;
   noise.gyro_rad_s = 0.5;
@@ -124,7 +124,7 @@ TEST(HandHeldModel, ForceHasItsGradient) {
   for (std::uint64_t seed : {1u, 2u, 3u}) {
     NodeReadings readings = random_readings(seed);
     if (seed == 2) readings.force_bound.y() = 1.0;
-    // the turn from the node to the readings' mean time is to first order in the rate's error
+    // the rotation from the node to the mean time of the readings is of first order in the rate's error
     readings.force_time_s = 1e-6;
     expect_gradient(
         [&](const Point& p, System::Block& here, System::Block&, System::Corner& corner) {

@@ -10,9 +10,9 @@
 #include "tumble/attitude/hand_held_smoother.hpp"
 #include "tumble/common/so3.hpp"
 
-/// A carried body in closed form, made to the measure of a wand that is twirled: Exp(a(t) x) Exp(b(t) y) with a spin a
-/// about its long axis, far beyond the gyro's rail for some tenths of a second at a time, and a slow tilt b; the hand
-/// moves on sines of some decimetres. Readings are those at the middle of their window.
+/// hand_held_motion.hpp is a hand-held body in closed form, similar to a twirled wand: Exp(a(t) x) Exp(b(t) y) with a
+/// spin a about its long axis, far beyond the gyro's saturation level for tenths of a second, and a slow tilt b; the
+/// hand moves on sines of some decimetres. The readings are those at the middle of their window.
 namespace tumble::testing {
 
 struct HandHeldMotion {
@@ -63,7 +63,7 @@ struct HandHeldRecording {
   std::vector<Eigen::Quaterniond> q_WI;     ///< true, at each stamp
 };
 
-/// Sampled at `hz` for `duration_s`, the gyro's x element held at `rail_rad_s` (0: none).
+/// Returns samples at `hz` for `duration_s`, with the gyro's x element clipped at `rail_rad_s` (0: none).
 inline HandHeldRecording record(const HandHeldMotion& motion, double hz, double duration_s, double rail_rad_s) {
   HandHeldRecording out;
   for (int k = 1; k <= static_cast<int>(hz * duration_s); ++k) {
@@ -86,7 +86,7 @@ inline HandHeldRecording record(const HandHeldMotion& motion, double hz, double 
   return out;
 }
 
-/// Each third reading of those at the rail has wrapped over it to the other side; its sign is `sign`.
+/// Each third saturated reading has wrapped to the opposite sign; its clip sign is `sign`.
 inline HandHeldRecording with_wraps(const HandHeldRecording& recording, std::int8_t sign) {
   HandHeldRecording out = recording;
   int at_rail = 0;

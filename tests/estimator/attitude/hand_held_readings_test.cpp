@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the smoother of carried bodies makes of readings before it reads them: triads that are slower than the log,
-// windows that met the rail in a part, the jerk that readings show.
+// Tests the preparation of readings for the hand-held smoother: triads slower than the log, partly saturated windows,
+// and the jerk in the readings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ Vector3d mean_rate(const HandHeldMotion& motion, double end_s, double window_s, 
   return sum;
 }
 
-/// A log faster than its triads, as the pendulum's of RepoIMU: the gyro a mean over its own period, clipped before it.
+/// Held is a log faster than its triads, as for the pendulum of RepoIMU: the gyro is a mean over its own period,
+/// clipped before averaging.
 struct Held {
   std::vector<ImuSample> samples;
   std::vector<ClipSigns> signs;
@@ -39,7 +40,7 @@ struct Held {
   std::vector<bool> lost;            ///< the reading lies below its unclipped twin
 };
 
-/// `mark`: added to each repeated reading, more each time, so that it does not look repeated.
+/// `mark` is added to each repeated reading, more each time, so that it does not look repeated.
 Held held(double duration_s, double mark) {
   const HandHeldMotion motion;
   Held out;
@@ -92,8 +93,8 @@ HeldErrors errors_of_held(const Held& recording) {
   return out;
 }
 
-/// Negative control: the same readings, but none repeats the one before to the bit, so that each is taken for a new one
-/// at its stamp. Measured: 0.27 rad/s and all within; 0.66 and 0.94.
+/// Negative control: equal readings, but none repeats the previous one bit for bit, so each counts as new at its stamp.
+/// Measured: 0.27 rad/s with all errors within the bounds; 0.66 and 0.94 in the control.
 TEST(HandHeldReadings, ATriadSlowerThanTheLogIsReadOnceAndAtItsOwnTime) {
   const HeldErrors own = errors_of_held(held(12.0, 0.0)), again = errors_of_held(held(12.0, 1e-9));
   std::printf("own times: %.3f rad/s, within %.3f, called measured %.3f; as said again: %.3f, %.3f, %.3f\n",
@@ -105,8 +106,8 @@ TEST(HandHeldReadings, ATriadSlowerThanTheLogIsReadOnceAndAtItsOwnTime) {
   EXPECT_LT(own.called_measured, 0.5 * again.called_measured + 1e-9);
 }
 
-/// One draw of white jerk, read as means over windows: the density is found, and the mean over a window parts from the
-/// rate at its centre by q P^3/320.
+/// For one draw of white jerk, read as means over windows, the density is found, and the mean over a window differs
+/// from the rate at its centre by q P^3/320.
 TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   constexpr double kPeriod_s = 0.01, kJerk = 600.0;
   constexpr int kParts = 51, kSamples = 4000;
@@ -118,7 +119,7 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   for (int k = 1; k <= kSamples; ++k) {
     Vector3d sum = Vector3d::Zero(), centre = Vector3d::Zero();
     for (int i = 0; i < kParts; ++i) {
-      // pulled back slowly, so that the rate stays bounded; the jerk of that is small
+      // the rate is pulled back slowly, so that it stays bounded; the jerk of this pull is small
       const double z = noise(), y = noise(), x = noise();
       acceleration += kJerk * std::sqrt(step_s) * Vector3d(x, y, z) - step_s * (0.2 * acceleration + 0.1 * rate);
       rate += step_s * acceleration;
@@ -143,14 +144,14 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   EXPECT_NEAR(std::sqrt(apart), std::sqrt(expected), 0.05 * std::sqrt(expected));
 }
 
-/// A rate that swings far beyond the rail: its slope turns round while it is hidden, which what is read beside it does
-/// not bend enough to show. Control: the same readings taken for free.
+/// The rate swings far beyond the saturation level and reverses its slope while hidden, which the adjacent readings do
+/// not reveal. Control: the same readings treated as unsaturated.
 TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
   constexpr double kPeriod_s = 0.0035, kAmplitude_rad_s = 20.0, kTurn_rad_s = 21.0;
   std::vector<ImuSample> samples;
   std::vector<ClipSigns> signs;
   for (int k = 1; k <= 600; ++k) {
-    // mean over the window
+    // mean over the averaging window
     const double to_s = k * kPeriod_s, from_s = to_s - kPeriod_s;
     const double x =
         kAmplitude_rad_s * (std::cos(kTurn_rad_s * from_s) - std::cos(kTurn_rad_s * to_s)) / (kTurn_rad_s * kPeriod_s);
@@ -176,7 +177,7 @@ TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
       static_cast<std::size_t>(std::lround(0.5 * 3.141592653589793 / kTurn_rad_s / params.expert.node_s));
   std::printf("hidden for %.3f s: root density %.0f, by the ends %.0f; taken for free %.0f\n", clipped_duration_s,
               collected.jerk[top], expected, free[top]);
-  // the slopes are read a window outside of the segment, which is that much longer
+  // the slopes are read a window outside of the segment, which is longer by this amount
   EXPECT_NEAR(collected.jerk[top], expected, 0.1 * expected);
   EXPECT_LT(free[top], 0.2 * expected);
 }

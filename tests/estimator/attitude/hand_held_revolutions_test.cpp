@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stream of the carried body states where nothing tells the rate: an accelerometer that says nothing while the
+// Tests what the hand-held stream states if no data determine the rate: an accelerometer without information while the
 // gyro clips, in closed form.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 using testing::ClippedSpin;
 using testing::SpinReadings;
 
-/// The stream's params with a hand that is known to be calm, and so long a lag.
+/// Returns parameters of the stream with a calm hand and the given lag.
 HandHeldStream::Params calm_hand(double lag_s) {
   HandHeldStream::Params out;
   out.lag_s = lag_s;
@@ -30,7 +30,7 @@ HandHeldStream::Params calm_hand(double lag_s) {
   return out;
 }
 
-/// One clipped sample: error of the rate about the spin's axis, and its stated deviation.
+/// HiddenRate is the error of the rate about the spin's axis at one clipped sample, with its stated deviation.
 struct HiddenRate {
   double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: share of the segment that has passed
 };
@@ -73,19 +73,21 @@ struct LiveSpin {
   }
 };
 
-/// The rate at which a body turns once more than one that goes on evenly, by sin^2.
+/// Returns the additional rate, sin^2 in time, of a body that turns once more than a uniform rotation.
 double once_more(double lasts_s) {
   return 4.0 * std::numbers::pi / lasts_s;
 }
 
-/// Deviation in the middle of a segment at whose ends rate, angular acceleration and angle are known: carried.md (C42).
+/// Returns the deviation in the middle of a segment with known rate, angular acceleration and angle at its ends:
+/// carried.md (C42).
 double closed_form_sigma(const HandHeldStream::Params& params, double lasts_s) {
   const double q = std::pow(params.body.expert.jerk_inflation * params.body.jerk_rad_s3_sqrts, 2.0);
   return std::sqrt(q * std::pow(lasts_s + 1.0 / SpinReadings::kHz, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0)));
 }
 
-/// A whole turn more, a half or none, in a segment in which white jerk makes any of them: what is stated holds them,
-/// and it is told. While bounds counted as readings a third of these samples, 408, lay beyond three deviations.
+/// A segment contains a whole turn more, half a turn or none, as white jerk allows; the stated deviation must include
+/// them, and the report must say so. When bounds counted as readings, a third of these samples, 408, were beyond three
+/// deviations.
 TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
   std::size_t all = 0, beyond = 0;
   for (const double from_s : {2.0, 2.3}) {
@@ -106,8 +108,8 @@ TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
   EXPECT_EQ(beyond, 0u);
 }
 
-/// Where all of the segment is in the window, the deviation is that of the jerk between what is known on either side,
-/// along the rail as well as far beyond it.
+/// If the whole segment is in the window, the deviation is that of the jerk between known ends, at the saturation level
+/// and far beyond it.
 TEST(HandHeldRevolutions, ABoundSaysNothingOfHowFar) {
   const HandHeldStream::Params params = calm_hand(0.6);
   for (const double lasts_s : {0.3, 0.5}) {
@@ -120,7 +122,8 @@ TEST(HandHeldRevolutions, ABoundSaysNothingOfHowFar) {
   }
 }
 
-/// Negative controls: a segment too short for a turn hides none, and one in which gravity is seen to turn is known.
+/// Negative controls: a segment too short for a turn hides none, and a segment in which gravity rotates visibly is
+/// known.
 TEST(HandHeldRevolutions, AShortSegmentHidesNoTurn) {
   const LiveSpin brief({.more_rad_s = 3.0, .from_s = 2.0, .lasts_s = 0.15, .duration_s = 4.5}, calm_hand(0.2));
   EXPECT_EQ(brief.revolutions_ambiguous, 0u);

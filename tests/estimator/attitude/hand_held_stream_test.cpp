@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The streams of carried bodies against motions in closed form and against the batch.
+// Tests the hand-held streams against motions in closed form and against the batch.
 #include "tumble/attitude/hand_held_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST(HandHeldStream, AStateThatItDidNotLeaveIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { s.first_node -= 1000; }));
   EXPECT_TRUE(refused([](auto& s) { s.start_ns = std::numeric_limits<std::int64_t>::min(); }));
   EXPECT_TRUE(refused([](auto& s) { s.readings.back().centre_s += 1e3; }));
-  // of last sample and first node alike, so that the window's size is right
+  // checks last sample and first node alike, so that the window's size is right
   EXPECT_TRUE(refused([](auto& s) {
     for (HandHeldStream::Reading& reading : s.readings) reading.node += 1000;
     s.first_node += 1000;
@@ -77,8 +77,7 @@ TEST(HandHeldStream, AStateThatItDidNotLeaveIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { std::swap(s.readings[0].node, s.readings.back().node); }));
 }
 
-/// With one and a half seconds of lag the stream knows nearly what the batch knows, once it has found its attitude and
-/// constants.
+/// With 1.5 s of lag, the stream is nearly as accurate as the batch, once it has found attitude and constants.
 TEST(HandHeldStream, IsTheBatchOnALongLag) {
   const HandHeldRecording recording = testing::record({}, 100.0, 9.0, 7.3);
   HandHeldStream::Params params;
@@ -105,7 +104,7 @@ TEST(HandHeldStream, IsTheBatchOnALongLag) {
   EXPECT_NEAR(quantile(widths, 0.5), 1.0, 0.05);
 }
 
-/// What the stream makes of twenty seconds of the twirl, once for all who ask.
+/// Returns the stream's result for twenty seconds of the twirl, computed once for all tests.
 const HandHeldRecording& twirl() {
   static const HandHeldRecording recording = testing::record({}, 100.0, 20.0, 7.3);
   return recording;
@@ -136,8 +135,8 @@ TEST(HandHeldStream, RecoversATwirlAtItsLag) {
   EXPECT_GE(share, 0.97);
 }
 
-/// The lag is counted in samples of the period that was stated: where they come sparser, nodes leave the window before
-/// their samples are old enough, and none may be lost for it.
+/// The lag is counted in samples of the stated period; if samples are sparser, nodes leave the window too early, but no
+/// rate may be lost.
 TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   for (const double hz : {30.0, 20.0, 12.0}) {
     const HandHeldRecording recording = testing::record({.spin_hz = 0.45}, hz, 12.0, 5.0);
@@ -158,7 +157,7 @@ TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   }
 }
 
-/// Readings that have wrapped over the rail say nothing; taken for free ones they would say the contrary.
+/// Wrapped readings contain no information; treated as unsaturated, they would have the wrong sign.
 TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
   const HandHeldRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
   const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
@@ -177,7 +176,7 @@ TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
     EXPECT_NE(live[k].source, RateSource::measured) << k;
     EXPECT_EQ(live[k].clipped_axes, 1) << k;
   }
-  // of the first twelve of its seconds
+  // only the first twelve seconds
   const std::vector<RateState> all_live(live_twirl().begin(), live_twirl().begin() + 1200);
   const double all = median(clipped, all_live), without = median(wrapped, live);
   const double free = median(believed, stream(believed, {}));
@@ -242,7 +241,7 @@ TEST(HandHeldStream, RefusesBadInputAndKeepsItsState) {
   flat.rows.setZero();
   EXPECT_EQ(error_code(recording.samples[50], flat), ErrorCode::degenerate);
   EXPECT_EQ(error_code(recording.samples[50], known), ErrorCode::none);
-  // a drop-out longer than the window, and on
+  // a drop-out longer than the window, and further samples
   bad = recording.samples[60];
   bad.time_ns += 800'000'000;
   EXPECT_EQ(error_code(bad, known), ErrorCode::none);

@@ -19,12 +19,12 @@ using testing::kGravity_m_s2;
 constexpr double kGyroRange = 34.9, kAccelRange = 200.0;
 constexpr TimeNs kUnitPeriod_ns = 4'000'000;
 
-/// Three IMUs at 8 cm about the centre of a body that turns about a fixed level axis.
+/// Spin contains three IMUs at 8 cm about the centre of a body that turns about a fixed level axis.
 struct Spin {
   std::array<Eigen::Vector3d, 3> position_m{{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
   Eigen::Vector3d axis = Eigen::Vector3d(0.2, 0.95, -0.24).normalized();
 
-  /// Rises to `top` within 0.4 s, stays, and falls again.
+  /// Returns a rate that rises to `top` within 0.4 s, stays, and falls again.
   double rate(double t, double top) const { return top * std::clamp(std::min(t, 2.0 - t) / 0.4, 0.0, 1.0); }
   double acceleration(double t, double top) const { return (rate(t + 1e-4, top) - rate(t - 1e-4, top)) / 2e-4; }
 
@@ -91,7 +91,7 @@ TEST(ImuMerge, TellsARateBeyondTheRangeByTheAccelerometers) {
   EXPECT_GT(exact.clipped_error_rad_s, 5.0);  // or the test shows nothing
   EXPECT_LT(exact.rate_error_rad_s, 0.5);
   EXPECT_EQ(exact.flagged, 0);
-  // 1 mm off in the mounting: learnt below the rail
+  // the mounting is wrong by 1 mm, which is calibrated below saturation
   const MergeErrors askew = merge_errors(spin, spin_params(spin, {1e-3, -1e-3, 1e-3}), 44.0);
   EXPECT_LT(askew.rate_error_rad_s, 1.0);
 }
@@ -131,7 +131,7 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
   EXPECT_EQ(state.units[0].excluded_windows, 0);
 }
 
-/// What the mean of all units should read, at their mean position.
+/// Returns what the mean of all IMUs should read at their mean position.
 Eigen::Vector3d exact_force(const Spin& spin, int k, double angle, double top) {
   const double t = seconds(k * kUnitPeriod_ns);
   const Eigen::Vector3d w = spin.rate(t, top) * spin.axis, a = spin.acceleration(t, top) * spin.axis;

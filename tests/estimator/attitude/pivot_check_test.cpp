@@ -37,7 +37,7 @@ struct PivotReadings {
   std::vector<RateState> rates;
 };
 
-// A body that turns about a point which stays: what the sensor reads is known in closed form but for its attitude.
+// The body turns about a fixed point, so the readings are known in closed form except for the attitude.
 PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(RateState&)>& harm = {}) {
   constexpr double kStep_s = 0.01;
   constexpr int kFine = 20;

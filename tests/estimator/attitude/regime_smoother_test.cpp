@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rates of a whole recording whoever holds the body: a twirl in closed form has the smoother of carried bodies asked,
-// and a spin in free flight has not.
+// Tests rates of a whole recording for any motion type: a twirl in closed form uses the hand-held smoother, and a spin
+// in free flight does not.
 #include "tumble/attitude/regime_smoother.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ RegimeSmoother::Params params_of(const HandHeldMotion& motion) {
   return params;
 }
 
-/// Median error where the gyro clips.
+/// Returns the median error where the gyro clips.
 double clipped_error(const HandHeldRecording& recording, const std::vector<RateState>& rates) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -51,8 +51,8 @@ TEST(RegimeSmoother, ATwirlIsTheHands) {
   EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
 }
 
-// A force is said four times; taken for that of each sample's own time the hidden segments look like flight, and are
-// off by 11 rad/s.
+// Each force is logged four times; assigned to each sample's own time, the hidden segments would look like flight, with
+// errors of 11 rad/s.
 TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
@@ -71,9 +71,8 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
-// It turns back ten times and is hardly read in between, so that it is one segment; that nobody knows who holds it in
-// the first tenth of a second, where its rate is not known yet, says nothing of the rest, which would be off by 10
-// rad/s.
+// The motion reverses ten times with few readings in between, so it is one segment; an unknown motion type in the first
+// tenth of a second must not affect the rest, which would be wrong by 10 rad/s.
 TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stream that tells flight, contact and hand apart as it goes.
+// Tests the stream that distinguishes flight, contact and hand-held motion.
 #include "tumble/attitude/regime_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Joined {
   RegimeStream::State state;
 };
 
-/// What a stream held in the middle, and how many rates it had given by then.
+/// Middle is the state of a stream in the middle, and the number of rates reported so far.
 struct Middle {
   std::size_t samples = 0;
   RegimeStream::State state;
@@ -40,7 +40,7 @@ RegimeStream::Params at_its_hand() {
   return params;
 }
 
-/// Goes on from `from`; leaves in `middle` what is held before its number of samples.
+/// Continues from `from`; stores in `middle` the state before sample number `middle`.
 Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& params, const Middle& from,
              Middle* middle = nullptr) {
   const RegimeStream stream(params);
@@ -66,8 +66,8 @@ Joined joined(const std::vector<ImuSample>& samples, const RegimeStream::Params&
   return go_on(samples, params, {0, RegimeStream(params).start(), 0}, middle);
 }
 
-/// The twirl of HandHeldMotion taken up slowly: its own time runs at 0.3 for four seconds, then ever faster to 1 within
-/// two. Flags instead of a rail that has to be found first.
+/// SlowlyBegun is the twirl of HandHeldMotion with a slow start: its own time runs at 0.3 for four seconds, then faster
+/// up to 1 within two. Flags replace a saturation level that would have to be found first.
 struct SlowlyBegun {
   HandHeldMotion motion;
   double speed(double t) const { return 0.3 + 0.7 * std::clamp(0.5 * (t - 4.0), 0.0, 1.0); }
@@ -116,7 +116,7 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   const std::vector<double> errors = clipped_errors(recording, whole.rates, 2.0);
   std::printf("joined: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
   EXPECT_LT(quantile(errors, 0.5), 0.6);
-  // a copy of what it held goes on with the same bits
+  // a copy of the state continues with identical bits
   const Joined rest = go_on(samples, at_its_hand(), middle);
   ASSERT_GT(rest.rates.size(), 800u);
   for (std::size_t k = 0; k < rest.rates.size(); ++k) {
@@ -126,8 +126,8 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   }
 }
 
-/// Samples lie as far apart as the time over which rates are differentiated is long: seconds since the clock's start
-/// are rounded otherwise at every start.
+/// The samples are as far apart as the time over which rates are differentiated; seconds since the clock's start would
+/// be rounded differently for each start.
 TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
   std::vector<ImuSample> samples = SlowlyBegun().record(100.0, 10.0, 7.3).samples;
   const Joined at_zero = joined(samples, at_its_hand());
@@ -142,8 +142,9 @@ TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
   }
 }
 
-/// The rig says that the IMU is 10 cm from the centre of mass: the lever arm's force could pass for gravity, if the
-/// angular acceleration were free to follow the force. The gyro reads it between the spins, and so the hand is known.
+/// The stated IMU is 10 cm from the centre of mass; the lever arm's force could look like gravity if the angular
+/// acceleration followed the force. The gyro reads this acceleration between the spins, so hand-held motion is
+/// detected.
 TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
   const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
   RegimeStream::Params params;
@@ -163,7 +164,8 @@ TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
   EXPECT_GE(within / clipped, 0.97);
 }
 
-/// As a log of 240 Hz says what an IMU reads at 100: each reading two or three times, up to a reading's time late.
+/// Simulates a log at 240 Hz of an IMU that reads at 100 Hz: each reading two or three times, up to a reading's time
+/// late.
 HandHeldRecording said_again(const HandHeldRecording& own, const SlowlyBegun& motion) {
   HandHeldRecording out;
   for (std::size_t k = 0, from = 0; from + 1 < own.samples.size(); ++k) {
@@ -177,7 +179,8 @@ HandHeldRecording said_again(const HandHeldRecording& own, const SlowlyBegun& mo
   return out;
 }
 
-/// Without knowing of it the stream is off by 0.37 rad/s on the median, and 56 % lie within three deviations.
+/// If repetitions are unknown, the stream has a median error of 0.37 rad/s, and 56 % of the errors are within three
+/// deviations.
 TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   const SlowlyBegun motion;
   const HandHeldRecording recording = said_again(motion.record(100.0, 16.0, 7.3), motion);
@@ -199,8 +202,8 @@ TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   EXPECT_GE(within / count, 0.98);
 }
 
-/// It turns back once a second and is hardly read in between, so that it is one segment of clipped samples; that nobody
-/// knows who holds it at first, where its rate is not known yet, says nothing of the rest. Flight is off by 10 rad/s.
+/// The motion reverses once a second with few readings in between, so it is one clipped segment; an unknown motion type
+/// at first must not affect the rest. The flight model would be wrong by 10 rad/s.
 TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
@@ -212,7 +215,8 @@ TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   EXPECT_LT(quantile(errors, 0.5), 1.5);
 }
 
-/// Thrown while it was believed carried, and caught again: the evidence follows within the lag, both ways.
+/// The body is thrown while it is assumed hand-held, and caught again: the probabilities follow within the lag, in both
+/// directions.
 TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   const SlowlyBegun motion;
   std::vector<ImuSample> samples = motion.record(100.0, 16.0, 7.3).samples;
@@ -234,7 +238,8 @@ TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   EXPECT_GT(hand_held[1400], 0.9);
 }
 
-/// Share of the hand after 0.3 s of a flight that clips, when `dropped` rigs count as dropped at its start.
+/// Returns the probability of hand-held motion after 0.3 s of a clipped flight, when `dropped` rig resets count at its
+/// start.
 double share_in_flight(std::uint64_t seed, double dropped) {
   TumbleOptions options;
   options.seed = options.mounting_seed = seed;
@@ -254,8 +259,9 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   return state.probabilities.hand_held;
 }
 
-/// A hand that throws bends the rig, which is dropped in step after step: 20 times in a lag at most. That says nothing
-/// of the flight that follows: the doubt is gone before the lag is over. The control is a doubt that lasts.
+/// A throwing hand gives the rig a wrong calibration, which is reset step after step: at most 20 times in a lag. The
+/// resets must not affect the following flight: the uncertainty is gone before the lag is over. The control is an
+/// uncertainty that lasts.
 TEST(RegimeStream, AFlightIsSeenThoughThePushBeforeItBentTheRig) {
   for (const std::uint64_t seed : {5, 7}) {
     EXPECT_LT(share_in_flight(seed, 20.0), 0.02) << seed;

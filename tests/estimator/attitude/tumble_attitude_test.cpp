@@ -41,7 +41,7 @@ TEST(TumbleAttitude, AtRestTheBiasIsFoundAndTheAttitudeHeld) {
   const Eigen::Vector3d bias(0.005, -0.004, 0.006);
   TumbleAttitude::State state, after_2s;
   for (int k = 0; k <= 15000; ++k) {
-    // a gyro that chatters by 1 deg/s about its bias, an accelerometer by 0.02 m/s^2
+    // a gyro with noise of 1 deg/s about its bias, an accelerometer with 0.02 m/s^2
     const double noise = k % 2 == 0 ? 1.0 : -1.0;
     const ImuSample sample{
         k * kPeriod_ns, bias + Eigen::Vector3d::Constant(0.017 * noise), {0.02 * noise, 0.0, kGravity_m_s2}, 0};
@@ -64,12 +64,11 @@ TEST(TumbleAttitude, SlowTurnAfterTheBiasIsKnownIsNotRest) {
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, rate}, {0, 0, kGravity_m_s2}, 0}, state).ok());
   }
   EXPECT_FALSE(state.at_rest);
-  // 15 s; what passes before the turn is seen is part of a sample's low-pass: measured 3 mrad
+  // 15 s; the rotation before its detection is part of a sample's low-pass: measured 3 mrad
   EXPECT_NEAR(so3::log(state.q_WI).z(), turn * 15.0, 0.01);
 }
 
-// A sphere that has rolled goes on turning about its contact, slower than a detector by itself would tell: attitude.md
-// (A16)
+// A sphere that has rolled keeps turning about its contact, too slowly for the detector alone: attitude.md (A16)
 TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   constexpr double kCreep = 0.02;  // rad/s
   const auto after_creeping = [&](const TumbleAttitude::Params& params) {
@@ -84,7 +83,7 @@ TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   const TumbleAttitude::State state = after_creeping({});
   EXPECT_FALSE(state.at_rest);
   EXPECT_NEAR(state.bias_rad_s.z(), 0.0, 1e-3);
-  // negative control: what the detector says without asking how well the bias is known
+  // negative control: the detector's result without the uncertainty of the bias
   const TumbleAttitude::State believed = after_creeping({.expert = {.at_rest = {.rate_sigmas = 1e6}}});
   EXPECT_TRUE(believed.at_rest);
   EXPECT_GT(believed.bias_rad_s.z(), 0.5 * kCreep);
@@ -111,8 +110,8 @@ TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
   EXPECT_LT(worst_a, 0.5 * worst_b);
 }
 
-/// Runs down a slope: 2 m/s^2 for 1.5 s, 3 m/s for 1 s, and slowed again; turns about its vertical meanwhile, which no
-/// gyro misses and which is no rest.
+/// Returns a run down a slope: 2 m/s^2 for 1.5 s, 3 m/s for 1 s, then slowed down; the body turns about its vertical,
+/// which is no rest.
 std::vector<ImuSample> far_run() {
   std::vector<ImuSample> samples;
   for (int k = 0; k <= 1500; ++k) {
@@ -127,7 +126,7 @@ std::vector<ImuSample> far_run() {
   return samples;
 }
 
-// attitude.md (A13): 7.5 m are more than a hand's reach, and no tilt that the gyro left open makes them
+// attitude.md (A13): 7.5 m are more than a hand's reach, and no tilt within the gyro's uncertainty explains them
 TEST(TumbleAttitude, ABodyThatGoesFarIsNotTiltedForIt) {
   const auto worst_tilt = [](const auto& filter) {
     typename std::decay_t<decltype(filter)>::State state;
@@ -139,13 +138,14 @@ TEST(TumbleAttitude, ABodyThatGoesFarIsNotTiltedForIt) {
     return worst;
   };
   EXPECT_LT(worst_tilt(TumbleAttitude({})), 0.012);
-  // negative controls: a low-pass of the force; and the belief of a body that was seen to stay where it is, which
-  // forgets at once how far this one has gone
+  // negative controls: a low-pass of the force, and the assumption of a body that stays in place, which forgets the
+  // travelled distance
   EXPECT_GT(worst_tilt(Vqf({})), 0.02);
   EXPECT_GT(worst_tilt(TumbleAttitude({.displacement_m_sqrts = 0.03, .motion_tau_s = 1e-3})), 0.02);
 }
 
-/// A body that turns evenly about its vertical, and a rate about x that is 0.5 rad/s too large between 2 and 2.4 s.
+/// Returns the state of a body that turns uniformly about its vertical, with a rate about x that is 0.5 rad/s too large
+/// between 2 and 2.4 s.
 TumbleAttitude::State after_wrong_rates(const TumbleAttitude& filter, const Eigen::Matrix3d& told, double& lost_rad) {
   TumbleAttitude::State state;
   for (int k = 0; k <= 2500; ++k) {
@@ -163,11 +163,12 @@ TEST(TumbleAttitude, ATiltThatARecoveredRateLeavesOpenIsTakenBack) {
   const Eigen::Matrix3d told = 0.25 * Eigen::Matrix3d::Identity();
   EXPECT_LT(tilt(after_wrong_rates(filter, told, lost_rad).q_WI), 0.03);
   EXPECT_GT(lost_rad, 0.05);
-  // negative control: a rate that is said to be read leaves a tilt that the filter takes for motion
+  // negative control: a rate stated as measured leaves a tilt that the filter treats as motion
   EXPECT_GT(tilt(after_wrong_rates(filter, Eigen::Matrix3d::Zero(), lost_rad).q_WI), 0.06);
 }
 
-// attitude.md (A10): an error of deviation s and memory T over a time t has the angle's variance 2 s^2 T (t - T(1 - e))
+// attitude.md (A10): an error with deviation s and memory T gives the angle the variance 2 s^2 T (t - T(1 - e)) after
+// time t
 TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
   constexpr double kMemory_s = 0.5, kSigma_rad_s = 0.1;
   TumbleAttitude::Params params{.gyro_noise_rad_sqrts = 1e-6,
@@ -188,7 +189,7 @@ TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
       2.0 * kSigma_rad_s * kSigma_rad_s * kMemory_s * (2.0 - kMemory_s * (1.0 - std::exp(-2.0 / kMemory_s)));
   const Eigen::Matrix3d grown =
       TumbleAttitude::attitude_covariance_rad2(state) - TumbleAttitude::attitude_covariance_rad2(before);
-  // sums over samples stand for integrals: half a sample of the memory
+  // sums over samples replace integrals: half a sample of the memory
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(grown(axis, axis), expected, 0.01 * expected) << axis;
 }
 
@@ -214,7 +215,7 @@ TEST(TumbleAttitude, CovarianceStaysAProperOne) {
     if (sample.time_ns % 1'000'000'000 != 0) continue;
     const auto eigenvalues =
         Eigen::SelfAdjointEigenSolver<TumbleAttitude::State::Covariance>(state.covariance).eigenvalues();
-    // the heading is 0 at the start, and known exactly there
+    // the heading is 0 at the start, and exactly known there
     ASSERT_GT(eigenvalues.minCoeff(), sample.time_ns > 0 ? 0.0 : -1e-15) << seconds(sample.time_ns);
   }
 }
@@ -237,12 +238,12 @@ TEST(TumbleAttitude, CovarianceShrinksWhereTheForceIsThatOfABodyInPlace) {
   };
   const double in_place = deviation(0.0);
   EXPECT_LT(in_place, 0.02);
-  // negative control: of one that goes 4 m to and fro less is known
+  // negative control: a body that moves 4 m to and fro is less certain
   EXPECT_GT(deviation(6.0), 1.5 * in_place);
 }
 
-/// A body spins at `before`, is struck at a time within a gap of the readings, and spins at `after`: the true attitude
-/// behind it.
+/// Struck is a body that spins at `before`, is struck within a gap of the readings, and spins at `after`, with its true
+/// attitude afterwards.
 struct Struck {
   Eigen::Vector3d before_rad_s, after_rad_s;
   double share = 0.5;  ///< of the gap, when it is struck
@@ -278,7 +279,7 @@ BehindGap behind_gap(const Struck& struck, double gap_s) {
   return {off.head<2>(), TumbleAttitude::attitude_covariance_rad2(state).diagonal().head<2>().mean(), state.at_rest};
 }
 
-// A strike at any time of a gap turns a body by what no reading tells; attitude.md (A17).
+// A strike at an unknown time in a gap causes an unknown rotation; attitude.md (A17).
 TEST(TumbleAttitude, OverAGapTheCovarianceHoldsWhatAStrikeMakes) {
   std::mt19937 random(11);
   std::normal_distribution<double> rate(0.0, 5.0);
@@ -299,7 +300,7 @@ TEST(TumbleAttitude, OverAGapTheCovarianceHoldsWhatAStrikeMakes) {
   }
 }
 
-// In a straight line: where the rate does not change nothing is wrong, and the variance is that of the walk.
+// If the rate is equal before and after the gap, the attitude is right, and the variance is that of a random walk.
 TEST(TumbleAttitude, OverAGapTheRateGoesOnAndTheVarianceIsThatOfAWalk) {
   constexpr double kGap_s = 0.3;
   const BehindGap found = behind_gap({{3.0, -2.0, 1.0}, {3.0, -2.0, 1.0}}, kGap_s);

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rates and forces that grow linearly with time, by whole numbers a millisecond: sums of few of them are exact.
+/// Returns rates and forces that grow linearly with time, by whole numbers per millisecond, so that sums of few are
+/// exact.
 ImuSample on_the_line(TimeNs time_ns) {
   const double t_ms = static_cast<double>(time_ns) * 1e-6;
   return {time_ns, t_ms * Vector3d(2.0, -4.0, 8.0), t_ms * Vector3d(-16.0, 32.0, 1.0) + Vector3d::UnitZ(), 0};
@@ -39,7 +40,7 @@ TEST(ImuInterpolation, FollowsALineBetweenReadingsAndBeyondThem) {
 }
 
 TEST(ImuInterpolation, TheNextReadingsAreNotASecondAnswer) {
-  // over a bend the line of the two neighbours is not that of those beside them
+  // over a gap, the line of the two neighbours differs from that of the adjacent ones
   std::vector<ImuSample> samples = every_four_ms(4);
   samples[3].angular_velocity_rad_s *= 2.0;
   ImuInterpolation imu(samples);

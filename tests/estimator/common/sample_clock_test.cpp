@@ -14,7 +14,7 @@ namespace {
 
 constexpr TimeNs kStart_ns = 1'700'000'000'000'000'000;  // seconds since 1970: a double no longer holds it
 
-/// Times of samples, some of which never came.
+/// Returns sample times, some of which are missing.
 std::vector<TimeNs> regular(std::size_t count, double period_ns, double lost_share = 0.0) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform;
@@ -26,7 +26,7 @@ std::vector<TimeNs> regular(std::size_t count, double period_ns, double lost_sha
   return out;
 }
 
-/// Stamps that are early and late by chance, within three deviations.
+/// Returns stamps with random errors within three deviations.
 std::vector<TimeNs> jittered(std::vector<TimeNs> times_ns, double jitter_ns) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
@@ -40,7 +40,7 @@ std::vector<TimeNs> times_of(std::vector<TimeNs> stamps_ns, const SampleClock::P
   return stamps_ns;
 }
 
-/// Root mean square of the differences from the `first`-th on, less their mean: what is always late is an offset.
+/// Returns the rms difference from sample `first` on, without its mean, because a constant delay is an offset.
 double spread_ns(const std::vector<TimeNs>& found, const std::vector<TimeNs>& expected, std::size_t first) {
   double sum = 0.0, squares = 0.0;
   for (std::size_t k = first; k < found.size(); ++k) {
@@ -76,7 +76,7 @@ TEST(SampleClock, StampsOfTheSensorStayAsTheyAre) {
   EXPECT_EQ(times_of(microseconds), microseconds);
 }
 
-// The filter's own variance, 1.25 T / memory (Morrison, eq. 13.5 for a long memory), against what is measured.
+// Compares the filter's variance, 1.25 T / memory (Morrison, eq. 13.5 for a long memory), with the measured variance.
 TEST(SampleClock, ErrsByWhatItsMemoryLeaves) {
   for (const double period_ns : {10e6, 4e6, 1e6}) {
     const double jitter_ns = 0.1 * period_ns;
@@ -124,7 +124,7 @@ TEST(SampleClock, LeavesASensorWithoutAPeriod) {
   EXPECT_EQ(moved, 0u);
 }
 
-// A period that wanders by 3 % within four seconds: its stamps are the truth, and the line does not follow them.
+// The period drifts by 3 % within four seconds; its stamps are the truth, and the line does not follow them.
 TEST(SampleClock, LeavesASensorWhosePeriodWanders) {
   std::vector<TimeNs> stamps_ns;
   double time_ns = 0.0;
@@ -135,7 +135,7 @@ TEST(SampleClock, LeavesASensorWhosePeriodWanders) {
   EXPECT_LT(largest_ns(times_of(stamps_ns), stamps_ns), 0.1 * 1e7);
 }
 
-// The host stops for 35 ms, and what came meanwhile is stamped at once when it goes on.
+// The host stops for 35 ms, and stamps the waiting samples at once when it continues.
 TEST(SampleClock, IsNotLostInABurst) {
   const std::vector<TimeNs> times_ns = regular(3000, 1e7);
   std::vector<TimeNs> stamps_ns = jittered(times_ns, 3e5);
@@ -167,7 +167,7 @@ TEST(SampleClock, GoesOnBehindAGapAndAJumpOfTheClock) {
   EXPECT_LT(worst_ns(4000, 4500), 2e6 + 9e5);  // half a period from its stamp at most
 }
 
-// A device that is told to go ten times as fast.
+// The device is set to a tenfold rate.
 TEST(SampleClock, IsCaughtUpByFasterStamps) {
   std::vector<TimeNs> times_ns = regular(1000, 1e7);
   for (int k = 1; k <= 4000; ++k) times_ns.push_back(times_ns[999] + k * TimeNs{1'000'000});

@@ -17,8 +17,8 @@ const Matrix4 kPrior = [] {
   return Matrix4(root * root.transpose());
 }();
 
-/// In information form: the inverse covariance gains h h^T / variance, and the correction is the new covariance times
-/// h innovation / variance.
+/// In information form, the inverse covariance gains h h^T / variance, and the correction is the new covariance times h
+/// innovation / variance.
 void expect_bayes(const Vector4& h, double innovation, double variance, const Vector4& correction, const Matrix4& P) {
   const Matrix4 expected = (kPrior.inverse() + h * h.transpose() / variance).inverse();
   EXPECT_LT((P - expected).norm(), 1e-12);
@@ -78,7 +78,7 @@ TEST(VectorUpdate, OfIndependentNoiseIsScalarsOneAfterAnother) {
   in_turn += scalar_update(H.row(1), innovation[1] - H.row(1).dot(in_turn), variances[1], twice);
   EXPECT_LT((once - twice).norm(), 1e-12);
   EXPECT_LT((at_once - in_turn).norm(), 1e-12);
-  // of correlated noise it is not
+  // for correlated noise, the scalar updates differ
   Eigen::Matrix2d noise = variances.asDiagonal();
   noise(0, 1) = noise(1, 0) = 0.02;
   Matrix4 correlated = kPrior;

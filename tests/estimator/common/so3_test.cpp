@@ -119,7 +119,7 @@ TEST(So3, LeftJacobianInverseIsTheInverse) {
 
 TEST(So3, ShortestArcTakesOneVectorToTheOther) {
   const Vector3d from = Vector3d(1, -2, 0.5).normalized(), side = from.unitOrthogonal();
-  // from equal to opposite, with the small deviations in which 1 + cos would cancel
+  // from equal to opposite, with the small deviations for which 1 + cos would cancel
   for (double angle : {0.0, 1e-12, 1e-8, 1e-3, 1.0, 3.0, kPi - 1e-3, kPi - 1e-6, kPi - 1e-7, kPi - 1e-9, kPi - 1e-13}) {
     const Vector3d to = std::cos(angle) * from + std::sin(angle) * side;
     const Quaterniond q = shortest_arc(from, to);

@@ -111,7 +111,7 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
   EXPECT_EQ(status.message(), "out_of_range: on is 2; the bound is 1");
   status = status_with(13, {2});
   EXPECT_EQ(status.message(), "out_of_range: colour is 2; the bound is 1");
-  // a length that no bytes stand for asks for no memory
+  // a length without matching bytes allocates no memory
   status = status_with(14 + 24 + 32, {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f});
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(status.field, "samples");

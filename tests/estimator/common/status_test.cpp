@@ -103,7 +103,7 @@ TEST(CheckFollows, RefusesEqualFallingAndDistantStamps) {
   EXPECT_EQ(gap.error_code, ErrorCode::gap);
   EXPECT_DOUBLE_EQ(gap.value, 2.0);
   EXPECT_EQ(gap.bound, 1.0);
-  // stamps whose difference does not fit into one
+  // stamps whose difference exceeds a signed 64-bit integer
   constexpr TimeNs kFirst = std::numeric_limits<TimeNs>::min(), kLast = std::numeric_limits<TimeNs>::max();
   EXPECT_EQ(check_stamp_order(0, kFirst, 1.0).error_code, ErrorCode::gap);
   EXPECT_DOUBLE_EQ(check_stamp_order(kLast, kFirst, 1.0).value, 18446744073.709551615);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a calibration lies from what was given, in closed form.
+// Compares the distance of a calibration from the stated one with a closed form.
 #include "tumble/mapping/calibration.hpp"
 
 #include <gtest/gtest.h>

@@ -35,21 +35,21 @@ TEST(SweepTrajectory, FollowsTheTrueMotionAtAnyInstant) {
   const test::Motion motion;
   const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.3, 1000.0));
   SweepTrajectory trajectory;
-  // neither end falls on a sample
+  // neither end coincides with a sample
   const MotionState start = true_state(motion, 1'000'300'000);
   ASSERT_TRUE(trajectory.build(start, samples, 1'200'700'000, test::kRoomGravity_m_s2).ok());
   for (int i = 0; i <= 50; ++i) {
     const double t = trajectory.duration_s() * i / 50.0;
     const MotionState state = trajectory.state(t);
     const double at = 1.0003 + t;
-    // 200 ms at 15 rad/s and 1 kHz. The rate turns inside of a sample; measured 1e-5 rad, 2e-5 m, 2e-4 m/s
+    // 200 ms at 15 rad/s and 1 kHz. The rate rotates within a sample; measured 1e-5 rad, 2e-5 m, 2e-4 m/s
     EXPECT_LT(so3::log(state.q_WI * motion.q(at).conjugate()).norm(), 5e-5) << "t " << t;
     EXPECT_LT((state.p_WI_m - motion.p_m(at)).norm(), 1e-4) << "t " << t;
     EXPECT_LT((state.v_WI_m_s - motion.v_m_s(at)).norm(), 1e-3) << "t " << t;
   }
 }
 
-/// Bit for bit: of points in any order, beyond both ends, and at angles beyond the series.
+/// Bit for bit: for points in any order, beyond both ends, and at angles beyond the series.
 TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
   for (const double spin_rad_s : {15.0, 300.0}) {
     test::Motion motion;
@@ -62,7 +62,7 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
     for (std::uint64_t i = 0; i < 3000; ++i) {
       SweepPoint& point = points.emplace_back();
       const auto share = static_cast<float>(test::uniform(4 * i));
-      // in time order first, then anyhow
+      // in time order first, then in random order
       point.t_s = i < 2000 ? 0.16f * static_cast<float>(i) / 2000.0f - 0.03f : 0.16f * share - 0.03f;
       point.x_I_m = 40.0f * Eigen::Vector3f(static_cast<float>(test::uniform(4 * i + 1)) - 0.5f,
                                             static_cast<float>(test::uniform(4 * i + 2)) - 0.5f,
@@ -100,7 +100,7 @@ TEST(SweepTrajectory, IsExactForASteadySpinAtRest) {
   EXPECT_LT((end.v_WI_m_s - 0.1 * so3::left_jacobian(0.1 * w) * samples[0].f_I_m_s2).norm(), 1e-14);
 }
 
-// Samples that wait for the next segment say nothing of this one's clipped axes.
+// Samples of the next segment do not affect this segment's clipped axes.
 TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   MotionSample clipped;
   clipped.from_ns = 0;
@@ -165,7 +165,7 @@ TEST(SweepTrajectory, CovarianceMatchesDifferences) {
 
 class DeskewedSweep : public testing::Test {
  protected:
-  /// Largest distance to the room's surfaces of a sweep at 15 rad/s, deskewed to its end with the rates scaled.
+  /// Returns the largest distance to the room's surfaces of a sweep at 15 rad/s, deskewed to its end with scaled rates.
   double largest_distance(double rate_scale) {
     const test::Motion motion;
     const test::Room room = test::Room::box_with_pillars();

@@ -9,16 +9,16 @@
 
 namespace tumble::test {
 
-/// A straight drive along a corridor without end, with a rib across its floor every few metres: rest for half a second,
-/// then a second of acceleration, then 1 m/s. Sensor data sweep by sweep, so that a drive of any length needs no
-/// memory.
+/// EndlessCorridor is a straight drive along an endless corridor, with a rib across its floor every few metres: rest
+/// for half a second, a second of acceleration, then 1 m/s. The sensor data are generated sweep by sweep, so that a
+/// drive of any length needs no memory.
 class EndlessCorridor {
  public:
-  /// `sweep_ns`: how long a sweep takes, tenths of a second.
+  /// `sweep_ns` is the duration of a sweep, in whole tenths of a second.
   explicit EndlessCorridor(int points_per_sweep, std::int64_t sweep_ns = kSweep_ns)
       : points_per_sweep_(points_per_sweep), sweep_ns_(sweep_ns) {}
 
-  /// Samples of the next sweep (100 Hz); then points() are those of that sweep.
+  /// Returns the samples of the next sweep (100 Hz); then points() are those of this sweep.
   std::vector<ImuSample> advance();
   std::vector<LidarPoint> points() const;
 
@@ -34,7 +34,7 @@ class EndlessCorridor {
   double x_m_ = 0.0, v_m_s_ = 0.0;
 };
 
-/// For a drive along it: the lidar's and the map's reach are short, so that the map is left behind soon.
+/// Returns parameters for the corridor: the reach of lidar and map is short, so that the map is soon left behind.
 LidarInertialOdometry::Params corridor_params();
 
 }  // namespace tumble::test

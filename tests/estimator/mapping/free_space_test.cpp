@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sweep saw through, and the map without it.
+// Tests the free space that a sweep observed, and the map without the removed points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,8 @@ using test::true_params;
 constexpr float kWall_m = 8.0f;
 const Eigen::Vector3f kFrom(1.0f, 2.0f, 0.5f);
 
-/// A wall across x, seen from 8 m by returns half a degree apart, but for a post of 0.2 m before it, 0.5 m to the left.
+/// Returns the view of a wall across x, seen from 8 m by returns half a degree apart, with a post of 0.2 m in front,
+/// 0.5 m to the left.
 SightGrid before_a_wall(float moved_m) {
   SightGrid sight;
   sight.start(kFrom, moved_m);
@@ -57,7 +58,7 @@ TEST(SightGrid, SaysNothingOfWhatTheSensorPassed) {
 constexpr int kLeaves = 8, kEnd = 32;  // sweeps
 const test::Room::Pillar kVisitor{{7.0, -3.0}, 0.3};
 
-/// Points of the map on the visitor, away from the walls and the other pillars.
+/// Counts the map points on the visitor, away from the walls and the other pillars.
 std::size_t on_the_visitor(const RoomRig& rig) {
   std::size_t count = 0;
   const test::Room alone = test::Room::box_with_pillars();
@@ -80,7 +81,7 @@ TEST(FreeSpace, WhoWalkedAwayIsLeftOutOfTheMap) {
   leaves.room.pillars.pop_back();
   leaves.run(kLeaves, kEnd);
   EXPECT_EQ(leaves.report.verdict, SweepVerdict::registered);
-  // what the sensor passes too close by, or few rings show, stays
+  // points that the sensor passes too closely, or that few rings see, remain
   EXPECT_LT(on_the_visitor(leaves), seen / 5);
   EXPECT_GE(on_the_visitor(stays), seen);
 }

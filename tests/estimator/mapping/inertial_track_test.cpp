@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the mapper hears of an IMU: when the rest at its start ends, what that teaches, and which sweeps rest.
+// Tests what the mapper derives from an IMU: the end of the initial rest, the bias, and the sweeps at rest.
 #include "estimator/src/mapping/inertial_track.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using Params = LidarInertialOdometry::Params;
 
 const Eigen::Vector3d kBias_rad_s(0.01, -0.02, 0.005);
 
-/// One who hears an IMU of samples that are `step_ns` apart.
+/// Listener receives samples of an IMU that are `step_ns` apart.
 struct Listener {
   Params params = {};
   TimeNs step_ns = 10'000'000;
@@ -42,7 +42,7 @@ struct Listener {
   }
 };
 
-/// Of a gyro of 6.5 mrad/s a reading, the first two 35 mrad/s apart: rare, and no motion.
+/// Returns a gyro with noise of 6.5 mrad/s whose first two readings are 35 mrad/s apart: rare, but no motion.
 Listener noisy_at_first(double bias_rest_s) {
   Listener listener;
   listener.params.expert.start.bias_rest_s = bias_rest_s;
@@ -81,7 +81,7 @@ TEST(InertialTrack, ATooShortRestTeachesNoBias) {
   EXPECT_EQ(listener.track.samples().back().w_WI_I_rad_s, Eigen::Vector3d(0.0, 3.0, 0.0));
 }
 
-// readings take 10 ms, and what moves within one is told at its end
+// readings take 10 ms, and motion within a reading is detected at its end
 TEST(InertialTrack, AFastImuIsHeldNoLongerThanItRests) {
   Listener listener;
   listener.step_ns = 1'000'000;
@@ -114,7 +114,7 @@ TEST(InertialTrack, ASweepRestsWhileTheImuSaysNothingButGravity) {
   EXPECT_FALSE(rests(9.6, 0.0, 2));
 }
 
-/// Parts of a gap of 0.3 s in a flight that turns by 3 rad/s, and by `after_rad_s` once it is over.
+/// Returns the parts of a gap of 0.3 s in a flight that turns by 3 rad/s, and by `after_rad_s` after the gap.
 std::vector<MotionSample> parts_of_a_gap(double after_rad_s) {
   Listener listener;
   listener.params.expert.flight.body = FlyingBody{};
@@ -139,14 +139,14 @@ TEST(InertialTrack, AFlightGoesOnThroughAGapThatItsRateBearsOut) {
     EXPECT_NEAR(part.w_WI_I_rad_s.y(), 3.0, 1e-9);
     EXPECT_GE(part.rate_sigma_rad_s.y(), 0.2 - 1e-9);  // what it is off by at the end
   }
-  // struck inside of it
+  // with an impact inside the gap
   const auto struck = parts_of_a_gap(8.0);
   ASSERT_FALSE(struck.empty());
   for (const MotionSample& part : struck) EXPECT_TRUE(part.bridges_gap && !part.in_flight);
   EXPECT_NEAR(struck[struck.size() / 2].w_WI_I_rad_s.y(), 5.5, 0.2);
 }
 
-// The window before a gap may itself be a gap, at rest: no sample reaches back into the one before it.
+// The window before a gap may itself be a gap at rest; no sample may overlap the previous one.
 TEST(InertialTrack, SamplesDoNotOverlapWhateverTheirWindows) {
   Listener listener;
   listener.hear(30, Eigen::Vector3d::Zero());

@@ -27,7 +27,7 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
   EXPECT_EQ(reports[0].verdict, SweepVerdict::first);
   int registered = 0;
   for (std::size_t i = 1; i < reports.size(); ++i) {
-    // the map of a sensor at rest is rings; it fills once the spin begins
+    // the map of a sensor at rest consists of rings, and is filled once the spin begins
     EXPECT_NE(reports[i].verdict, SweepVerdict::rejected) << "sweep " << i;
     registered += reports[i].verdict == SweepVerdict::registered;
     EXPECT_GT(reports[i].inlier_ratio, i < 4 ? 0.15 : 0.35) << "sweep " << i;
@@ -37,12 +37,12 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
   }
   EXPECT_GT(registered, 20);
   const test::PoseError end = error_of(reports.back().pose);
-  // most of it comes from the first moving sweep against rings; measured 0.025 m, 0.0013 rad, 0.01 m/s
+  // most of the error comes from the first moving sweep against rings; measured 0.025 m, 0.0013 rad, 0.01 m/s
   EXPECT_LT(end.m, 0.04);
   EXPECT_LT(end.rad, 0.003);
   EXPECT_LT(end.m_s, 0.05);
 
-  // the map lies on the surfaces, and its normals look back at the sensor's side of them
+  // the map points are on the surfaces, and their normals point to the sensor's side
   const std::vector<MapPoint> map = odometry.map();
   ASSERT_GT(map.size(), 10'000u);
   std::size_t near = 0, with_normal = 0, inwards = 0;
@@ -81,7 +81,7 @@ TEST(LidarInertialOdometry, FindsTheDeficitOfClippedAxesByItself) {
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
   Odometry whole(rig_params());
   const auto before = run(whole, 0, 9);
-  // in the midst of a sweep's samples
+  // in the middle of a sweep's samples
   for (int k = 90; k < 94; ++k) {
     ASSERT_TRUE(whole
                     .add_imu(test::room_tumble().imu[static_cast<std::size_t>(k)],
@@ -130,8 +130,8 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
   EXPECT_GT(degenerate, 3);  // at rest its rings give no plane at all
 }
 
-/// A plane without noise leaves directions open to the last bit: smallest over largest eigenvalue is 0 then. What it
-/// does hold is aligned all the same.
+/// A plane without noise leaves directions undetermined to the last bit: the ratio of smallest to largest eigenvalue is
+/// 0. The directions that it determines are still aligned.
 TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   const auto plane = [](float height_m) {
     std::vector<LidarPoint> points;
@@ -157,7 +157,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
       sample.specific_force_m_s2 = {0.0, 0.0, params.expert.gravity_m_s2};
       ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     }
-    // the second sweep sees the plane 5 mm nearer than inertia has it
+    // the second sweep measures the plane 5 mm nearer than the inertial prediction
     ASSERT_TRUE(add_sweep(odometry, sweep, plane(sweep == 0 ? -1.5f : -1.495f), report).ok());
   }
   EXPECT_EQ(report.verdict, SweepVerdict::degenerate);
@@ -167,8 +167,8 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   EXPECT_GT(report.innovation, 0.0);
 }
 
-/// Above a floor alone, which leaves two directions open, and with an accelerometer that is off by 0.5 m/s^2 once the
-/// rest is over: integrated it goes astray, a velocity that is told at every sweep holds it.
+/// Above a floor alone, which leaves two directions undetermined, and with an accelerometer error of 0.5 m/s^2 after
+/// the rest, the integrated motion drifts; a stated velocity at every sweep prevents the drift.
 TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
   const test::Motion& motion = test::room_tumble().motion;
   const auto end_error_m = [&](bool told) {
@@ -195,7 +195,7 @@ TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
   EXPECT_GT(end_error_m(false), 0.15);
 }
 
-/// An accelerometer that reads one value of its rail, or nothing at all, from the throw on.
+/// From the throw on, the accelerometer reads a constant saturated value, or zero.
 TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
   const test::Motion& motion = test::room_tumble().motion;
   const auto worst_m = [&](const Eigen::Vector3d& read, bool left_out) {
@@ -226,7 +226,7 @@ TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
 }
 
 TEST(LidarInertialOdometry, LevelsAtRest) {
-  // a tilted start: gravity tells roll and pitch, yaw is zero
+  // tilted start: gravity determines roll and pitch, yaw is zero
   const Eigen::Quaterniond q_true = so3::exp({0.0, 0.3, 0.0}) * so3::exp({0.2, 0.0, 0.0});
   Odometry odometry(rig_params());
   for (int k = 1; k <= 10; ++k) {

@@ -49,7 +49,7 @@ TEST(Localisation, WithoutAMapNothingIsLost) {
   EXPECT_FALSE(localisation.verdict().ok());
 }
 
-// A rail may hide more of one sweep than the rates knew; what is wrong of an IMU or a mounting comes back.
+// Saturation may hide more in one sweep than the rates state; an error of IMU or mounting occurs again.
 TEST(Localisation, TwoSweepsThatContradictTheirPriorsAreNotForgotten) {
   EXPECT_TRUE(after(sweep(0.1, 3.0)).ok());
   Localisation localisation(1.0);

@@ -5,7 +5,7 @@
 
 #include "tests/estimator/mapping/endless_corridor.hpp"
 
-// memory over a long way: what lies behind is forgotten
+// memory over a long path: distant map points are removed
 namespace tumble {
 namespace {
 
@@ -35,7 +35,7 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   EXPECT_EQ(lost, 0u);
   EXPECT_NEAR(report.pose.p_WA_m.x(), corridor.x_m(), 0.02 * corridor.x_m());
   ASSERT_GT(points_early, 500u);
-  // it breathes by what comes between two prunings
+  // the size varies by the points added between two prunings
   EXPECT_LT(static_cast<double>(odometry.map().size()), 1.3 * static_cast<double>(points_early));
   EXPECT_LT(static_cast<double>(bytes_late), 2.1 * static_cast<double>(bytes_early));
   for (const MapPoint& point : odometry.map()) {
@@ -43,7 +43,7 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   }
 }
 
-// negative control: with a map that reaches farther than the way, memory grows with it
+// negative control: with a map larger than the path, memory grows
 TEST(LocalMapSoak, GrowsWhereItForgetsNothing) {
   LidarInertialOdometry::Params params = test::corridor_params();
   params.expert.map.radius_m = 1e4;

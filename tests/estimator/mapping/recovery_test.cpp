@@ -7,7 +7,7 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-// what the mapper is wrong about at the start, and what it loses on the way: found, and left again
+// tests wrong calibration at the start, and tracking failure with recovery
 namespace tumble {
 namespace {
 
@@ -20,7 +20,8 @@ using test::slower;
 using test::true_params;
 using Rig = test::RoomRig;
 
-/// A spin whose axis turns in the body: about a fixed one, a late clock and a turned mounting look the same.
+/// Returns a spin whose axis rotates in the body: with a fixed axis, a late clock and a rotated mounting would be
+/// indistinguishable.
 test::Motion turning() {
   test::Motion motion;
   motion.spin_rad_s = 5.0;
@@ -28,7 +29,7 @@ test::Motion turning() {
   return motion;
 }
 
-/// Runs with a mounting that is wrong by a degree and a centimetre and a lidar clock that is late by 4 ms.
+/// Runs with a mounting that is wrong by a degree and a centimetre, and a lidar clock that is 4 ms late.
 void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweeps) {
   constexpr std::int64_t kLate_ns = 4'000'000;
   const std::vector<ImuSample> imu = test::make_imu(motion, 0.1 * sweeps + 0.1);
@@ -47,7 +48,7 @@ void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweep
   }
 }
 
-/// A motion that a second without readings does not lose.
+/// Returns a motion in which a second without readings causes no tracking failure.
 test::Motion gentle() {
   test::Motion motion;
   motion.spin_rad_s = 0.8;
@@ -66,7 +67,7 @@ TEST(Calibration, FindsMountingAndClock) {
   params.expert.gravity_sigma_m_s2 = 0.03;
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
-  // the first map was drawn while the calibration was wrong: what it taught starts a second one
+  // the first map was built with the wrong calibration; its calibration result starts a second map
   const auto learnt_sigma = odometry.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
   params.T_IL = odometry.calibration().T_IL;
   params.time_offset_s = odometry.calibration().time_offset_s;
@@ -80,7 +81,7 @@ TEST(Calibration, FindsMountingAndClock) {
   truth.time_offset_s = 0.004;
   const auto error = odometry.calibration().minus(truth);
   const auto sigma = odometry.calibration_covariance().diagonal().cwiseSqrt().eval();
-  // given: 0.018 rad, 10 mm, 4 ms off; measured: 0.0022 rad, 0.4 mm, 0.44 ms
+  // stated: errors of 0.018 rad, 10 mm, 4 ms; measured: 0.0022 rad, 0.4 mm, 0.44 ms
   EXPECT_LT(error.head<3>().norm(), 0.003);
   EXPECT_LT(error.segment<3>(3).norm(), 0.005);
   EXPECT_LT(std::abs(error[6]), 5e-4);
@@ -134,7 +135,7 @@ TEST(Recovery, ADegenerateSegmentIsSaidAndLeft) {
         test::make_sweep(test::Room::floor_only(), rig.motion, true_params().T_IL, k, kRoomNoise_m, kHalfColumns);
     ASSERT_TRUE(rig.sweep(k, floor).ok());
     EXPECT_EQ(rig.report.verdict, SweepVerdict::degenerate) << k;
-    // held by the prior in the free directions, by the floor in the others
+    // the prior constrains the free directions, and the floor the others
     EXPECT_LT(rig.error_m(), 0.1);
   }
   rig.run(20, 24);
@@ -142,7 +143,7 @@ TEST(Recovery, ADegenerateSegmentIsSaidAndLeft) {
   EXPECT_LT(rig.error_m(), 0.05);
 }
 
-// the same tumble told by an IMU that is mounted another way round
+// the same tumble with an IMU of another mounting
 TEST(Equivariance, ToARotatedMounting) {
   const Eigen::Matrix3d turn = so3::exp({0.4, -1.1, 0.7}).toRotationMatrix();
   Odometry::Params turned = true_params();
@@ -164,15 +165,15 @@ TEST(Equivariance, ToARotatedMounting) {
     ASSERT_TRUE(a.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, ra).ok());
     ASSERT_TRUE(b.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, rb).ok());
   }
-  // yaw is zero at the start for either: the heading of the whole world differs by what levelling made of the mounting
+  // yaw is zero at the start in both runs: the heading of the world differs by the effect of levelling on the mounting
   const Eigen::Quaterniond world = rb.pose.q_WA * Eigen::Quaterniond(turn) * ra.pose.q_WA.conjugate();
   EXPECT_LT(std::abs(world.x()) + std::abs(world.y()), 2e-3);
-  // which points are drawn into which voxel differs with the heading: the noise of a registration
+  // the selection of points per voxel depends on the heading: registration noise
   EXPECT_LT((world * ra.pose.p_WA_m - rb.pose.p_WA_m).norm(), 0.03);
   EXPECT_GT((ra.pose.p_WA_m).norm(), 0.3);  // it moved
 }
 
-/// Returns from one side of the room only, by where they truly lie.
+/// Returns the lidar points on one side of the room only, by their true positions.
 std::vector<LidarPoint> on_side(const Rig& rig, int sweep, double from_x_m, double to_x_m) {
   std::vector<LidarPoint> points = rig.points(sweep);
   std::erase_if(points, [&](const LidarPoint& point) {
@@ -183,7 +184,7 @@ std::vector<LidarPoint> on_side(const Rig& rig, int sweep, double from_x_m, doub
   return points;
 }
 
-// after eight sweeps of one side the ninth shows the other, farther off than any match: there is a prior to draw by
+// after eight sweeps of one side, the ninth shows the other side, beyond any match: only the prior can insert it
 void see_the_other_side(Rig& rig, SweepVerdict expected) {
   constexpr double kFar_m = 100.0;
   for (int k = 0; k < 8; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A place that a search found: borne out by the sweeps after it, or taken back with all that it drew.
+// Tests a relocalisation that later sweeps confirm, or that is reverted with all inserted points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using test::true_params;
 
 constexpr int kCovered = 20, kSeesAgain = 35;  // sweeps without points in between
 
-/// The room as if the sensor stood elsewhere in it: fits the map wholly, where the sensor is not.
+/// Returns the room as seen from another position: the sweep fits the map completely where the sensor is not.
 std::vector<LidarPoint> seen_from_elsewhere(const RoomRig& rig, int sweep, double shift_m) {
   test::Room room = rig.room;
   for (test::Room::Plane& plane : room.planes) plane.point_m.x() -= shift_m;
@@ -27,7 +27,7 @@ std::vector<LidarPoint> seen_from_elsewhere(const RoomRig& rig, int sweep, doubl
   return test::make_sweep(room, rig.motion, true_params().T_IL, sweep, test::kRoomNoise_m, test::kHalfColumns);
 }
 
-/// Returns at any range: they fit nothing.
+/// Returns points at random ranges, which fit nothing.
 std::vector<LidarPoint> of_no_room(const RoomRig& rig, int sweep) {
   std::vector<LidarPoint> points = rig.points(sweep);
   std::uint64_t counter = 0;
@@ -36,7 +36,7 @@ std::vector<LidarPoint> of_no_room(const RoomRig& rig, int sweep) {
   return points;
 }
 
-/// Tracks, is covered, and then finds a place that is off by so much.
+/// Tracks, is covered, and then relocalises with a pose error of `shift_m`.
 void find_again(RoomRig& rig, double shift_m) {
   rig.run(0, kCovered);
   ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);
@@ -86,7 +86,7 @@ TEST(Relocalised, OnePlaceThatTwoSweepsBearOutStands) {
     EXPECT_EQ(rig.report.relocalisation_unconfirmed, relocalisation_unconfirmed);
     EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   }
-  // what was borne out by what the sensor saw is not taken back by one sweep
+  // a confirmed relocalisation is not reverted by a single sweep
   rig.feed_imu(kSeesAgain + 3);
   ASSERT_TRUE(rig.sweep(kSeesAgain + 3, of_no_room(rig, kSeesAgain + 3)).ok());
   EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 1);
@@ -129,7 +129,7 @@ TEST(Relocalised, GoesOnFromASavedStateWithTheSameBits) {
   EXPECT_NE(bytes(rig.odometry), saved);
 }
 
-/// A mapper's state with its members open: `head` is what is saved before them.
+/// OpenState is a mapper's state with its members accessible; `head` is saved before them.
 struct OpenState {
   using Impl = LidarInertialOdometry::Impl;
   explicit OpenState(const LidarInertialOdometry& odometry) : members(std::make_unique<Impl>(true_params())) {
@@ -160,7 +160,7 @@ void load(const std::vector<std::byte>& saved, LidarInertialOdometry& into) {
                                     << reader.status().bound;
 }
 
-// as after a motion of the second opinion that could not be built
+// as after a motion of the alternative pose that could not be built
 TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
@@ -179,7 +179,7 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
     EXPECT_EQ(agrees.report.relocalisation_unconfirmed, relocalisation_unconfirmed);
     EXPECT_EQ(agrees.report.consecutive_rejected_sweeps, 0);
   }
-  // nothing to go back to: what is there stands, and the sweep alone is lost
+  // without an alternative, the pose remains, and only the sweep is lost
   RoomRig contradicts(true_params());
   load(alone, contradicts.odometry);
   const std::size_t with_it = contradicts.odometry.map().size();
@@ -191,7 +191,7 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   EXPECT_EQ(contradicts.odometry.map().size(), with_it);
 }
 
-/// Keeps so little about itself that whole sweeps fall out of the map as it moves.
+/// Returns parameters with so small a map that whole sweeps leave it during motion.
 OdometryParams keeps_little() {
   OdometryParams params = true_params();
   params.range_max_m = 40.0;
@@ -214,7 +214,7 @@ TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   const std::size_t with_it = rig.odometry.map().size();
   const std::uint32_t inserted_from = OpenState(rig.odometry).members->other->inserted_from;
 
-  // while the place is doubted nothing is pruned, since what it drew may be taken back
+  // nothing is pruned during an unconfirmed relocalisation, because its points may be removed
   RoomRig agrees(keeps_little());
   load(suspect, agrees.odometry);
   agrees.feed_imu(kSeesAgain + 1);
@@ -223,7 +223,7 @@ TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   EXPECT_GE(agrees.odometry.map().size(), with_it);
   expect_loads_again(agrees.odometry);
 
-  // contradicted: the map is pruned to fewer sweeps than there were before the place
+  // contradicted: the map is pruned to fewer sweeps than before the relocalisation
   RoomRig contradicts(keeps_little());
   load(suspect, contradicts.odometry);
   contradicts.feed_imu(kSeesAgain + 1);

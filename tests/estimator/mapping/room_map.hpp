@@ -7,10 +7,10 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/registration.hpp"
 
-/// What the tests of the registration align to, and from where.
+/// room_map.hpp provides the maps and priors of the registration tests.
 namespace tumble::test {
 
-/// A map sampled from a room's surfaces by still sensors at three places.
+/// Returns a map sampled from a room's surfaces by stationary sensors at three positions.
 inline VoxelMap map_of(const Room& room, double noise_m = 0.0) {
   VoxelMap map({0.5, 0.1});
   Motion still;
@@ -29,7 +29,7 @@ inline VoxelMap map_of(const Room& room, double noise_m = 0.0) {
   return map;
 }
 
-/// Of a pose alone; the velocity is known.
+/// Returns a prior with an uncertain pose and a known velocity.
 inline Registration::Prior loose_prior(double sigma_m, double sigma_rad) {
   Registration::Prior prior;
   prior.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);

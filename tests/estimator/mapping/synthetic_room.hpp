@@ -11,7 +11,7 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 
-/// An analytic world, motion and pair of sensors: what the mapping code must explain, made without any of it.
+/// synthetic_room.hpp provides an analytic world, motion and sensors, independent of the mapping code.
 namespace tumble::test {
 
 inline constexpr double kRoomGravity_m_s2 = 9.80665;
@@ -19,7 +19,7 @@ inline constexpr int kSamplesPerSweep = 10;
 inline constexpr int kHalfColumns = 450;  ///< of a sweep, where fewer do
 inline constexpr double kRoomNoise_m = 0.01;
 
-/// Planes (point, normal towards the free side) and vertical round pillars.
+/// Room consists of planes (point, normal towards the free side) and vertical round pillars.
 struct Room {
   struct Plane {
     Eigen::Vector3d point_m, normal;
@@ -31,24 +31,24 @@ struct Room {
   std::vector<Plane> planes;
   std::vector<Pillar> pillars;
 
-  /// Box room of 24 m x 18 m x 8 m about the origin, floor at z = -1.5 m.
+  /// Returns a box room of 24 m x 18 m x 8 m about the origin, floor at z = -1.5 m.
   static Room box();
-  /// The same with six pillars of various radii.
+  /// Returns the box room with six pillars of various radii.
   static Room box_with_pillars();
   static Room floor_only();
-  /// Two walls along x and a floor.
+  /// Returns two walls along x and a floor.
   static Room corridor();
-  /// Floor and two walls that meet.
+  /// Returns a floor and two walls that meet.
   static Room corner();
 
-  /// Distance along a unit ray to the first surface; negative when there is none within 100 m.
+  /// Returns the distance along a unit ray to the first surface; negative if there is none within 100 m.
   double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
-  /// Distance of a point to the nearest surface (planes unbounded).
+  /// Returns the distance of a point to the nearest surface (planes unbounded).
   double distance(const Eigen::Vector3d& point) const;
 };
 
-/// Motion of the IMU: rest until `rest_s`, then a spin that rises within half a second about axes that turn, while the
-/// position swings through metres. Smooth; position by closed form.
+/// Motion of the IMU: rest until `rest_s`, then a spin that rises within half a second about rotating axes, while the
+/// position swings through metres. The motion is smooth, with the position in closed form.
 struct Motion {
   double rest_s = 0.3;
   double spin_rad_s = 15.0;
@@ -62,20 +62,20 @@ struct Motion {
   Eigen::Isometry3d pose(double t) const;
 };
 
-/// Samples at 100 Hz, or another whole divisor of a second, up to `duration_s`: the rate is the exact increment of
-/// attitude over each window, the specific force the mean over the window in the turning axes.
+/// Returns samples at 100 Hz, or another whole divisor of a second, up to `duration_s`: the rate is the exact increment
+/// of attitude over each window, the specific force the mean over the window in the rotating axes.
 std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double rate_hz = 100.0);
 std::vector<MotionSample> motion_samples(const std::vector<ImuSample>& imu);
-/// A rate as a method would give it that believes the gyro.
+/// Returns the rate of a method that accepts the gyro's reading.
 RateState believe(const ImuSample& sample);
 
-/// Sixteen rings by `columns` in 0.1 s, each ray from the pose of its own instant, noise of the range uniform with
+/// Returns sixteen rings by `columns` in 0.1 s, each ray from the pose at its own time, with uniform range noise of
 /// standard deviation `noise_m`, drawn from (sweep, point) alone.
 std::vector<LidarPoint> make_sweep(const Room& room, const Motion& motion, const Eigen::Isometry3d& T_IL, int sweep,
                                    double noise_m = 0.0, int columns = 900);
 constexpr std::int64_t kSweep_ns = 100'000'000;
 
-/// Number in [0, 1) from a 64-bit counter.
+/// Returns a number in [0, 1) from a 64-bit counter.
 double uniform(std::uint64_t counter);
 
 }  // namespace tumble::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sweep makes of where the sensor stands to its map: all transitions as a table, and what decides the verdict.
+// Tests the tracking states: all transitions as a table, and what determines the verdict.
 #include "estimator/src/mapping/tracking.hpp"
 
 #include <gtest/gtest.h>
@@ -131,7 +131,7 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
 }
 
-/// A place that a search found, of whose hundred matches so many fit.
+/// Returns a relocalisation with `inliers` inliers among a hundred matches.
 DelayGrid aligned_of(std::size_t inliers, bool expected) {
   DelayGrid out = aligned(0.1);
   out.placed.alignment->matches = 100;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingOdometry in the map of an earlier run.
+// Tests TumblingOdometry in the map of an earlier run.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -22,7 +22,7 @@ TumblingOdometry::Params rig_params() {
   return params;
 }
 
-/// A slow turn that swings through metres.
+/// Returns a slow rotation that swings through metres.
 test::Motion motion(double swing) {
   test::Motion out;
   out.rest_s = 0.6;
@@ -56,7 +56,7 @@ struct RoomRun {
   SweepReport newest;
 };
 
-/// Map of a run, in the frame of the room.
+/// Returns the map of a run, in the frame of the room.
 const std::vector<MapPoint>& map_of_first_run() {
   static const std::vector<MapPoint> points = [] {
     RoomRun run(1.0);

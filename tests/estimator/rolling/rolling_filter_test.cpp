@@ -24,7 +24,7 @@ using testing::RollingMotion;
 using testing::RollingTruth;
 using Contact = std::function<Eigen::Vector3d(double)>;
 
-/// Normal numbers that are the same everywhere: SplitMix64 and a sum of twelve.
+/// Noise generates normal numbers that are equal on every machine: SplitMix64 and a sum of twelve.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : state_(seed) {}
@@ -51,7 +51,7 @@ class Noise {
   std::uint64_t state_;
 };
 
-/// Contact velocity that rises to `u` and falls again, each within a fifth of the event.
+/// Returns a contact velocity that rises to `u` and falls again, each within a fifth of the event.
 Contact event(double start_s, double length_s, const Eigen::Vector3d& u) {
   return [=](double t) -> Eigen::Vector3d {
     const auto rise = [edge = 0.2 * length_s](double s) {
@@ -72,8 +72,8 @@ RollingTruth truth_of(const Contact& velocity, const Contact& contact, double du
                         .q_start = so3::exp({0.0, -0.2, 0.0}) * so3::exp({0.1, 0.0, 0.0})});
 }
 
-/// A gyro and an accelerometer of the Phidget class: bias 0.017 deg/s and 3 mg, scale and misalignment 0.2 and 0.3 %,
-/// noise 0.23 deg/s and 3 mg per sample at 250 Hz.
+/// Adds errors of a gyro and accelerometer of the Phidget class: bias 0.017 deg/s and 3 mg, scale and misalignment 0.2
+/// and 0.3 %, noise 0.23 deg/s and 3 mg per sample at 250 Hz.
 void add_errors(std::uint64_t seed, RollingTruth& truth) {
   Noise noise(seed);
   const Eigen::Vector3d w_bias = 3e-4 * noise.vector(), f_bias = 0.03 * noise.vector();
@@ -187,7 +187,7 @@ TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
   EXPECT_LT(deepest, 1e-3);
 }
 
-/// With a bound as low as this every event is uncertain, with a high one none is; without an event never.
+/// With this low limit every event is uncertain, with a high limit none; without an event never.
 TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
   const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
   const auto called = [&](const Contact& contact, double uncertain_m) {
@@ -227,8 +227,8 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
   }
 }
 
-/// A slide over two seconds during which the spin is held: its contact velocity stands on a plateau, which looks like
-/// grip at another speed until the floor grips again.
+/// A slide over two seconds with constant spin: its contact velocity is on a plateau, which looks like grip at another
+/// speed until the floor grips again.
 TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
   const auto along = [](double speed) { return Eigen::Vector3d(speed, 0.0, 0.0); };
   const auto rise = [](double s) {

@@ -14,11 +14,11 @@
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace {
-// bytes that this program holds, and the most it has held
+// bytes that this program has allocated, now and at most
 thread_local std::size_t position_constrained = 0, held_most = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// the function is not inlined, so that the compiler does not report mismatched new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   void* memory = std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();
@@ -73,7 +73,7 @@ Held held_by(double duration_s) {
   return out;
 }
 
-// What a node costs is the growth from a run to one of twice the length: a node's record alone is more than 10 KiB.
+// The cost of a node is the growth from a run to one of twice the length; a node's record alone is more than 10 KiB.
 TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   const Held one = held_by(60.0), two = held_by(120.0);
   const double nodes = two.nodes - one.nodes;
@@ -86,7 +86,7 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   EXPECT_LT(two.at_the_end, 5e6);
 }
 
-// A lag of three years is within its bound: storage for it is not set aside at once.
+// A lag of three years is within its bound, but its storage is not allocated at once.
 TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   RollingSmoother::Params params;
   params.filter.radius_m = testing::kRadius_m;
@@ -103,7 +103,7 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   EXPECT_GT(position_constrained - before, 100u << 20) << "the bound says nothing any more";
 }
 
-/// All that the last pass tells of a way, in one row.
+/// Returns all results of the last pass for a path, in one row.
 std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
                          std::optional<rolling::LastPass::Distance> distance, std::size_t segment) {
   RollingParams params;

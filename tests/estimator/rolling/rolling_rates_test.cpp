@@ -10,7 +10,7 @@
 #include "estimator/rolling/rolling_truth.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-// the rate of the IMU, its jitter, its gaps: the same motion must give the same answer
+// the IMU's rate, jitter and gaps: the same motion must give the same result
 namespace tumble {
 namespace {
 
@@ -20,7 +20,8 @@ Eigen::Vector3d spins(double t) {
   return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.05 * testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0};
 }
 
-/// An L of 2 m with a spell of slip; errors of the Phidget class, noise of 4e-4 rad/s and 2e-3 m/s^2 per root of Hz.
+/// Returns an L of 2 m with a phase of slip; errors of the Phidget class, noise of 4e-4 rad/s and 2e-3 m/s^2 per root
+/// of Hz.
 testing::RollingTruth slipping_sampled(TimeNs period_ns) {
   testing::RollingTruth truth = testing::roll({.velocity_m_s = testing::l_shape,
                                                .contact_velocity_m_s = spins,
@@ -60,10 +61,10 @@ double end_error_m(const std::vector<ImuSample>& samples, const Eigen::Vector3d&
   return (smoothed_samples(samples, testing::lagged_params(lag_s)).out.back().p_WG_m - end_m).norm();
 }
 
-// 50 Hz to 8 kHz, and rates that divide nothing
+// 50 Hz to 8 kHz, and rates that are no divisors
 constexpr TimeNs kPeriods_ns[] = {20'000'000, 8'000'000, 3'000'000, 1'000'000, 700'000, 250'000, 125'000};
 
-// measured: 10 to 17 mm at every rate, whole and live, 14 mm at 250 Hz; what differs is the draw of the noise
+// measured: 10 to 17 mm at every rate, whole and live, 14 mm at 250 Hz; the differences come from the noise
 TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
   for (const TimeNs period_ns : kPeriods_ns) {
     const testing::RollingTruth truth = slipping_sampled(period_ns);
@@ -177,7 +178,7 @@ TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
     }
     const Smoothed moving = smoothed_samples(samples, testing::lagged_params(RollingSmoother::kWholeRun));
     EXPECT_TRUE(moving.state->live.started_in_motion);
-    // heading and place of the start are those of the world: about its own heading the path is as long
+    // heading and position of the start are those of the world: about its own heading, the path has equal length
     const Eigen::Quaterniond q = truth.q_WI[first] * moving.out.front().q_WI.conjugate();
     const Eigen::Quaterniond yaw = Eigen::Quaterniond(q.w(), 0.0, 0.0, q.z()).normalized();
     const Eigen::Vector3d path = truth.p_WG_m.back() - truth.p_WG_m[first];

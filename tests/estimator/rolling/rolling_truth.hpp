@@ -11,7 +11,7 @@
 
 namespace tumble::testing {
 
-/// A sphere that moves over a plane as prescribed, and what an ideal IMU inside says, from exact increments.
+/// RollingTruth is a sphere with a prescribed motion over a plane, and the exact readings of an ideal IMU inside.
 struct RollingTruth {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;
@@ -69,7 +69,7 @@ inline RollingTruth roll(const RollingMotion& motion) {
   return truth;
 }
 
-/// Speed of a move of `length` from rest to rest over [start, start + duration]: the minimum-jerk profile.
+/// Returns the speed of a move of `length` from rest to rest over [start, start + duration]: the minimum-jerk profile.
 inline double minimum_jerk_speed(double t, double start_s, double duration_s, double length_m) {
   const double x = std::clamp((t - start_s) / duration_s, 0.0, 1.0);
   return length_m / duration_s * 30.0 * x * x * (1.0 - x) * (1.0 - x);

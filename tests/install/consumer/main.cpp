@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot's board: after a second of rest a 29 cm sphere rolls half a turn about y without slip, theta(t) = pi/2 (1 -
-// cos(pi t)), seen by an IMU at its centre; that is half of its circumference along x.
+// Simulates a robot's board: after a second of rest, a 29 cm sphere rolls half a turn about y without slip, theta(t) =
+// pi/2 (1 - cos(pi t)), measured by an IMU at its centre, which is half of its circumference along x.
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -93,8 +93,8 @@ TEST(Autogain, PassesPitchOfNinetyDegrees) {
       const Eigen::Vector3d f = truth.conjugate() * Eigen::Vector3d(0, 0, kGravity_m_s2);
       ASSERT_TRUE(filter.step({k * TimeNs{8'000'000}, {0, 0.4, 0}, f, 0}, state).ok());
       ASSERT_TRUE(state.q_WI.coeffs().allFinite());
-      // the Madgwick step compares the force with the attitude before the turn and pulls back by 2 gamma dt each time,
-      // the complementary step takes 2 % of it away: up to 2 gamma dt / 0.02 with gamma = 0.2 * 0.06 (smooth) at this
+      // Madgwick's step compares the force with the attitude before the turn and pulls back by 2 gamma dt each time;
+      // the complementary step removes 2 % of that: up to 2 gamma dt / 0.02 with gamma = 0.2 * 0.06 (smooth) at this
       // rate
       ASSERT_NEAR(so3::log(truth.conjugate() * state.q_WI).norm(), 0.0, 2.0 * 0.2 * 0.06 * 0.008 / 0.02) << k;
     }
@@ -118,7 +118,8 @@ TEST(Autogain, RefusesBadParams) {
   EXPECT_THROW(Autogain({.tau_s = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
 }
 
-/// Median angle, arc seconds, between the logged attitude and one step from the logged attitude before it.
+/// Returns the median angle [arc seconds] between the logged attitude and one filter step from the previous logged
+/// attitude.
 double replay_median_arcsec(const testing::SphereLog& log, const Autogain::Params& params) {
   const Autogain filter(params);
   std::vector<double> residuals;
@@ -147,7 +148,7 @@ TEST_P(AutogainReplay, TheLogWasWrittenByTheCodeOf2021WithItsRollError) {
     return;
   }
   ASSERT_EQ(log.samples.size(), 7294U);
-  // known beforehand: 8.3, 24 and about 150; measured here 8.4, 24.4, 150.3 and 154.7
+  // the values known beforehand are 8.3, 24 and about 150; the values measured here are 8.4, 24.4, 150.3 and 154.7
   EXPECT_NEAR(replay_median_arcsec(log, {.profile = kCode, .roll_error_2021 = true}), 8.3, 0.3);
   EXPECT_NEAR(replay_median_arcsec(log, {.profile = kPaper, .roll_error_2021 = true}), 24.0, 1.0);
   EXPECT_NEAR(replay_median_arcsec(log, {.profile = kCode}), 150.0, 5.0);

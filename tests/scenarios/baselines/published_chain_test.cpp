@@ -13,7 +13,8 @@ namespace {
 
 constexpr TimeNs kStep_ns = 10'000'000;
 
-/// Level, at rest for the first sample and from then on accelerated along x by 1 m/s^2; 100 Hz.
+/// Returns samples of an IMU that is level, at rest for the first sample and then accelerated along x by 1 m/s^2, at
+/// 100 Hz.
 std::vector<ImuSample> accelerated(int count) {
   std::vector<ImuSample> samples(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
@@ -33,14 +34,14 @@ TEST(PublishedImuOdometry, StaysUntilAVelocityIsFedBackAndIntegratesTheForceFrom
   EXPECT_EQ(odometry.pose(10 * kStep_ns).translation(), Eigen::Vector3d::Zero());
   odometry.feed_back({2.0, 0.0, 0.0}, 10 * kStep_ns);
   odometry.advance(20 * kStep_ns);
-  // v t + a t^2 / 2 over 0.1 s
+  // the expected distance is v t + a t^2 / 2 over 0.1 s
   EXPECT_NEAR(odometry.pose(20 * kStep_ns).translation().x(), 0.205, 1e-9);
   EXPECT_NEAR(odometry.velocity_m_s(20 * kStep_ns).x(), 2.1, 1e-9);
-  // one of 50 ms ago: what was added since is added again
+  // a pose of 50 ms ago is fed back: the odometry adds the motion since then again
   odometry.feed_back({5.0, 0.0, 0.0}, 15 * kStep_ns);
   odometry.advance(21 * kStep_ns);
   EXPECT_NEAR(odometry.velocity_m_s(21 * kStep_ns).x(), 5.06, 1e-9);
-  // between samples, and not beyond the last that was integrated
+  // the odometry gives poses between samples, and no pose beyond the last integrated sample
   EXPECT_NEAR(odometry.pose(5 * kStep_ns / 2 + 15 * kStep_ns).translation().x(),
               0.5 * (odometry.pose(17 * kStep_ns).translation().x() + odometry.pose(18 * kStep_ns).translation().x()),
               1e-12);
@@ -54,7 +55,7 @@ struct InARoom {
   std::vector<std::vector<LidarPoint>> sweeps;
 };
 
-/// So gentle that the chain's own errors hardly show.
+/// Returns a motion so gentle that the chain's own errors are small.
 InARoom gentle(int sweeps) {
   InARoom out;
   out.motion.spin_rad_s = 0.5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The families of methods that stand beside ours, each on the motion that it was made for, in closed form, and on one
-// that it cannot do.
+// The test runs each family of comparison methods on the motion for which it was made, in closed form, and on one
+// motion for which it fails.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -24,7 +24,8 @@ using Eigen::Vector3d;
 
 constexpr double kRail = 10.5, kPeriod = 0.01, kGravity = 9.80665;
 
-// A swing about a fixed horizontal axis, smooth, from rest to rest, past the rail once: rate = peak sin^2(pi t / T).
+// Swing is a swing about a fixed horizontal axis, smooth, from rest to rest, that exceeds the saturation level once:
+// rate = peak sin^2(pi t / T).
 struct Swing {
   Vector3d axis = Vector3d(0.2, 1.0, 0.1).normalized();
   double peak = 13.0, duration = 0.6, rest = 1.0;
@@ -42,7 +43,7 @@ struct Swing {
   std::size_t count() const { return static_cast<std::size_t>(std::lround((2.0 * rest + duration) / kPeriod)); }
   double middle(std::size_t k) const { return (static_cast<double>(k) + 0.5) * kPeriod; }
   Vector3d truth(std::size_t k) const { return axis * rate(middle(k)); }
-  // a constant vector of the world, in the turning axes
+  // returns a vector that is constant in the world, in the turning body axes
   Vector3d turned(const Vector3d& v_W, std::size_t k) const { return Eigen::AngleAxisd(-angle(middle(k)), axis) * v_W; }
   Vector3d force_at(const Vector3d& p_I_m, std::size_t k) const {
     const Vector3d w = truth(k), alpha = axis * acceleration(middle(k));
@@ -100,10 +101,10 @@ double raw(const Swing& swing) {
 TEST(ClippedBaseline, BridgesASwingThatPassesTheRailOnce) {
   const Swing swing;
   EXPECT_NEAR(raw(swing), 2.15, 0.1);
-  // measured 0.21 and 0.02: the snap of a sine is small
+  // measured 0.21 and 0.02: the fourth derivative of a sine's angle is small
   EXPECT_LT(worst_baseline(swing, ClippedBaseline::Kind::interpolate), 0.35 * raw(swing));
   EXPECT_LT(worst_baseline(swing, ClippedBaseline::Kind::constant_jerk), 0.2 * raw(swing));
-  // a random walk stands still over the gap: nothing is recovered, nothing is made worse
+  // a random walk keeps its value over the gap: the method recovers nothing and makes nothing worse
   EXPECT_NEAR(worst_baseline(swing, ClippedBaseline::Kind::reject), raw(swing), 0.05 * raw(swing));
 }
 
@@ -124,7 +125,7 @@ TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
     });
   };
   EXPECT_LT(run(auxiliary_imus), 0.1 * raw(swing));
-  // negative control: nothing to tell the rate from
+  // negative control: without these inputs nothing determines the rate
   EXPECT_GT(run({}), 0.3 * raw(swing));
   auxiliary_imus[1].specific_force_m_s2.pop_back();
   std::vector<RateState> out;
@@ -166,7 +167,8 @@ TEST(PublishedFamilies, RefuseBadInput) {
   EXPECT_THROW(StandstillSmoother({.rails = {}, .gravity_m_s2 = 0.0}), InvalidParams);
 }
 
-// A rate that passes the rail with constant slope: loss and reading in closed form.
+// The test uses a rate that crosses the saturation level with constant slope, for which loss and reading have a closed
+// form.
 TEST(SubsampleSaturation, IsExactForAConstantSlope) {
   for (const double slope : {0.5, 2.0, 5.0}) {    // per window
     for (const double share : {0.2, 0.5, 0.8}) {  // of the window that is hidden
@@ -180,13 +182,14 @@ TEST(SubsampleSaturation, IsExactForAConstantSlope) {
   }
   EXPECT_FALSE(subsample_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // hidden all along
   EXPECT_FALSE(subsample_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // but for a hundredth
-  // a plateau that sinks, as of a rail tilted by a thousandth: flagged throughout, and no step to a neighbour
+  // a plateau sinks, as at a saturation level tilted by a thousandth: the samples are flagged throughout, and there is
+  // no step to a neighbouring sample
   EXPECT_FALSE(subsample_saturation(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).saturated);
   EXPECT_TRUE(subsample_saturation(kRail - 0.05, kRail - 0.3, kRail, 5e-3).saturated);
 }
 
-// Readings that sink from sample to sample along a tilted rail, all of them flagged: none of them met it in a part of
-// its window, but for the one that comes after a free one.
+// All readings sink from sample to sample along a tilted saturation level, and all are flagged: none of them was
+// saturated for only a part of its window, except the one that follows an unsaturated reading.
 TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
   RailDetector::State state;
   state.channels[0].rail = kRail;
@@ -205,7 +208,7 @@ TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
     now.clipping.gyro = 1;
     mark_subsample_saturation(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
     EXPECT_EQ(now.subsample_saturated, k == 1 ? 1 : 0) << k;
-    // negative control: as if the one before had been free
+    // negative control: the sample before is treated as unsaturated
     ImuSample before = samples[k - 1];
     before.device_clip_flags = 0;
     mark_subsample_saturation(rails, state, 5e-3, &before, now, &samples[k + 1]);

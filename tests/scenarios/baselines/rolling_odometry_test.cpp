@@ -29,7 +29,7 @@ TEST(RollingOdometry, SignsOfTheRollingLaw) {
 }
 
 TEST(RollingOdometry, StraightRollInTurningBodyAxes) {
-  // the body turns with the roll about a world axis in the plane: two metres, 13.8 rad
+  // the body turns with the roll about a world axis in the horizontal plane: two metres, 13.8 rad
   const Eigen::Vector3d w_W(0.6, 2.0, 0.0);
   const Eigen::Quaterniond start = so3::exp({0.3, -1.1, 0.7});
   const RollingOdometry odometry({.radius_m = kRadius_m});
@@ -43,8 +43,8 @@ TEST(RollingOdometry, StraightRollInTurningBodyAxes) {
 }
 
 TEST(RollingOdometry, CircleClosesOnItself) {
-  // heading turns at 1 rad/s, speed 0.3 m/s: a circle of 0.3 m; whole turn sampled evenly, so the trapezoid closes
-  // exactly
+  // the heading turns at 1 rad/s and the speed is 0.3 m/s, so the path is a circle of 0.3 m; the samples divide the
+  // whole turn evenly, so the trapezoid rule closes exactly
   constexpr int kSteps = 1571;
   const double dt = 2.0 * std::numbers::pi / kSteps, speed = 0.3;
   const TimeNs period_ns = std::llround(dt * 1e9);

@@ -20,7 +20,7 @@ using testing::RollingTruth;
 
 constexpr TimeNs k125Hz_ns = 8'000'000;
 
-/// A smooth pulse of contact velocity along x: rises and falls over a fifth of its length.
+/// Returns a smooth pulse of the contact velocity along x, which rises and falls over a fifth of its length.
 std::function<Eigen::Vector3d(double)> pulse(double start_s, double length_s, double speed_m_s) {
   return [=](double t) -> Eigen::Vector3d {
     const double edge = 0.2 * length_s;

@@ -47,7 +47,7 @@ TEST(TrimmedIcp, FindsAKnownPose) {
   const auto result =
       icp.align(sweep_of(test::Room::box_with_pillars()), prior, map_of(test::Room::box_with_pillars()));
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
-  // stops at steps of a centimetre and a milliradian
+  // the registration stops at steps of a centimetre and a milliradian
   EXPECT_LT(result.T.translation().norm(), 0.02);
   EXPECT_LT(Eigen::AngleAxisd(result.T.linear()).angle(), 2e-3);
 }
@@ -77,7 +77,7 @@ TEST(TrimmedIcp, ACorridorLooksLikeASuccess) {
   EXPECT_EQ(result.verdict, RegistrationVerdict::converged);  // the published chain's known error, kept
 }
 
-// the published rule against a search over every share
+// The test compares the published rule with a search over every share.
 TEST(Trim, MinimisesItsCostWithinBounds) {
   std::vector<float> d2;
   for (int i = 0; i < 1000; ++i) {
@@ -97,7 +97,8 @@ TEST(Trim, UnmatchedSlotsInTheCountReachPastTheData) {
   TrimmedIcp::Params params;
   const std::size_t rightly = TrimmedIcp::trim(d2, d2.size(), params);
   EXPECT_LE(rightly, 420u);
-  // counted as launched the share of 0.7 would be the 700th of 600 entries: held at the end, all matches stay
+  // with a share of all launched points, 0.7 would be the 700th of 600 entries: the index is limited to the end, so all
+  // matches remain
   EXPECT_EQ(TrimmedIcp::trim(d2, 1000, params), 600u);
   EXPECT_EQ(TrimmedIcp::trim({}, 1000, params), 0u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The line that is published: it comes back as it was, and any other is refused.
+// The test checks that the published line is read back unchanged, and that any other line is rejected.
 #include "scenarios/bench/bench_result.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a page of the bench says of results whose medians are known by heart.
+// The test checks what a page of the benchmark says of results with known medians.
 #include "scenarios/bench/bench.hpp"
 
 #include <gmock/gmock.h>

@@ -18,7 +18,8 @@ Scenario fixed(const std::string& name) {
   return fixed_as(scenario, draw(tree_data(), scenario, 1));
 }
 
-/// Of every scenario: each can be taken away by itself, what is left can be drawn, and nothing is left to take of it.
+/// The test checks, for every scenario, that each complication can be removed alone, that the remaining scenario can be
+/// drawn, and that no part of the complication remains.
 TEST(Complications, EachGoesAndTheDrawStays) {
   const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};  // all are many seconds
   for (const std::string& name : scenario_names(tree_data())) {
@@ -44,7 +45,7 @@ TEST(Complications, EachGoesAndTheDrawStays) {
   }
 }
 
-/// A line whose numbers no type has would never be found by the test above.
+/// The test above would not find a line with numbers that no sensor type has.
 TEST(Complications, TheErrorsOfTheRigsSensorsAreThere) {
   std::set<std::string> names;
   for (const Complication& each : complications(fixed("hill_consumer"))) names.insert(each.name);

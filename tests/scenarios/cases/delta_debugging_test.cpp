@@ -15,7 +15,7 @@ using Indices = std::vector<std::size_t>;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Fails when all of `causes` are there.
+/// Conjunction fails when all of `causes` are present.
 struct Conjunction {
   std::set<std::size_t> causes;
   int trials = 0;
@@ -63,7 +63,8 @@ TEST(LeastFailingSet, WhatNeedsAllKeepsAll) {
   EXPECT_TRUE(least.complete);
 }
 
-// one cause of 32: all at once, two halves at each of five levels, the cause alone once more, less what is known
+// for one cause of 32, the search tries all at once, two halves at each of five levels and the cause alone once more,
+// less the trials whose result is known
 TEST(LeastFailingSet, ASingleCauseCostsTwoTrialsALevel) {
   for (std::size_t cause = 0; cause < 32; ++cause) {
     Conjunction test{{cause}};
@@ -90,7 +91,7 @@ TEST(LeastFailingSet, ASpentBudgetLeavesASetThatFailsAndSaysSo) {
   }
 }
 
-// either of two causes will do: which one is left is a matter of order, that only one is left is not
+// either of two causes suffices: which one remains depends on the order, but only one may remain
 TEST(LeastFailingSet, OfTwoSufficientCausesOneIsLeft) {
   const LeastSet least = least_failing_set(10, [](const Indices& kept) -> std::optional<bool> {
     return std::binary_search(kept.begin(), kept.end(), 1u) || std::binary_search(kept.begin(), kept.end(), 8u);

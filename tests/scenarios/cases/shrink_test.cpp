@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 constexpr std::uint64_t kSeed = 5;
 constexpr double kDrawn_s = 6.0, kShortest_s = 3.1;
 
-/// The beginning of a pendulum's swing, whose IMU loses samples: the cheapest of all draws.
+/// Returns the beginning of a pendulum's swing whose IMU loses samples; no draw takes less time to simulate.
 Scenario losing_samples() {
   Scenario scenario = load_scenario(tree_data(), "swing");
   fix_number(scenario, "duration_s", kDrawn_s);
@@ -35,8 +35,8 @@ bool has_gap(const sim::ImuRecord& imu) {
   return false;
 }
 
-/// Its failure has a known cause: samples are lost, the gyro has a stated range of less than 50 rad/s, and the run is
-/// longer than `kShortest_s`. Nothing else matters to it.
+/// The failure of this method has a known cause: samples are lost, the gyro has a stated range of less than 50 rad/s,
+/// and the run is longer than `kShortest_s`. No other property affects this method.
 Method breaks_on(bool gaps, bool range) {
   Method method = *find_methods("rate/raw").front();
   method.info.name = "toy";
@@ -69,20 +69,20 @@ TEST(Shrink, FindsTheKnownCauseOfAToyExactly) {
   EXPECT_THAT(names_with(shrunk, Fate::not_tried), ElementsAre());
   EXPECT_GT(names_with(shrunk, Fate::removed).size(), 8u);
 
-  // shorter than a threshold nothing fails; the length found is within its resolution of it
+  // runs shorter than kShortest_s do not fail; the length found is within the search's resolution of kShortest_s
   const double left_s = shrunk.scenario.duration_s.numbers.front();
   EXPECT_GE(left_s, kShortest_s);
   EXPECT_LE(left_s, kShortest_s + 0.05 * kDrawn_s + 0.02);
   EXPECT_LT(shrunk.scenario.sensors.front().numbers.at("dropout_share").numbers.front(), 0.2);
   EXPECT_EQ(shrunk.scenario.sensors.front().numbers.at("gyro_noise_rad_s_sqrt_hz").numbers.front(), 0.0);
 
-  // the evidence of what is needed: a run that came to its end without it
+  // each needed line has evidence: a run without that line which passed
   for (const ShrinkLine& line : shrunk.lines) {
     if (line.without) {
       EXPECT_EQ(line.without->status, OutcomeStatus::ok) << line.what;
     }
   }
-  // what is left fails by itself
+  // the remaining scenario fails when it is shrunk again
   ShrinkOptions once;
   once.budget = 1;
   EXPECT_EQ(shrink(tree_data(), shrunk.scenario, kSeed, toy, once).drawn.status, OutcomeStatus::failed);
@@ -113,7 +113,8 @@ TEST(Shrink, ADrawThatDoesNotFailIsRefused) {
   EXPECT_EQ(runs, 0);
 }
 
-/// Whatever is taken away, the toy fails: without a control nothing is left, with one only what the control bears.
+/// The toy method fails whatever is removed: without a control method nothing remains, and with one only what the
+/// control method tolerates remains removed.
 TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   const Method toy = breaks_on(false, false);
   ShrinkOptions options;
@@ -134,8 +135,8 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   EXPECT_THAT(names_with(held, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
 }
 
-/// The drawn failure comes from clipped readings. Without a rail the toy fails for another reason, which no true rate
-/// cures: such a reduction is not kept.
+/// The drawn failure comes from saturated readings. Without saturation the toy method fails for another reason, which
+/// no true rate corrects: the search rejects such a reduction.
 TEST(Shrink, OnlyWhatTheSameInputCuresIsKept) {
   Scenario scenario = losing_samples();
   fix_number(scenario, "sensors.imu.gyro_range_rad_s", 1.0);

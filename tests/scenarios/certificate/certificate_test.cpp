@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every row of the certificate passes on this build, and fails when one thing of its set-up is wrong.
+// The test checks that every row of the certificate passes on this build, and fails when one part of its set-up is
+// wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ CertificateInput input() {
   return {DataRoot{test::source_dir()}, test::program()};
 }
 
-/// "row (subject)" of every entry that does not pass.
+/// Returns "row (subject)" of every entry that does not pass.
 std::vector<std::string> failures(const std::vector<CertificateEntry>& entries) {
   std::vector<std::string> names;
   for (const CertificateEntry& entry : entries) {
@@ -39,7 +40,7 @@ TEST(Certificate, OfThisBuildPassesAndSaysWhatItMeasured) {
   std::vector<std::string> announced;
   CertifyOptions options;
   options.on_row = [&](const CertificateRow& row, double) { announced.push_back(row.name); };
-  // over the data of the tests of sweeps, which then measure none of their own
+  // the certificate is measured over the data of the sweep tests, so that those measure no certificate of their own
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("tumble_certificate_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
@@ -144,7 +145,7 @@ TEST(Rows, ALongStepFailsTheImpactPeak) {
 
 TEST(Rows, SoftnessThatTheEngineCannotFollowFailsItsExponent) {
   ImpactSetup setup;
-  // the engine keeps the time constant of a contact above two steps: below, nothing changes any more
+  // the simulator keeps the time constant of a contact above two steps: below that, a smaller value changes nothing
   setup.soft_s = 0.008;
   setup.hard_s = 0.005;
   setup.step_s = 0.004;
@@ -213,7 +214,7 @@ TEST(Rows, WithoutADeviceTheTiltedRailSaysNothing) {
   EXPECT_EQ(failures(certify_tilted_rail(input(), setup)).size(), 4u);
 }
 
-/// What fails of the planes measured on real gyros, after one of them has been shown to pass.
+/// Returns which rows fail for the planes measured on real gyros, after a check that one of them passes.
 std::vector<std::string> real_rail_failures(RealRailsSetup setup) {
   setup.devices = 100;
   return failures(certify_real_rails(input(), setup));
@@ -221,7 +222,7 @@ std::vector<std::string> real_rail_failures(RealRailsSetup setup) {
 
 TEST(Rows, ALevelRailIsNoneOfTheRealOnes) {
   EXPECT_THAT(real_rail_failures({}), IsEmpty());
-  // what would be measured against the axis where the interval holds 0 is level too
+  // the rows of a slope whose interval contains 0 are measured without a sign, so they fail for a level plane too
   EXPECT_THAT(real_rail_failures({.tilt_factor = 0.0}),
               testing::ElementsAre("real_rail_slope (wand x, z)", "real_rail_slope (wand y, z)",
                                    "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)"));
@@ -253,7 +254,7 @@ TEST(Rows, ElementsDrawnHalfAsWideDoNotReachTheRealRails) {
     EXPECT_THAT(failed, testing::Contains("real_rail_slope_drawn (" + std::string(device) + " gyro)"));
   for (const char* device : {"mti30", "vn100", "phidget1044"})
     EXPECT_THAT(failed, testing::Contains("real_rail_offset_drawn (" + std::string(device) + " gyro)"));
-  // the sheet of the fourth states offsets more than twice as wide
+  // the data sheet of the fourth device states offsets more than twice as wide
   EXPECT_THAT(real_rail_failures({.spread_factor = 0.3}), testing::Contains("real_rail_offset_drawn (mpu6050 gyro)"));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws give the same bits on every x86-64 with AVX2 and FMA: their digests are kept here, and compared on whatever
-// machine the tests run. A change of the simulation, the models or the catalogue changes them, and then they are
-// accepted anew: the failure prints the line.
+// The test checks that draws give the same bits on every x86-64 machine with AVX2 and FMA: it compares their digests
+// with those stored here. A change of the simulation, the models or the catalogue changes the digests, and then the new
+// ones are accepted: the failure message prints the line to store.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ std::string name_of(const testing::TestParamInfo<Kept>& of) {
 
 INSTANTIATE_TEST_SUITE_P(, Digests, testing::ValuesIn(kept()), name_of);
 
-// more draws of each scenario, which take minutes
+// DigestsSoak tests more draws of each scenario, which take minutes.
 class DigestsSoak : public Digests {};
 
 TEST_P(DigestsSoak, AreTheKeptOnes) {
@@ -72,7 +72,7 @@ TEST_P(DigestsSoak, AreTheKeptOnes) {
 
 INSTANTIATE_TEST_SUITE_P(, DigestsSoak, testing::ValuesIn(kept("digests_soak.txt")), name_of);
 
-// every scenario of the catalogue has a draw here, and a dozen together with those of the long runs
+// every scenario of the catalogue has a draw here, and together with those of the long runs it has a dozen
 TEST(DigestsOf, TheWholeCatalogueAreKept) {
   const std::vector<Kept> all = kept(), more = kept("digests_soak.txt");
   std::size_t with_lidars = 0;

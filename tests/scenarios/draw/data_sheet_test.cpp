@@ -76,7 +76,7 @@ TEST(DataSheet, UnknownDeviceNamesTheNearest) {
   EXPECT_THAT(fixture::complaint([&] { device_names(nowhere); }), HasSubstr("no_such_folder"));
 }
 
-// it would be simulated as the default, whatever the device has
+// the simulator would use the default for the missing number, whatever the device has
 TEST(DataSheet, ANumberThatIsMissingIsNamed) {
   const DataRoot whole{test::source_dir()}, own{std::filesystem::path(testing::TempDir()) / "data_sheet_without"};
   std::filesystem::create_directories(own.data_sheets());
@@ -92,7 +92,7 @@ TEST(DataSheet, ANumberThatIsMissingIsNamed) {
   std::filesystem::remove_all(own.root);
 }
 
-// Each sheet of the project is checked against the registries of this build.
+// The test checks each data sheet of the project against the registries of this build.
 TEST(DataSheet, EverySheetOfTheProjectIsRight) {
   const DataRoot data{test::source_dir()};
   const std::vector<std::string> names = device_names(data);

@@ -38,7 +38,7 @@ TEST(FixNumber, SetsOneNumberAndLeavesTheDrawsOfAllOthersAlone) {
   EXPECT_EQ(after.sensors[0].values.at("output_rate_hz"), 200.0);
   EXPECT_EQ(after.duration_s, 3.0);
   EXPECT_NE(before.sensors[0].values.at("output_rate_hz"), 200.0) << "or the test shows nothing";
-  // undone by hand, all else is equal
+  // after the test restores these numbers by hand, all else is equal
   after.world.values.set("trunk_count", before.world.values.at("trunk_count"));
   after.sensors[2].mount_error.set("yaw_rad", before.sensors[2].mount_error.at("yaw_rad"));
   after.sensors[0].values.set("output_rate_hz", before.sensors[0].values.at("output_rate_hz"));

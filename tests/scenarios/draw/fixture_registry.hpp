@@ -22,7 +22,7 @@ inline const std::array<sim::ComponentType, 1> kRobots = {{{"rig", "a rig", kRig
 inline const std::array<sim::ComponentType, 1> kMotions = {{{"push", "a push", kPush}}};
 inline const std::array<sim::ComponentType, 1> kSensors = {{{"imu", "an IMU", kImu}}};
 
-/// A small registry that stands still while the simulation's grows.
+/// Returns a small registry that does not change when the simulation's registry does.
 inline Registry registry() {
   return {kWorlds, kRobots, kMotions, kSensors, kMount};
 }
@@ -48,14 +48,14 @@ values:
   output_rate_hz: {value: 400, unit: Hz, source: "MTi user manual"}
 )";
 
-/// `text` with its only occurrence of `from` replaced; a fixture that no longer holds it is a mistake in the test.
+/// Returns `text` with its only occurrence of `from` replaced; a text without `from` is a mistake in the test.
 inline std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("fixture does not hold '" + from + "'");
   return text.replace(at, from.size(), to);
 }
 
-/// A text with a mistake, and what is said of it.
+/// A Wrong contains a text with a mistake, and the expected message.
 struct Wrong {
   const char* from;
   const char* to;
@@ -63,7 +63,7 @@ struct Wrong {
   const char* what;   ///< what it holds
 };
 
-/// Message of the BadInput that `call` throws; empty when it throws none.
+/// Returns the message of the BadInput that `call` throws, or an empty string when it throws none.
 template <class Call>
 std::string complaint(Call&& call) {
   try {

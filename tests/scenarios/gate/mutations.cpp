@@ -16,12 +16,12 @@ constexpr double kTilt_rad = 0.05;
 constexpr double kTurn_rad_s = 0.005;
 constexpr double kSink_m_s = 0.005;
 
-/// Every IMU on the other side of the body's origin.
+/// Moves every IMU to the other side of the body's origin.
 void flip_lever_arms(sim::Sensors& sensors) {
   for (sim::ImuRecord& imu : sensors.imus) imu.T_BI.translation() *= -1.0;
 }
 
-/// The lidar's place in the body added where it has to be taken away.
+/// Adds the lidar's position in the body where it must be subtracted.
 void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate) {
   const Eigen::Vector3d arm = recording.sensors.lidars.front().T_BL.translation();
   const auto flip = [&](PoseState& pose) { pose.p_WA_m += 2.0 * (pose.q_WA * arm); };
@@ -47,7 +47,8 @@ void double_covariances(const sim::Recording&, Estimate& estimate) {
   scale_covariances(2.0, estimate);
 }
 
-/// The first segment of the truth that lies higher than the start: [begin, end] in ns; empty without one.
+/// Returns the first segment of the truth that lies higher than the start, as [begin, end] in ns; the segment is empty
+/// when there is none.
 std::array<std::int64_t, 2> first_bump_ns(const sim::Truth& truth) {
   std::array<std::int64_t, 2> bump = {0, 0};
   for (std::size_t k = 0; k < truth.p_WB_m.size(); ++k) {
@@ -60,7 +61,7 @@ std::array<std::int64_t, 2> first_bump_ns(const sim::Truth& truth) {
   return bump;
 }
 
-/// The way over the first bump is not counted: the estimate stays where it met it.
+/// Removes the path over the first bump: the estimate stays at the position where it reached the bump.
 void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   const auto [begin_ns, end_ns] = first_bump_ns(recording.truth);
   Eigen::Vector3d met = Eigen::Vector3d::Zero(), lost = Eigen::Vector3d::Zero();
@@ -71,12 +72,12 @@ void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   }
 }
 
-/// No pose is said to slip or slide.
+/// Marks no pose as slipping or sliding.
 void lose_slips(const sim::Recording&, Estimate& estimate) {
   for (sim::ContactLabel& contact : estimate.contacts) contact = sim::ContactLabel::grip;
 }
 
-/// Every second event is said to begin half a second before it does.
+/// Reports every second event half a second before it begins.
 void claim_slips_early(const sim::Recording&, Estimate& estimate) {
   constexpr std::int64_t kEarly_ns = 500'000'000;
   bool early = false;
@@ -92,7 +93,7 @@ void claim_slips_early(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// What lies beyond the middle of its points is not kept.
+/// Removes the map points beyond the middle of the map.
 void lose_half_the_map(const sim::Recording&, Estimate& estimate) {
   if (estimate.map.empty()) return;
   const std::size_t half = estimate.map.size() / 2;
@@ -101,14 +102,14 @@ void lose_half_the_map(const sim::Recording&, Estimate& estimate) {
   estimate.map.resize(half);
 }
 
-/// The velocity of every second sweep is a little off: it jumps where two of them meet.
+/// Changes the velocity of every second sweep a little, so that it jumps between sweeps.
 void break_sweep_borders(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = 0; k < estimate.sweeps.size(); k += 2) {
     for (PoseState& pose : estimate.sweeps[k].trajectory) pose.v_WA_m_s.x() += kBorder_m_s;
   }
 }
 
-/// The last sweeps are turned by a degree.
+/// Turns the last sweeps by a degree.
 void turn_the_end(const sim::Recording&, Estimate& estimate) {
   constexpr std::size_t kLast = 5;
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(kMapRotation_rad, Eigen::Vector3d::UnitZ()));
@@ -118,7 +119,7 @@ void turn_the_end(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// The map stands where the run did not.
+/// Moves the map away from the run's path.
 void move_the_map(const sim::Recording&, Estimate& estimate) {
   for (MapPoint& point : estimate.map) point.position_W_m += Eigen::Vector3f(0.7f, 0.7f, 1.5f);
 }
@@ -128,7 +129,7 @@ void tilt_attitudes(const sim::Recording&, Estimate& estimate) {
   for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = tilt * attitude.q_WA;
 }
 
-/// About the vertical, the further the later.
+/// Turns the attitudes about the vertical by an angle that grows with time.
 void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   for (AttitudeState& attitude : estimate.attitudes) {
     const double since_s = 1e-9 * static_cast<double>(attitude.time_ns - estimate.attitudes.front().time_ns);
@@ -136,14 +137,14 @@ void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// Below the ground, the further the later.
+/// Moves the poses below the ground by a distance that grows with time.
 void sink_poses(const sim::Recording&, Estimate& estimate) {
   for (PoseState& pose : estimate.poses) {
     pose.p_WA_m.z() -= kSink_m_s * 1e-9 * static_cast<double>(pose.time_ns - estimate.poses.front().time_ns);
   }
 }
 
-/// How far towards the state before lies what was true one millisecond ago.
+/// Returns the share of the way to the previous state at which the value of one millisecond ago lies.
 template <typename State>
 double share_of_shift(const State& before, const State& now) {
   return std::min(1.0, kShift_ns / static_cast<double>(now.time_ns - before.time_ns));
@@ -157,7 +158,8 @@ void shift_poses(std::vector<PoseState>& poses) {
   }
 }
 
-/// What was true one millisecond before, under the stamps of now: linear between states.
+/// Replaces each state by the one of a millisecond before, with the present stamp; the values are linear between
+/// states.
 void shift_by_1_ms(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = estimate.rates.size(); k-- > 1;) {
     RateState &now = estimate.rates[k], &before = estimate.rates[k - 1];
@@ -176,13 +178,13 @@ void shift_by_1_ms(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// Every point a second time, at its very place.
+/// Adds every map point a second time at the same position.
 void draw_map_twice(const sim::Recording&, Estimate& estimate) {
   const std::vector<MapPoint> once = estimate.map;
   estimate.map.insert(estimate.map.end(), once.begin(), once.end());
 }
 
-/// Every point a second time, from a pose that was a degree off.
+/// Adds every map point a second time, from a pose that is wrong by a degree.
 void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
   if (estimate.poses.empty()) return;
   const Eigen::Vector3d centre = estimate.poses.front().p_WA_m;

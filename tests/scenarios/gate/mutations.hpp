@@ -7,11 +7,11 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// Faults that somebody might build into a method by mistake, as methods of their own: the true one with something done
-/// to what it is given, or to what it returns. The gate has to refuse each.
+/// A mutation is a fault that somebody might build into a method by mistake: the method runs with a changed input or
+/// returns a changed result. The gate must reject each mutation.
 namespace tumble::scenarios::testing {
 
-/// One line of registration each; at least one of `given` and `returned`.
+/// A Mutation needs one line of registration and at least one of `given` and `returned`.
 struct Mutation {
   const char* name;
   const char* scenario;

@@ -85,8 +85,8 @@ TEST(Bridge, ASingleReadingThatNoDeviceOfThatRangeMeasuresIsLeftOut) {
   EXPECT_EQ(samples[40].time_ns, record.time_ns[41]);
 }
 
-// the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless,
-// shows the force w x (w x t) at the IMU, which points from the IMU to the axis
+// the test checks the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass,
+// weightless, shows the force w x (w x t) at the IMU, which points from the IMU to the axis
 TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
   const sim::Recording recording = testing::synthetic_rig();
   const sim::ImuRecord& record = recording.sensors.imus.front();
@@ -98,7 +98,7 @@ TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
   const Eigen::Vector3d e = record.T_BI.linear().transpose() * w_B.normalized();
   const Eigen::Vector3d l = t.dot(e) * e - t;
   EXPECT_NEAR(force_I.dot(l.normalized()), l.norm() * w_B.squaredNorm(), 1e-12);
-  // negative control: the arm left in body axes does not
+  // negative control: with the lever arm in body axes the equation does not hold
   const Eigen::Vector3d wrong = record.T_BI.translation().dot(e) * e - record.T_BI.translation();
   EXPECT_GT(std::abs(force_I.dot(wrong.normalized()) - wrong.norm() * w_B.squaredNorm()), 0.5);
 }
@@ -119,7 +119,7 @@ TEST(Bridge, LidarPointsFallOnTheTrueSurfaceThroughT_IL) {
       const Eigen::Isometry3d T_WI = Eigen::Translation3d(motion.position_m(t)) * motion.attitude(t) * imu.T_BI;
       const Eigen::Vector3d hit = T_WI * T_IL * sweep.points[k].position_L_m.cast<double>();
       const Eigen::Vector3f truth = recording.truth.lidars.front().hit_W_m[lidar.sweep_first[index] + k];
-      // float32 coordinates of up to 7 m: 5e-7 m
+      // float32 coordinates of up to 7 m have a resolution of 5e-7 m
       EXPECT_NEAR((hit - truth.cast<double>()).norm(), 0.0, 3e-6);
     }
   }
@@ -132,19 +132,19 @@ TEST(Bridge, ASweepEndsWhereTheNextBegins) {
   const bridge::Sweep sweep = bridge::sweep(lidar, 7);
   EXPECT_EQ(sweep.end_ns, whole.end_ns - 20);
   EXPECT_EQ(sweep.points.size(), whole.points.size());
-  // of a millisecond the points that were measured in it are gone, a hundredth
+  // a sweep shortened by a millisecond loses the points measured in that millisecond, a hundredth of all
   lidar.sweep_start_ns[8] -= 1'000'000;
   const bridge::Sweep shorter = bridge::sweep(lidar, 7);
   EXPECT_LT(shorter.points.size(), whole.points.size());
   EXPECT_GT(shorter.points.size(), 98 * whole.points.size() / 100);
   for (const LidarPoint& point : shorter.points) EXPECT_LE(point.offset_ns, shorter.end_ns - shorter.start_ns);
-  // one that lies within what rounding does stays, at the end
+  // a point beyond the end by no more than rounding stays, with the time of the end
   const std::size_t last = lidar.sweep_first[8] - 1;
   lidar.offset_ns[last] = static_cast<std::uint32_t>(shorter.end_ns - shorter.start_ns + 200);
   const bridge::Sweep rounded = bridge::sweep(lidar, 7);
   EXPECT_EQ(rounded.points.back().position_L_m, lidar.position_L_m[last]);
   EXPECT_EQ(rounded.points.back().offset_ns, rounded.end_ns - rounded.start_ns);
-  // a gap between two sweeps lengthens none
+  // a gap between two sweeps lengthens neither of them
   lidar.sweep_start_ns[8] += 20'000'000;
   EXPECT_EQ(bridge::sweep(lidar, 7).end_ns, whole.end_ns);
 }

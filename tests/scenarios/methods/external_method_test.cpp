@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody else's command as a method: what it is given, what it leaves, and every way in which it may end.
+// The test checks an external command as a method: what the command receives, what it leaves, and every way in which it
+// may end.
 #include "scenarios/methods/external_method.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +21,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The gyro as it is, by awk: columns 9 to 11 of the exported CSV hold it, an exact time is two whole numbers.
+/// This awk program returns the gyro's readings unchanged: columns 9 to 11 of the exported CSV contain them, and an
+/// exact time is two whole numbers.
 const std::string kRawByAwk =
     "awk -F, 'BEGIN { print \"time_ns,wx_rad_s,wy_rad_s,wz_rad_s\" } "
     "NR > 1 { printf \"%d%09d,%s,%s,%s\\n\", $1, $2, $9, $10, $11 }' {csv}/imu.csv > {output}";
@@ -80,14 +82,14 @@ TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
   EXPECT_THAT(what, HasSubstr("signal 11"));
   EXPECT_THAT(what, HasSubstr("out of luck"));
   EXPECT_THAT(no_answer(describe("rate", "exit 3 # {output}")).second, HasSubstr("exit status 3"));
-  // the cause, however much was traced behind it
+  // the message must contain the cause, however much output followed it
   const std::string long_one =
       no_answer(describe("rate", "echo the cause; seq 5000; echo the end; exit 3 # {output}")).second;
   EXPECT_THAT(long_one, ::testing::AllOf(HasSubstr("the cause 1 2 3"), HasSubstr(" ... "), HasSubstr("5000 the end")));
   EXPECT_LT(long_one.size(), 1000u);
 }
 
-// whatever became of the run
+// the output is kept, whatever the result of the run
 TEST_F(ExternalMethod, WhatItSaysIsKept) {
   EXPECT_EQ(run(describe("rate", kRawByAwk + "; echo well; echo done >&2")).transcript, "well\ndone\n");
   const auto said = [&](const std::string& script) -> std::string {
@@ -271,7 +273,7 @@ TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
               ::testing::AllOf(HasSubstr("theirs.yaml: its version command: "), HasSubstr("printed nothing")));
 }
 
-// else a sweep or a bench goes on with rows of the program as it was
+// otherwise a sweep or a benchmark would continue with the rows of the old program
 TEST_F(ExternalMethod, AProgramThatWasMadeAnewIsAnotherVersion) {
   const auto version = [&] { return external_method(folder_ / "theirs.yaml").info.version; };
   for (const char* command : {"sh {folder}/mine.sh {output}", "{folder}/mine.sh>{output}"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensors of a recording that do not start together.
+// The test checks recordings whose sensors do not start together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// The rig at rest for `rest_s`, then half a turn in three seconds.
+/// Returns the rig at rest for `rest_s`, then half a turn in three seconds.
 sim::Recording rig_that_rests(double rest_s) {
   testing::SyntheticMotion motion;
   motion.angle_rad = 3.0;
@@ -47,7 +47,7 @@ void start_imu_at(double from_s, sim::ImuRecord& imu) {
   cut(imu.time_ns), cut(imu.gyro_rad_s), cut(imu.accel_m_s2), cut(imu.clip_flags), cut(imu.magnetic_field_t);
 }
 
-/// Declares the sweeps as deskewed: each belongs to one instant.
+/// Declares the sweeps as deskewed: each sweep belongs to one instant.
 void deskew(sim::LidarRecord& lidar) {
   for (std::uint32_t& offset_ns : lidar.offset_ns) offset_ns = 0;
   lidar.point_times = sim::PointTimes::not_skewed;

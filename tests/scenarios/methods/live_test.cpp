@@ -57,10 +57,10 @@ const std::vector<Live> kLive = {
     {"slam/tumble_live", 0.0},
 };
 
-/// Sets the readings from sample `from` on to those of a fault.
+/// A Fault replaces the readings from sample `from` on by faulty ones.
 using Fault = std::function<void(std::size_t from, sim::ImuRecord& imu)>;
 
-/// Clips each axis at half of its largest reading.
+/// Limits each axis to half of its largest reading.
 void clip_at_half(std::size_t from, std::vector<Eigen::Vector3d>& readings) {
   Eigen::Vector3d rail = Eigen::Vector3d::Zero();
   for (std::size_t k = from; k < readings.size(); ++k) rail = rail.cwiseMax(0.5 * readings[k].cwiseAbs());
@@ -108,7 +108,7 @@ void keep_first(std::size_t count, std::vector<Row>& rows) {
   if (rows.size() > count) rows.resize(count);
 }
 
-/// Keeps the readings up to a time, as a robot has received them then.
+/// Keeps the readings up to a time, which are those that a robot has received by then.
 void truncate(std::int64_t end_ns, sim::Sensors& sensors) {
   for (sim::ImuRecord& imu : sensors.imus) {
     const auto end = std::upper_bound(imu.time_ns.begin(), imu.time_ns.end(), end_ns);
@@ -147,7 +147,7 @@ bool same(const PoseState& a, const PoseState& b) {
          a.v_WA_m_s == b.v_WA_m_s && a.covariance == b.covariance;
 }
 
-/// What was compared: answers in all, and the time of the first that differs.
+/// A Comparison contains the number of compared answers, and the time of the first one that differs.
 struct Comparison {
   std::size_t answers = 0;
   std::int64_t differs_ns = -1;
@@ -177,7 +177,7 @@ sim::Sensors simulated(const char* scenario, std::uint64_t seed, sim::Truth& tru
   return draw.recording.sensors;
 }
 
-/// The rig in its room, with noise: readings without any would count as frozen.
+/// Returns the rig in its room, with noise: readings without noise would count as frozen.
 sim::Recording noisy_rig() {
   testing::SyntheticMotion motion;
   motion.start_s = 0.9;
@@ -200,7 +200,7 @@ struct CutRecording {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-/// A tumble, cut before its first saturation, and after it.
+/// Returns a tumble, cut before its first saturation and after it.
 const CutRecording& tumble_run() {
   static const CutRecording run = [] {
     sim::Truth truth;
@@ -249,7 +249,7 @@ TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
     ASSERT_TRUE(early.status.ok()) << early.status.message();
     const std::int64_t until_ns = cut_ns - static_cast<std::int64_t>(1e9 * GetParam().lag_s);
     for (const auto& [name, fault] : faults()) {
-      // a mapper takes seconds per run
+      // a SLAM method takes seconds per run, so it runs only with these faults
       if (method.info.kind == Kind::slam && name != "none" && name != "unit_frozen" && name != "gyro_flipped") continue;
       sim::Sensors later = run.sensors;
       apply(fault, cut_ns, later);
@@ -273,7 +273,8 @@ std::string test_name(const ::testing::TestParamInfo<Live>& param) {
 
 INSTANTIATE_TEST_SUITE_P(Registered, LiveMeansLive, ::testing::ValuesIn(kLive), test_name);
 
-// The comparison sees a method that uses the whole recording, and the faults are such that health checks report them.
+// The test checks that the comparison detects a method that uses the whole recording, and that health checks report the
+// faults.
 TEST(LiveMethods, SeesAMethodThatUsesTheWholeRecording) {
   const CutRecording& run = tumble_run();
   sim::Sensors received = run.sensors, later = run.sensors;

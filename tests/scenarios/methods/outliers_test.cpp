@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One wild reading in a recording costs our methods one reading.
+// The test checks that one wild reading in a recording costs the project's methods one reading.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// A wild reading of the first IMU at a time, on one axis; of the gyro, or else of the accelerometer.
+/// A Wild is a wild reading of the first IMU at a time, on one axis, of the gyro or of the accelerometer.
 struct Wild {
   double time_s;
   bool of_gyro;
@@ -50,7 +50,7 @@ Estimate run(const std::string& method, const sim::Recording& recording) {
   return estimate;
 }
 
-/// Largest distance between states of the same time.
+/// Returns the largest distance between states of the same time.
 template <class State, class Distance>
 double farthest(const std::vector<State>& found, const std::vector<State>& expected, const Distance& distance) {
   if (found.size() + 1 < expected.size() || expected.empty()) return std::numeric_limits<double>::infinity();
@@ -64,7 +64,7 @@ double farthest(const std::vector<State>& found, const std::vector<State>& expec
   return out;
 }
 
-/// How far an estimate lies from another one: its rates [rad/s], attitudes [rad] or last place [m].
+/// Returns how far an estimate lies from another one: its rates [rad/s], attitudes [rad] or last position [m].
 double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   switch (kind) {
     case Kind::rate:
@@ -81,7 +81,7 @@ double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   return 0.0;
 }
 
-/// At rest and in motion; the second reading is beyond twice the gyro's range.
+/// The readings are at rest and in motion; the second one is beyond twice the gyro's range.
 constexpr Wild kWild[] = {{1.0, true, 0, 9.0}, {3.3, true, 2, 200.0}, {1.1, false, 2, 150.0}};
 
 /// The estimate must equal the one from a recording in which the sample is missing.

@@ -9,13 +9,13 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 
-// errors of the published chain as cases: reproduced where they are a switch of slam/published, impossible elsewhere.
-// The trim that counts unmatched slots stands in the baselines' trimmed_icp_test, angles beyond 90 degrees in
-// score_test.
+// the test runs known errors of the published chain: they are reproduced where slam/published has a switch for them,
+// and impossible elsewhere. The trim that counts unmatched slots is tested in trimmed_icp_test of the baselines, and
+// angles beyond 90 degrees in score_test.
 namespace tumble::scenarios {
 namespace {
 
-/// A swift translation that hardly turns, so that nothing but the velocity fed back differs.
+/// Returns a fast translation with hardly any rotation, so that only the velocity fed back differs.
 testing::SyntheticMotion dash() {
   testing::SyntheticMotion motion;
   motion.angle_rad = 0.5;
@@ -25,7 +25,7 @@ testing::SyntheticMotion dash() {
   return motion;
 }
 
-/// Median error of the chain's velocity while the acceleration is large.
+/// Returns the median error of the chain's velocity while the acceleration is large.
 double velocity_error_m_s(double late_velocity) {
   const testing::SyntheticMotion motion = dash();
   const sim::Recording recording = testing::synthetic_rig(motion);
@@ -37,7 +37,7 @@ double velocity_error_m_s(double late_velocity) {
   for (const auto& sweep : estimate.sweeps) {
     const double t = 1e-9 * static_cast<double>(sweep.pose.time_ns);
     if (t < motion.start_s + 0.5 || t > motion.end_s - 0.5) continue;
-    // the speed alone: the estimate's world is turned against the true one
+    // only the speed is compared, because the estimate's world is turned against the true one
     errors.push_back(std::abs(sweep.pose.v_WA_m_s.norm() - motion.velocity_m_s(t).norm()));
   }
   EXPECT_GT(errors.size(), 10u);
@@ -48,12 +48,13 @@ double velocity_error_m_s(double late_velocity) {
 
 TEST(PublishedErrors, VelocityIsHalfASweepLateAsLaunched) {
   const double late = velocity_error_m_s(1.0), in_time = velocity_error_m_s(0.0);
-  // half a sweep of 0.1 s at 0.5 to 2 m/s^2
+  // half a sweep of 0.1 s at 0.5 to 2 m/s^2 gives this error
   EXPECT_GT(late, 0.03);
   EXPECT_LT(in_time, 0.5 * late);
 }
 
-// a misspelt parameter ("fixed_frame_for_laser" where the node reads "fixed_frame_for_lidar") was silently ignored
+// the published node silently ignored a misspelt parameter ("fixed_frame_for_laser" where the node reads
+// "fixed_frame_for_lidar")
 TEST(PublishedErrors, AMisspeltParameterIsRefusedByEverySlamMethod) {
   const sim::Recording recording = testing::synthetic_rig();
   int tried = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A function of Python as a method: what it is given, what it may return, and every way in which it may fail.
+// The test checks a Python function as a method: what it receives, what it may return, and every way in which it may
+// fail.
 #include "scenarios/methods/python_method.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +23,7 @@ using ::testing::Not;
 
 class PythonMethod : public testing::ExternalRuns {
  protected:
-  // Debian's own, which tools/setup gives numpy; another may come first in PATH
+  // tools/setup installs numpy for Debian's Python; another Python may come first in PATH
   static void SetUpTestSuite() { setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0); }
 
   std::filesystem::path function(const std::string& kind, const std::string& body, const std::string& more = "") const {
@@ -112,7 +113,7 @@ TEST_F(PythonMethod, SeesTheSensorsAloneAndCannotChangeThem) {
 TEST_F(PythonMethod, SeesTheSeriesOfOtherSensors) {
   sim::Sensors sensors = recording().sensors;
   const std::size_t samples = sensors.imus[0].time_ns.size();
-  // a quantity may have any name of letters, digits and _, that of an entry of the exchange too
+  // a quantity may have any name of letters, digits and _, also the name of an entry in the exchanged data
   sensors.series.push_back(
       {"barometer", "barometer", "bmp388", 20000000, Eigen::Isometry3d::Identity(), {}, {}, {{"air_k", 288.0}}});
   sim::SeriesRecord& series = sensors.series.back();
@@ -179,7 +180,7 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(refused(function("rate", "pass", "function: rote\n")), HasSubstr("no function 'rote'"));
 }
 
-// each was once taken for the numbers that a conversion makes of it
+// an earlier version accepted each of these values and converted it to other numbers
 TEST_F(PythonMethod, WhatWouldLoseAPartOfItselfIsRefused) {
   const std::string q = "np.tile([0, 0, 0, 1], (n, 1))";
   EXPECT_THAT(wrong("rate", "imu.gyro * 1j"),
@@ -235,7 +236,8 @@ TEST_F(PythonMethod, AVersionTellsInterpreterAndFile) {
   EXPECT_NE(first, second);
 }
 
-/// A good answer, cut at any length and with any byte spoiled: taken or refused, and nothing else.
+/// The test cuts a good answer at any length and damages any byte: the answer is accepted or rejected, and nothing else
+/// happens.
 TEST_F(PythonMethod, AnyAnswerInMemoryIsTakenOrRefused) {
   sim::Sensors one;
   one.imus.emplace_back();

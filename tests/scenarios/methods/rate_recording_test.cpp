@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a recording says beside the primary IMU's readings reaches the methods `tumble` and `tumble_lag`: further IMUs,
-// clip flags of the device, stated ranges, rails of the accelerometer; and what looks wrong in it is told.
+// The test checks that the methods `tumble` and `tumble_lag` use what a recording contains besides the primary IMU's
+// readings (further IMUs, the device's clip flags, stated ranges, saturation of the accelerometer), and report what
+// looks wrong.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +31,7 @@ double clipped_median(const std::string& method, const sim::Recording& recording
   return NAN;
 }
 
-// a second IMU of the same kind elsewhere on the body, turned, half a period late
+// adds a second IMU of the same kind elsewhere on the body, turned, half a period late
 void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
   const testing::SyntheticMotion motion;
   sim::ImuRecord record = recording.sensors.imus.front();
@@ -53,7 +54,7 @@ void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool 
   recording.truth.imus.push_back(truth);
 }
 
-// the turn is forced: no torque-free flight, so that one IMU cannot tell the clipped rate
+// the turn is forced and no torque-free flight, so one IMU alone cannot determine the saturated rate
 TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   const sim::Recording alone = testing::synthetic_rig();
   sim::Recording reference = alone, gyro = alone, accelerometers = alone;
@@ -71,7 +72,7 @@ TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   EXPECT_EQ(estimated_rates("tumble", accelerometers).health.at("imus"), 3.0);
 }
 
-// a rail that shivers: no plateau and no stated range, the flags alone tell
+// the saturation level fluctuates: there is no plateau and no stated range, so only the flags show the saturation
 TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
@@ -135,8 +136,8 @@ TEST(RateRecording, UnitsThatLookWrongAreTold) {
   EXPECT_EQ(estimated_rates("tumble", in_g).health.at("force_unit_suspect"), 1.0);
 }
 
-// a fall about the centre of mass of which an accelerometer axis clips: stated, it is a bound; taken for a reading it
-// misleads
+// an accelerometer axis is saturated in a fall about the centre of mass: with a stated range the reading is a bound,
+// and a bound taken for a measured value misleads
 TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
@@ -158,7 +159,7 @@ TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
     force = force.cwiseMax(-rail).cwiseMin(rail);
   }
   ASSERT_GT(clipped, 20u);
-  // shivering a little, so that no plateau gives it away
+  // the readings fluctuate a little, so that no plateau shows the saturation
   for (std::size_t k = 0; k < imu.accel_m_s2.size(); ++k) {
     imu.accel_m_s2[k] *= 1.0 - 1e-3 * std::abs(std::sin(0.9 * static_cast<double>(k)));
   }

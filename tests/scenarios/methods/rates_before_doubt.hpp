@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios::testing {
 
-/// The rates of an estimate with the covariances that they had before it doubted them: by those a run is wrong or
-/// right, whatever is said of it then. Exact to rounding beside what was added.
+/// Returns the rates of an estimate with the covariances from before it doubted them: these decide whether a run is
+/// wrong, whatever it reported afterwards. The result is exact to the rounding of the added terms.
 inline std::vector<RateState> rates_before_doubt(const Estimate& estimate) {
   std::vector<RateState> rates = estimate.rates;
   for (std::size_t k = 0; k < estimate.suspect_rad2_s2.size(); ++k)

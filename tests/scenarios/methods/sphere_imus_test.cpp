@@ -20,8 +20,8 @@ Eigen::Vector3d rate_at(double time_s) {
   return {2.0 * std::sin(3.0 * time_s), 1.5 * std::cos(4.1 * time_s), std::sin(2.3 * time_s)};
 }
 
-/// A unit at the centre of a body that turns about it. Its stamps are `stamped_late_s` after the times that its
-/// readings are of; they begin at `first_ns`.
+/// Returns a unit at the centre of a body that turns about it. The unit's stamps are `stamped_late_s` after the times
+/// to which its readings belong; the stamps begin at `first_ns`.
 sim::ImuRecord unit(const char* name, std::int64_t first_ns, double stamped_late_s) {
   sim::ImuRecord record;
   record.name = name;
@@ -60,11 +60,11 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   EXPECT_EQ(merged.merged.units.size(), 3U);
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
-  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2, a third of it in the mean of
-  // three
+  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2; the mean of three units has a
+  // third of that
   EXPECT_LT(worst_rate_error(merged), 1e-4);
-  // taken as they come, sample by sample, they would be off by their stamps' distance times the acceleration of 9
-  // rad/s^2
+  // merged sample by sample without alignment, the readings would be wrong by the distance of their stamps times the
+  // acceleration of 9 rad/s^2
   EXPECT_GT((rate_at(1.0013) - rate_at(1.0)).norm() / 3.0, 1e-3);
 }
 
@@ -75,7 +75,7 @@ TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.units.size(), 3U);
   EXPECT_EQ(merged.merged.units[2].unit, 2U);
-  // about the mean of the three, which is a third of it late itself
+  // the offset is relative to the mean of the three units, which is a third of the delay late itself
   EXPECT_NEAR(merged.merged.units[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
   EXPECT_NEAR(merged.merged.units[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
   EXPECT_GT(merged.merged.units[2].time_offset_sigma_s, 0.0);
@@ -109,7 +109,7 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
-// a cable that comes loose takes rows, not numbers
+// a loose cable removes rows and leaves no faulty numbers
 TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
   constexpr std::size_t kFrom = kSamples / 3, kTo = kFrom + 500;
   for (const bool returns : {true, false}) {
@@ -156,7 +156,7 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
-/// Of a gyro of 5 rad/s, whose axis z repeats its reading from a third of the run on.
+/// Returns a record of a gyro of 5 rad/s whose axis z repeats its reading from a third of the run on.
 sim::ImuRecord frozen_z(sim::ImuRecord record) {
   record.stated_gyro_range_rad_s = 5.0;
   for (std::size_t k = kSamples / 3; k < kSamples; ++k) record.gyro_rad_s[k].z() = record.gyro_rad_s[kSamples / 3].z();

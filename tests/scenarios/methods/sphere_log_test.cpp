@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rolling sphere in the form in which the authors of the real one logged it: the stand-in, whose way is known, and
-// the real log where it is at hand.
+// The test uses a rolling sphere in the form in which the authors of the real one logged it: a simulated one, whose
+// path is known, and the real log where it is available.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRadius_m = 0.145;
-// pure rolling over the real log by an independent program: 4.71 m; the T265 of the same run says 6.29 m, the authors'
-// own filter 6.76 m, and nobody knows
+// an independent program computed 4.71 m of pure rolling from the real log; the T265 of the same run reports 6.29 m,
+// the authors' filter 6.76 m, and the truth is unknown
 constexpr double kRolledAnchor_m = 4.71;
 
 class SphereLog : public ::testing::TestWithParam<test::DataFolder> {
@@ -73,7 +73,8 @@ TEST_P(SphereLog, AllThreeFormsGoTheWayOfRollingWithoutSeeingSlipEverywhere) {
   }
 }
 
-/// Lines as `rostopic echo -p` writes a sensor_msgs/Imu: columns by place, the stamp in seconds and nanoseconds.
+/// Writes lines as `rostopic echo -p` writes a sensor_msgs/Imu: the columns are identified by position, and the stamp
+/// is in seconds and nanoseconds.
 void write_by_column(const std::filesystem::path& from, const std::filesystem::path& to, double force_scale) {
   std::ifstream in(from);
   std::ofstream out(to);

@@ -65,7 +65,8 @@ void add_imu(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BI, sim::
   recording.truth.imus.push_back(truth);
 }
 
-// distance to the room from inside along a unit direction; negative when the ray leaves through the open top
+// returns the distance to the room from inside along a unit direction; it is negative when the ray leaves through the
+// open top
 double range_in_room(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
   double range = 1e9;
   if (direction.z() < 0.0) range = -from.z() / direction.z();
@@ -175,7 +176,7 @@ sim::Recording synthetic_rig(const SyntheticMotion& motion) {
 sim::Recording synthetic_sphere(double distance_m, double direction_rad) {
   SyntheticMotion motion;
   const Eigen::Vector3d direction(std::cos(direction_rad), std::sin(direction_rad), 0.0);
-  // v = r w x z, so that w = z x v / r
+  // rolling gives v = r w x z, so that w = z x v / r
   motion.axis_W = Eigen::Vector3d::UnitZ().cross(direction);
   motion.angle_rad = distance_m / kSphereRadiusM;
   motion.displacement_m = distance_m * direction;

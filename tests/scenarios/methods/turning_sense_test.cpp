@@ -16,10 +16,10 @@ namespace {
 using ::testing::HasSubstr;
 using Changed = std::function<Eigen::Quaterniond(const Eigen::Quaterniond&)>;
 
-/// Slow enough for the gyro; no axis of a sensor.
+/// The motion is slow enough for the gyro, and its axis is no axis of a sensor.
 const testing::SyntheticMotion kMotion{.angle_rad = 6.0};
 
-/// The rig's recording, its lidar turned against the IMU by 40 deg.
+/// Returns the rig's sensors, with the lidar turned against the IMU by 40 deg.
 sim::Sensors sensors() {
   sim::Sensors out = testing::synthetic_rig(kMotion).sensors;
   out.lidars.front().T_BL.linear() =
@@ -27,7 +27,7 @@ sim::Sensors sensors() {
   return out;
 }
 
-/// The true attitudes of a sensor at 20 Hz, each as `changed` writes it.
+/// Returns the true attitudes of a sensor at 20 Hz, each as `changed` writes it.
 Estimate attitudes(const Eigen::Matrix3d& R_BA, Frame stated, const Changed& changed) {
   Estimate out;
   out.frame = stated;

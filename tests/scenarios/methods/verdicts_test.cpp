@@ -15,11 +15,11 @@
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
-// what methods say of themselves where their inputs are wrong; tests/bench/verdicts has the figures over many draws
+// the test checks what methods report when their inputs are wrong; tests/bench/verdicts has the figures over many draws
 namespace tumble::scenarios {
 namespace {
 
-/// What a method makes of a draw with wrong inputs.
+/// Returns a method's estimate on a draw with wrong inputs.
 Estimate run_wrong(const SimulatedDraw& draw, const char* method, const std::string& wrong) {
   SimulatedDraw given = draw;
   testing::wrong_inputs().at(wrong)(given.recording.sensors);
@@ -52,7 +52,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 16202, 1);
   const Method& method = *find_methods("slam/tumble").at(0);
-  // clocks 20 ms apart, a mounting off by 3 deg and 3 cm: twice what the priors believe
+  // the clocks differ by 20 ms and the mounting is wrong by 3 deg and 3 cm, twice what the priors assume
   for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
     const Said good = said_of(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;
@@ -66,7 +66,8 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
 }
 
-// The same, live: from earlier samples alone. TumblingOdometry reports this to its user too.
+// The test checks the live method, which uses only earlier samples. TumblingOdometry reports this doubt to its user
+// too.
 TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);
@@ -75,7 +76,8 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   EXPECT_EQ(said_of(method, draw, "lidar_ranges_long").localised, 0.0);
 }
 
-// A mounting that is 10 deg off is learnt in part: 0.7 m off at the end, and told by how far it was moved.
+// The method learns a part of a mounting that is wrong by 10 deg: its end is wrong by 0.7 m, and the size of the
+// correction reveals the fault.
 TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 87201, 1);
@@ -86,8 +88,8 @@ TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   EXPECT_GT(moved.ate_m, 0.3) << "nothing was wrong";
 }
 
-// A scale that all gyros share is in the way too, where nothing contradicts it: more than a metre off, and told by the
-// forces of units at different places.
+// A scale that all gyros share is corrected too when nothing contradicts it: the path is wrong by more than a metre,
+// and the forces of units at different positions reveal the fault.
 TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
@@ -100,9 +102,8 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   EXPECT_TRUE(tells("all_gyros_frozen"));
 }
 
-// Twice a wrong unit: what the sphere feels at rest is half of gravity, and its run is refused, not only doubted.
-// Of the first the size of the axis' part is small, and no other check sees it; of the second nothing is left that
-// moves.
+// Twice a wrong unit: what the sphere feels at rest is half of gravity, and its run is refused, not only doubted. In
+// the first case the axis' component is small and no other check detects it; in the second no moving signal remains.
 TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
@@ -115,7 +116,7 @@ TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.error_code, ErrorCode::out_of_range);
 }
 
-// Its units' places make the forces differ by 6 to 9 % less than they should; of the gyros gravity says that they are
+// The positions of the units make the forces differ by 6 to 9 % less than they should; gravity shows that the gyros are
 // right.
 TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const DataRoot data{test::source_dir()};
@@ -138,8 +139,8 @@ TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
   EXPECT_NEAR(estimate.health.at("imu_rest_force_share"), 0.5, 0.02);
 }
 
-// Microseconds for nanoseconds: the whole run lasts some milliseconds, and every rate and way is that of another
-// motion.
+// The stamps are microseconds instead of nanoseconds: the whole run lasts some milliseconds, and every rate and path is
+// that of another motion.
 TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
@@ -152,7 +153,7 @@ TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   }
 }
 
-// What leads from one rest to the next must lead gravity there, also where an attitude is asked for.
+// The rotation from one rest to the next must turn gravity accordingly, also when the method estimates attitudes.
 TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 91001, 1, Lidars::left_out);
@@ -187,8 +188,8 @@ SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
   return out;
 }
 
-// Flight, impacts and clipped axes in between: gravity at the rests before and after a tumble tells whether the rates
-// can be believed.
+// Between the rests there are flights, impacts and saturated axes: gravity at the rests before and after a tumble shows
+// whether the rates can be correct.
 TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
@@ -196,7 +197,7 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
   EXPECT_FALSE(good.mislabelled_axes);
-  // the mirrored world: gravity turns as it should, and only flight tells
+  // in a mirrored world gravity turns as it should, and only the flight reveals the fault
   const SaidOfRates mirrored = rates_of(draw, "accel_flipped");
   EXPECT_TRUE(mirrored.implausible);
   EXPECT_TRUE(mirrored.mislabelled_axes);
@@ -208,8 +209,8 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_TRUE(frozen.z_frozen);
 }
 
-// Of a gyro that clips in its flights too: neither the right sense nor another had any flight while readings at a rail
-// did not count (docs/maths/imu_merge.md (I32)).
+// The gyro is saturated in its flights too: while saturated readings did not count, no flight remained for either the
+// right or another sense (docs/maths/imu_merge.md (I32)).
 TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
@@ -218,7 +219,8 @@ TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
     EXPECT_TRUE(rates_of(draw, wrong).mislabelled_axes) << wrong;
 }
 
-// An attitude behind a gap in a tumble: off by radians and sure of it before gaps were bridged (attitude.md (A17)).
+// The attitude after a gap in a tumble was wrong by radians with a small covariance before gaps were bridged
+// (attitude.md (A17)).
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
@@ -231,11 +233,11 @@ TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
     const Eigen::Vector2d off = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
     beyond += off.norm() > 3.0 * std::sqrt(attitude.covariance_rad2.topLeftCorner<2, 2>().trace()) ? 1.0 : 0.0;
   }
-  // nine of ten samples that move were off by up to 20 deviations
+  // nine of ten moving samples were wrong by up to 20 standard deviations
   EXPECT_LT(beyond, 0.01 * static_cast<double>(estimate.attitudes.size()));
 }
 
-// It never rests, and no window of a held force tells it.
+// The wand never rests, and no window of constant force reveals the fault.
 TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
@@ -244,7 +246,7 @@ TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   EXPECT_TRUE(rates_of(draw, "gyro_scale_5_percent").implausible);
 }
 
-// What turns an attitude is asked the same as what is reported as a rate.
+// The checks of a gyro that integrates an attitude are the same as those of a reported rate.
 TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
@@ -257,7 +259,7 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_z_flipped"));
 }
 
-// A run is wrong by what it stated before it told of trouble, whatever it adds then.
+// Whether a run is wrong depends on the covariances from before it reported a doubt, whatever it adds afterwards.
 TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);

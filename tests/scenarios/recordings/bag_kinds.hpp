@@ -14,7 +14,7 @@
 
 namespace tumble::scenarios::fixture {
 
-/// The kinds of bags, tested alike.
+/// A BagKind is a kind of bag; the tests are the same for all kinds.
 struct BagKind {
   const char* name;
   void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);

@@ -19,7 +19,7 @@ using testing::Not;
 
 constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kMs_ns = 1'000'000;
 
-/// A bag of an IMU and a lidar whose headers state what each test has them state.
+/// Stamps has a bag of an IMU and a lidar whose headers contain the stamps that each test chooses.
 class Stamps : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   using HeaderOf = std::int64_t (*)(std::int64_t record_ns);
@@ -89,7 +89,7 @@ TEST_P(Stamps, AnotherClockIsACaution) {
   EXPECT_THAT(written(same, same).notes, Not(Contains(HasSubstr("caution"))));
 }
 
-// a driver may stamp a sweep when it is over, and count the times of its points from its start
+// a driver may stamp a sweep at its end, and count the times of its points from its start
 TEST_P(Stamps, PointsBeyondTheirRecordAreACaution) {
   const auto said =
       AllOf(HasSubstr("/points: caution: the last points of a sweep"), HasSubstr("(set '--stamps record'"));

@@ -22,10 +22,11 @@ namespace {
 
 constexpr int kShort = 40, kLong = 160;  // sweeps
 constexpr int kPoints = 20000;           // of a sweep: 26 bytes each in a record
-/// What the 120 sweeps that the long bag has more would take in a record, at least.
+/// kMore_mib is the least size in a record of the 120 sweeps that the long bag has more.
 constexpr double kMore_mib = 120.0 * kPoints * 26.0 / (1 << 20);
-/// What an import of the long bag may take more than one of the short: a tenth of it. Samples and indices are some 100
-/// bytes for each of 1400 messages more; the rest is how the allocator keeps pages.
+/// An import of the long bag may take more memory than one of the short bag by a tenth of kMore_mib. Samples and
+/// indices take some 100 bytes for each of the 1400 additional messages; the rest depends on how the allocator keeps
+/// pages.
 constexpr double kGrowth_mib = kMore_mib / 10.0;
 
 struct Kind {
@@ -34,7 +35,7 @@ struct Kind {
   Imported (*read)(const std::filesystem::path&, const BagReading&);
 };
 
-/// A bag of a lidar and an IMU, written sweep by sweep.
+/// Writes a bag of a lidar and an IMU, sweep by sweep.
 void write_bag(BagWriter& bag, int sweeps) {
   constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kPeriod_ns = 100'000'000, kImu_ns = 10'000'000;
   fixture::Numbers numbers;
@@ -55,7 +56,7 @@ void write_bag(BagWriter& bag, int sweeps) {
   bag.finish();
 }
 
-/// The largest resident set of a process of its own that does it, MiB.
+/// Returns the largest resident set [MiB] of a separate process that does the work.
 double peak_mib(const std::function<void()>& work) {
   const pid_t child = fork();
   if (child == 0) {
@@ -95,7 +96,7 @@ class BoundedMemory : public fixture::Folder, public testing::WithParamInterface
 TEST_P(BoundedMemory, AnImportDoesNotGrowWithTheBag) {
   for (const int sweeps : {kShort, kLong}) write_bag(*GetParam().writer(bag(sweeps)), sweeps);
   EXPECT_LT(import_mib(kLong, true) - import_mib(kShort, true), kGrowth_mib);
-  // the points in the record: the measure sees what grows
+  // with the points in the record, the measure must detect the growth
   EXPECT_GT(import_mib(kLong, false) - import_mib(kShort, false), kMore_mib);
 }
 
@@ -111,12 +112,12 @@ TEST_P(BoundedMemory, AnExportDoesNotGrowWithTheRecording) {
     return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out); });
   };
   EXPECT_LT(export_mib(kLong) - export_mib(kShort), kGrowth_mib);
-  // the points in the record: the measure sees what grows
+  // with the points in the record, the measure must detect the growth
   const auto whole_mib = [&](int sweeps) { return peak_mib([&] { read_sensors(recording(sweeps)); }); };
   EXPECT_GT(whole_mib(kLong) - whole_mib(kShort), kMore_mib / 2.0);
 }
 
-/// A recording with the truth of its body, of an IMU and of where each ray ended, and the same poses as an estimate.
+/// Writes a recording with the truth of its body, an IMU and the end of each ray, and the same poses as an estimate.
 void write_truthful(const std::filesystem::path& folder, int sweeps) {
   constexpr int kStates = 200, kSamples = 40;  // of a sweep's 0.1 s
   fixture::Numbers numbers;
@@ -146,7 +147,7 @@ class BoundedExport : public fixture::Folder {
   std::filesystem::path file(int sweeps, const char* ending) const {
     return folder_ / (std::to_string(sweeps) + ending);
   }
-  /// What the long recording takes more than the short one.
+  /// Returns how much more memory the long recording takes than the short one.
   template <class Work>
   double growth_mib(Work&& work) {
     return peak_mib([&] { work(kLong); }) - peak_mib([&] { work(kShort); });

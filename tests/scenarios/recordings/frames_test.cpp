@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// /tf, /tf_static and /clock in every kind of bag, and what is made of the frames on the way in.
+// The test checks /tf, /tf_static and /clock in every kind of bag, and how the reader uses the frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
   EXPECT_EQ(truths, 8u);
   EXPECT_EQ(tracks, 1u);
   EXPECT_EQ(messages<ros::Odometry>("/slam_mine").at(0).child_frame_id, "slam_mine");
-  // without the truth the first estimate carries the sensors
+  // without the truth, the sensors are attached to the first estimate
   std::filesystem::remove_all(path_);
   GetParam().write(recording_.sensors, {0, nullptr, {track}}, path_);
   EXPECT_EQ(messages<ros::TFMessage>("/tf").at(0).transforms.at(0).child_frame_id, "body");
@@ -126,7 +126,7 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   EXPECT_THAT(held.notes, Contains(testing::AllOf(
                               HasSubstr("/lidar/points: caution: /tf_static contains the sensor's pose in 'body' as"),
                               HasSubstr("but your option states the pose (0.5 "))));
-  // the same place said twice is no contradiction
+  // the same position stated twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
   EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
 }
@@ -156,7 +156,8 @@ ros::TransformStamped hung(const std::string& child, const std::string& parent, 
   return transform_message(p, q, child, header_of(1'000'000'000, parent));
 }
 
-/// Five messages of an IMU at rest, its topic named as its frame; each is written `times` times.
+/// Writes five messages of an IMU at rest, whose topic has the name of its frame; each message is written `times`
+/// times.
 void write_imu(BagWriter& bag, const std::string& frame, int times = 1) {
   sim::ImuRecord imu;
   imu.period_ns = 10'000'000;
@@ -168,7 +169,7 @@ void write_imu(BagWriter& bag, const std::string& frame, int times = 1) {
   }
 }
 
-/// A bag with an IMU "imu" and these frames.
+/// Writes a bag with an IMU "imu" and these frames.
 void write_frames(BagWriter& bag, const std::vector<ros::TransformStamped>& frames) {
   bag.write("/tf_static", 1'000'000'000, ros::TFMessage{frames});
   write_imu(bag, "/imu");
@@ -177,7 +178,7 @@ void write_frames(BagWriter& bag, const std::vector<ros::TransformStamped>& fram
 
 TEST_P(Frames, AreFollowedThroughOthers) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
-  // a robot's way: both hang on a mast that hangs on the base
+  // as on a robot, both sensors are attached to a mast that is attached to the base
   write_frames(*GetParam().writer(path_),
                {hung("mast", "base_link", {0, 0, 1}, turn), hung("imu", "mast", {0.5, 0, 0})});
   const Imported found = GetParam().read(path_, {});
@@ -209,7 +210,7 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("/right: /tf_static contains the sensor's pose relative to /left")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/elsewhere: neither /tf_static nor --lever-arm")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU, because its topic comes first")));
-  // where the first is given, the second stands beside it
+  // when the pose of the first sensor is given, the second one's follows from it
   BagReading given;
   given.imu_topics = {"/left", "/right"};
   given.imu.T_BI.translation() = Eigen::Vector3d(1, 2, 3);
@@ -249,7 +250,7 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
   EXPECT_EQ(start("unknown", ReferenceOf::named, "whose pose on the body is unknown"), Eigen::Vector3d(7, 8, 9));
 }
 
-// as a motion capture system sends it
+// a motion capture system sends such a transform
 TEST_P(Frames, ATransformIsAReference) {
   const auto bag = GetParam().writer(path_);
   write_imu(*bag, "/imu");
@@ -280,7 +281,7 @@ TEST_P(Frames, AStatedZeroIsAMounting) {
   EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
 }
 
-// zeros of an estimate are no knowledge; those of the truth are
+// zeros of an estimate mean unknown; zeros of the truth are values
 TEST_P(Frames, WhatAnEstimateDoesNotKnowIsUnknown) {
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
   BagTrack track{"mine", {{7'000'000, {1, 2, 3}, Eigen::Quaterniond::Identity()}}};

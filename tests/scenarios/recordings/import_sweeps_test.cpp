@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// An ASCII sweep of points (1, 2, 3), with one more column.
+/// Returns an ASCII sweep of points (1, 2, 3), with one more column.
 std::string sweep(const std::string& column = "", const std::vector<std::string>& values = {"", "", ""}) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(values.size()) +
                      "\nproperty float x\nproperty float y\nproperty float z\n";
@@ -45,7 +45,7 @@ class ImportSweeps : public fixture::Folder {
   Imported imported_;
 };
 
-// "sensors equal to the format's precision": both formats hold all that a lidar says, to the bit
+// The test checks that both formats contain all that a lidar states, to the bit.
 TEST_F(ImportSweeps, WhatExportWritesComesBackToTheBit) {
   const sim::Recording recording = fixture::recording();
   const sim::LidarRecord& given = recording.sensors.lidars[0];
@@ -150,7 +150,7 @@ TEST_F(ImportSweeps, PointTimesAreReadInEveryDialect) {
     std::vector<std::string> first, second;  // sweeps at 50.0 s and 50.1 s
     const char* unit;
   };
-  // firing after 10, 20 and 90 ms
+  // the points were measured after 10, 20 and 90 ms
   const std::vector<Case> cases = {
       {"float time", {"0.01", "0.02", "0.09"}, {"0.01", "0.02", "0.09"}, ""},
       {"uint t", {"10000000", "20000000", "90000000"}, {"10000000", "20000000", "90000000"}, ""},
@@ -168,7 +168,7 @@ TEST_F(ImportSweeps, PointTimesAreReadInEveryDialect) {
     EXPECT_EQ(lidar.point_times, sim::PointTimes::measured) << each.column;
     EXPECT_THAT(lidar.sweep_start_ns, ElementsAre(0, 100000000)) << each.column;
     ASSERT_EQ(lidar.offset_ns.size(), 6u);
-    // float32 seconds hold 90 ms to 4 ns
+    // float32 seconds represent 90 ms to 4 ns
     for (const auto& [i, ns] : {std::pair{0, 1e7}, {1, 2e7}, {2, 9e7}, {5, 9e7}})
       EXPECT_NEAR(lidar.offset_ns[static_cast<std::size_t>(i)], ns, 4.0) << each.column;
   }
@@ -260,7 +260,7 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
 }
 
-// times that count from each packet of a sweep, as of `time_stamp` in ns
+// some drivers count times from each packet of a sweep, such as `time_stamp` in ns
 TEST_F(ImportSweeps, TimesOverAPartOfASweepAreReadWithACaution) {
   std::vector<std::string> ns;
   for (int k = 0; k < 120; ++k) ns.push_back(std::to_string(11'000 * k));
@@ -293,7 +293,7 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
       complaint_of(),
       HasSubstr("1.ply: the point times in field 'time' have the stated unit ns and a range of 59500 in a sweep: in ns "
                 "this is 0.0595 % of the sweep period, in us this is 59.5 % of the sweep period"));
-  // the field's name states it too
+  // the field's name states the unit too
   source_.reading.time_unit = "";
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ms", us));
   EXPECT_THAT(complaint_of(),

@@ -83,7 +83,7 @@ TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   EXPECT_EQ(imu.time_ns.back(), given.time_ns.back() - given.time_ns.front());
 }
 
-/// A body that rocks about y, read every `step_ms`, with stamps of whole milliseconds.
+/// Returns a table of a body that rocks about y, read every `step_ms`, with stamps of whole milliseconds.
 std::string rocking(double step_ms) {
   std::ostringstream text;
   text.precision(12);
@@ -158,7 +158,7 @@ TEST_F(ImportCsv, ReadsTheLogOfASphere) {
   }
 }
 
-/// The lines of a file with their columns in another order.
+/// Returns the lines of a file with their columns in another order.
 std::string reordered(const std::string& text, const std::vector<std::size_t>& order) {
   std::string out;
   std::istringstream lines(text);
@@ -191,7 +191,7 @@ TEST_F(ImportOwnCsv, NamesAreBelievedBeforePlaces) {
   EXPECT_EQ(imported.sensors.imus[0].gyro_rad_s, given_.gyro_rad_s);
   EXPECT_EQ(imported.sensors.imus[0].accel_m_s2, given_.accel_m_s2);
   EXPECT_EQ(imported.sensors.imus[0].period_ns, given_.period_ns);
-  // control: the same columns without their names come in at their places, which are others' now
+  // control: the same columns without their names are read by position, which is wrong here
   std::string moved = reordered(text_, order_);
   moved.erase(0, moved.find('\n') + 1);
   EXPECT_NE(complaint_of(moved), "");
@@ -219,7 +219,7 @@ TEST_F(ImportOwnCsv, AFileWithoutHeaderKeepsItsFirstSample) {
   EXPECT_EQ(imported.sensors.imus[0].time_ns.size(), given_.time_ns.size());
 }
 
-// a body that turns slowly in gravity tells the unit of its gyro
+// a body that turns slowly in gravity shows the unit of its gyro
 TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
   const auto turning = [](double scale, double sign) {
     std::string text = kHeader;
@@ -309,7 +309,7 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
   EXPECT_THAT(complaint_of(returns), HasSubstr("csv: the lines end in a carriage return; they must end in a"));
 }
 
-// to open it for reading waits for who writes to it
+// opening a pipe for reading would wait for a writer
 TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
@@ -318,7 +318,7 @@ TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
 
 class ImportBroad : public fixture::Folder, public ::testing::WithParamInterface<test::DataFolder> {
  protected:
-  /// The trial of that name, or the stand-in.
+  /// Returns the path of the trial of that name, or of the simulated one.
   static std::string trial(const char* real) { return GetParam().real ? real : "00_stand_in_hand"; }
   static Imported import_trial(const char* real) {
     return import_broad(test::written(GetParam()) / (trial(real) + ".hdf5"));
@@ -335,10 +335,10 @@ TEST_P(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
   ASSERT_EQ(imu.time_ns.size(), count);
   EXPECT_EQ(imu.period_ns, 3500000) << "285.714 Hz";
   EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, static_cast<double>(count - 1) / 285.7142857, 1e-5);
-  // at rest at the start: gravity, +9.8 up, and hardly a rate
+  // the body is at rest at the start: the force is gravity, +9.8 up, and the rate is small
   EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1);
   EXPECT_LT(imu.gyro_rad_s[0].norm(), 0.05);
-  // the Earth's field at the place of recording has 49 uT; the room bends it
+  // the Earth's field at the place of recording is 49 uT; the room distorts it
   ASSERT_EQ(imu.magnetic_field_t.size(), imu.time_ns.size());
   EXPECT_NEAR(imu.magnetic_field_t[0].norm(), 49e-6, 15e-6);
   EXPECT_THAT(imported.info.attribution, HasSubstr("Laidig"));
@@ -355,7 +355,7 @@ TEST_P(ImportBroad, TheReferenceAgreesWithTheReadings) {
   ASSERT_EQ(truth.q_WB.size(), imu.time_ns.size());
   EXPECT_TRUE(truth.label.empty());
   EXPECT_THAT(imported.notes, Contains(HasSubstr("the reference agrees with the gyro of 'imu'")));
-  // where the rate is known it is the gyro's, and at rest gravity stands upright in the world
+  // where the true rate is known it must be the gyro's, and at rest gravity must be upright in the world
   std::vector<double> errors, at_rest, up;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     if (!truth.w_WB_B_rad_s[k].allFinite()) continue;
@@ -373,7 +373,7 @@ TEST_P(ImportBroad, TheReferenceAgreesWithTheReadings) {
   ASSERT_GT(at_rest.size(), 1000u);
   EXPECT_LT(median(at_rest), 0.01) << "measured 0.0062: below TruthTrack's bound of rest";
   EXPECT_GT(median(up), 0.999);
-  // gaps and what the cameras do not know pass through the file
+  // gaps and values that the cameras do not know are preserved by the file
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, &truth);
   const sim::Truth back = read_truth(folder_ / "a.h5");
   ASSERT_EQ(back.q_WB.size(), truth.q_WB.size());

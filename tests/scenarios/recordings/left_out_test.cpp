@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags and tables with single faulty readings or clouds.
+// The test checks bags and tables with single faulty readings or clouds.
 #include "scenarios/recordings/left_out.hpp"
 
 #include <gmock/gmock.h>
@@ -58,7 +58,7 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
   EXPECT_THROW(one.require_few(3), BadInput);
 }
 
-/// A bag of an IMU and a lidar of which each test changes single messages.
+/// OddBag is a bag of an IMU and a lidar in which each test changes single messages.
 class OddBag : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   OddBag() {

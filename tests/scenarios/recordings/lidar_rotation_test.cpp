@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a lidar that turns in a room says of a gyro in wrong units, axes, mountings and clocks.
+// The test checks what a lidar that turns in a room reveals about a gyro with wrong units, axes, mountings and clocks.
 #include "scenarios/exchange/lidar_rotation.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,8 @@ using testing::IsEmpty;
 constexpr std::int64_t kSweep_ns = 100'000'000, kSample_ns = 2'500'000;
 constexpr double kDegrees = 57.29577951308232;
 
-/// Rate of the body, whose axes are those of IMU and lidar: about all three, of sizes that rise and fall.
+/// Returns the rate of the body, whose axes are those of IMU and lidar: it turns about all three, with sizes that rise
+/// and fall.
 Eigen::Vector3d rate_at(double time_s) {
   return {0.5 * std::sin(1.3 * time_s), 0.4 * std::sin(1.9 * time_s + 1.0), 0.6 * std::cos(0.8 * time_s)};
 }
@@ -39,7 +40,7 @@ sim::ImuRecord gyro(double length_s) {
   return imu;
 }
 
-/// Attitudes of the body in the world every millisecond.
+/// Returns attitudes of the body in the world every millisecond.
 std::vector<Eigen::Quaterniond> attitudes(double length_s) {
   std::vector<Eigen::Quaterniond> out{Eigen::Quaterniond::Identity()};
   for (int k = 0; k < static_cast<int>(1000.0 * length_s); ++k)
@@ -47,7 +48,7 @@ std::vector<Eigen::Quaterniond> attitudes(double length_s) {
   return out;
 }
 
-/// From inside of a room of 8 x 6 x 3 m with an upright beam, along a unit ray.
+/// Returns the range from inside a room of 8 x 6 x 3 m with an upright beam, along a unit ray.
 double range_in_room(const Eigen::Vector3d& ray) {
   const Eigen::Vector3d half(4.0, 3.0, 1.5), at(0.7, -0.4, 0.2);
   double range = 1e9;
@@ -85,7 +86,7 @@ sim::LidarRecord lidar_in_room(std::size_t sweeps) {
   return lidar;
 }
 
-/// What a lidar without error would have seen from sweep to sweep.
+/// Returns the rotations that a lidar without error would measure from sweep to sweep.
 std::vector<SeenRotation> exact_rotations(int pairs) {
   const auto q_WL = attitudes(0.1 * (pairs + 1));
   std::vector<SeenRotation> out;
@@ -147,7 +148,7 @@ TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
   });
   EXPECT_THAT(text,
               AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("Check the mounting")));
-  // told by both: nothing to say
+  // both sensors agree, so there is nothing to report
   EXPECT_THAT(text_of([](sim::ImuRecord& imu, sim::LidarRecord& lidar) {
                 imu.T_BI.linear() = lidar.T_BL.linear() =
                     Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();

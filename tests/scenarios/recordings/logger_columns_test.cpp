@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of IMUs as loggers and data sets write them: names, units and times of many kinds, the same readings.
+// The test checks IMU tables as loggers and data sets write them: the names, units and times differ, and the readings
+// are the same.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +34,7 @@ class LoggerTable : public fixture::Folder {
   }
 };
 
-/// Three samples 5 ms apart; `row` as it follows the time.
+/// Returns three samples 5 ms apart; `row` follows the time.
 std::string table(const std::string& header, const std::vector<std::string>& times, const std::string& row) {
   std::string text = header + "\n";
   for (const std::string& time : times) text += time + row + "\n";
@@ -65,7 +66,7 @@ TEST_F(LoggerTable, NamesOfManyKindsAreKnown) {
   }
 }
 
-// the layout of EuRoC's and TUM VI's imu0/data.csv
+// the columns have the layout of EuRoC's and TUM VI's imu0/data.csv
 TEST_F(LoggerTable, ColumnsOfEurocAreKnown) {
   const std::string header =
       "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
@@ -103,13 +104,13 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
   EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("the import reads times in us,")));
   EXPECT_THAT(notes_of({"1700000000000000000", "1700000000005000000", "1700000000010000000"}),
               Contains(HasSubstr("the import reads times in ns,")));
-  // as Python prints sums of steps
+  // Python prints sums of steps in this form
   EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}),
               Contains(HasSubstr("the import reads times in s,")));
-  // half a second, or half a millisecond
+  // the step may be half a second or half a millisecond
   EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
               AllOf(HasSubstr("log.csv: the time step is 0.5"), HasSubstr("Add the unit to the column name")));
-  // control: with its name the same is read
+  // control: with a unit in the name the same table is read
   EXPECT_EQ(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)), "");
 }
 
@@ -131,7 +132,7 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
               HasSubstr("log.csv:1: column 'ax [N]' has an unknown unit"));
 }
 
-// decimal commas in a table of commas: its first lines tell that before their times do
+// decimal commas in a table separated by commas: the first lines reveal that before their times do
 TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
   EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
                                  ",0,1,0,2,0,3,-0,5,0,0,9,8")),
@@ -159,7 +160,7 @@ TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
               HasSubstr("log.csv:4: the time stamp does not increase"));
 }
 
-/// The same three samples, with other lines around them and other fields in them.
+/// The test uses the same three samples, with other lines around them and other fields in them.
 TEST_F(LoggerTable, DialectsOfLoggersAreRead) {
   const std::string names = "time,gx,gy,gz,ax,ay,az";
   const std::vector<std::pair<const char*, std::string>> tables = {
@@ -213,7 +214,7 @@ TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
   EXPECT_THAT(imported.notes,
               Contains("column 'I' contains the numbers of several IMUs; the import reads the rows of IMU 0 and leaves "
                        "out: 1 (3 rows)"));
-  // a counter of rows is no number of an IMU
+  // a row counter is no number of an IMU
   std::string counted = "id,time,gx,gy,gz,ax,ay,az\n";
   for (int k = 0; k < 12; ++k) counted += std::to_string(k) + "," + std::to_string(0.005 * k) + kRow + "\n";
   EXPECT_EQ(import(counted).sensors.imus[0].time_ns.size(), 12u);
@@ -226,7 +227,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   EXPECT_THAT(complaint_of(two), AllOf(HasSubstr("log.csv:1: the gyro has columns of several IMUs, '1' and '2'"),
                                        HasSubstr("--columns time=NAME")));
   expect_the_readings(import_columns(two, "time=time,gyro=gyro2_x,gyro2_y,gyro2_z,accel=accel2_x,accel2_y,accel2_z"));
-  // units in the names count, also those of the time
+  // units in the names count, also the unit of the time
   const Imported other = import_columns(table("n,stamp_us,rate a (deg/s),rate b (deg/s),rate c (deg/s),f,g,h",
                                               {"7,5000", "8,10000", "9,15000"}, ",57.29577951308232,0,0,-0.5,0,9.8"),
                                         "accel=f,g,h,time=stamp_us,gyro=rate a (deg/s),rate b (deg/s),rate c (deg/s)");
@@ -243,7 +244,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   EXPECT_THAT(refused("a,b"), HasSubstr("--columns: 'a' must begin with time=, gyro= or accel="));
 }
 
-// of a bag by bagpy and by `rostopic echo -p`: the record's time comes first
+// tables that bagpy and `rostopic echo -p` make from a bag have the record's time first
 TEST_F(LoggerTable, FlattenedMessagesHaveTheStampsOfTheirHeaders) {
   const Imported bagpy = import(table(
       "Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x,angular_velocity.y,"

@@ -17,17 +17,17 @@
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// MCAP files as others write them, or as nobody should: the same messages of one IMU in every shape that the format
-/// has, and with a lie in any place.
+/// The functions here write MCAP files as other programs do, and malformed ones: the same messages of one IMU in every
+/// variant of the format, with a false value at any position.
 namespace tumble::scenarios::fixture {
 
-/// One message as the file holds it.
+/// A Logged is one message as the file contains it.
 struct Logged {
   std::uint64_t time_ns;
   std::string bytes;
 };
 
-/// A sphere at rest, one reading every 10 ms, as CDR.
+/// Returns the messages of a sphere at rest, one reading every 10 ms, as CDR.
 inline std::vector<Logged> imu_messages(std::size_t count) {
   sim::ImuRecord imu;
   imu.period_ns = 10'000'000;
@@ -42,7 +42,8 @@ inline std::vector<Logged> imu_messages(std::size_t count) {
   return out;
 }
 
-/// How a file is put together. Each `change` may spoil a record before it is written; what follows fits what it left.
+/// McapShape describes how a file is assembled. Each `change` may damage a record before it is written; the following
+/// records are consistent with the damaged one.
 struct McapShape {
   std::vector<std::vector<Logged>> chunks;
   std::string compression;  ///< "", "lz4", "zstd", or a name that nobody knows

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MCAP files of every shape are read alike, and a lie in any place of one is refused. Files of ours are given to other
-// people's readers by tests/peers/bags_test.py.
+// The test checks that MCAP files of every variant are read alike, and that a false value at any position of one is
+// rejected. tests/peers/bags_test.py gives files of this project to other people's readers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class Mcap : public fixture::Folder {
     return fixture::complaint([&] { read(bytes); });
   }
   std::string complaint_of(const McapShape& shape) { return complaint_of(fixture::mcap_bytes(shape)); }
-  /// Rates of the messages in the order in which they are given.
+  /// Returns the rates of the messages in the order in which the reader gives them.
   std::vector<double> rates(const std::string& bytes) {
     fixture::put(file(), bytes);
     std::vector<double> out;
@@ -109,7 +109,7 @@ TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
   EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }), HasSubstr("b_1.mcap: no such file"));
 }
 
-/// A lie, and what is said of it.
+/// A Lie contains a false value and the expected message.
 struct Lie {
   const char* name;
   std::function<void(McapShape&)> tell;
@@ -235,7 +235,7 @@ const Lie kLies[] = {
 INSTANTIATE_TEST_SUITE_P(, McapLie, testing::ValuesIn(kLies),
                          [](const auto& of) { return std::string(of.param.name); });
 
-// without a summary the same is found where the file is gone through
+// without a summary the reader finds the same error while it goes through the file
 TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
   shape_.summary = false;
   ASSERT_EQ(complaint_of(shape_), "");
@@ -256,7 +256,7 @@ TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
   EXPECT_NE(complaint_of(loose), "");
 }
 
-// every byte of what we write is under some checksum
+// every byte of the written file is covered by some checksum
 TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
   export_mcap(fixture::small_sensors(), {}, file());
   const std::string whole = fixture::bytes_of(file());

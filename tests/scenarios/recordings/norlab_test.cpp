@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds of libpointmatcher (VTK) and tables of nav_msgs/Odometry, as norlab's mapper leaves them.
+// The test checks clouds of libpointmatcher (VTK) and tables of nav_msgs/Odometry, as norlab's mapper writes them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class Norlab : public testing::TestWithParam<test::DataFolder> {
   }
 };
 
-/// The lidar's pose at a time of the recording, between the truth's samples.
+/// Returns the lidar's pose at a time of the recording, interpolated between the truth's samples.
 Eigen::Isometry3d pose_at(const sim::Truth& truth, double time_ns) {
   const double at = time_ns / static_cast<double>(truth.period_ns);
   const auto i = std::min(static_cast<std::size_t>(at), truth.p_WB_m.size() - 2);
@@ -79,7 +79,7 @@ TEST_P(Norlab, AStatedLengthOfASweepThatTheFilesContradictIsSaid) {
   }
 }
 
-// the first and the fourth line of the table; the reference trembles by some mm on the real one
+// these are the first and the fourth line of the table; the reference of the real one fluctuates by some mm
 TEST_P(Norlab, TheReferenceIsTheTables) {
   const Imported imported = import("trajectory.csv");
   ASSERT_TRUE(imported.reference.has_value());
@@ -94,7 +94,7 @@ TEST_P(Norlab, TheReferenceIsTheTables) {
   }
 }
 
-// each point, put where the reference has the lidar at the point's own time, lies on a wall of the room
+// each point, placed with the reference pose of the lidar at the point's own time, lies on a wall of the room
 TEST(NorlabStandIn, PointsAndPosesBelongTogether) {
   const std::filesystem::path folder = test::written(test::data_folders("norlab").front());
   SweepSource source;
@@ -211,7 +211,7 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
   EXPECT_THAT(complaint_of(head_ + "10,0,1,2,3,0,0,0,1\n"), HasSubstr("has 1 poses; it needs at least 2"));
 }
 
-// as `evo_traj --save_as_tum` and `--save_as_kitti` write them, with numpy's "%.18e"
+// `evo_traj --save_as_tum` and `--save_as_kitti` write such files, with numpy's "%.18e"
 TEST(Evo, ItsFilesOfPosesAreRead) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_evo";
   std::filesystem::create_directories(folder);
@@ -223,7 +223,7 @@ TEST(Evo, ItsFilesOfPosesAreRead) {
   EXPECT_EQ(pose_format(folder / "a.tum"), "tum");
   const std::vector<ReferencePose> poses = read_tum_poses(folder / "a.tum", false);
   ASSERT_EQ(poses.size(), 2u);
-  // a double of such seconds is good to 0.24 us
+  // a double of such seconds is accurate to 0.24 us
   EXPECT_NEAR(static_cast<double>(poses[0].time_ns - 1690309709'285305600), 0.0, 250.0);
   EXPECT_EQ(poses[1].p_WA_m.x(), 1.5);
   const std::string one = "1.000000000000000000e+00 ", none = "0.000000000000000000e+00 ";
@@ -235,7 +235,7 @@ TEST(Evo, ItsFilesOfPosesAreRead) {
   std::filesystem::remove_all(folder);
 }
 
-// the same two poses in every kind of file
+// The test reads the same two poses from every kind of file.
 TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_pose_tables";
   std::filesystem::create_directories(folder);
@@ -281,7 +281,7 @@ TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
   std::filesystem::remove_all(folder);
 }
 
-// timestamps.txt of KITTI's raw data
+// the times are those of timestamps.txt of KITTI's raw data
 TEST(KittiRaw, ItsTimesAreDates) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tumble_timestamps.txt";
   fixture::put(file, "2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.067\n");

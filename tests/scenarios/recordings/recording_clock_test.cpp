@@ -16,11 +16,11 @@ using testing::Pair;
 
 constexpr std::int64_t kFirst_ns = 5'000'000'000;
 
-/// The sensors of one sort alone, for each sort, their stamps as if the clock had begun long before.
+/// Returns the sensors of each sort alone, with stamps as if the clock had begun long before.
 std::vector<sim::Sensors> sorts() {
   const sim::Sensors all = fixture::recording().sensors;
-  // does not compile when a member joins Sensors: a new list belongs below, and into recording_clock.cpp and
-  // recording_check.cpp, of which nothing else reminds
+  // this line does not compile when a member is added to Sensors: a new list must be added below, and to
+  // recording_clock.cpp and recording_check.cpp, where no compiler error demands it
   const auto& [robot, radius_m, gravity_m_s2, imus, lidars, series] = all;
   std::vector<sim::Sensors> out(3);
   out[0].imus = imus;
@@ -73,7 +73,7 @@ TEST(RecordingClock, ClocksOfExportsAreConverted) {
   EXPECT_EQ(shift(kExportOrigin_ns + 11 * second, kExportOrigin_ns + 12 * second), std::nullopt);
 }
 
-// poses that count from zero, of a recording that was exported and imported
+// the poses count from zero, and the recording was exported and imported
 TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   sim::Recording recording = fixture::recording();
   Imported imported;

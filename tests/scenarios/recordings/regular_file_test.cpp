@@ -78,7 +78,7 @@ TEST_F(RegularFile, WhatIsReadOnceMayBeAPipe) {
   EXPECT_THAT(complaint([&] { require_file(folder_); }), HasSubstr("is a folder; it must be a file"));
 }
 
-// to open it for reading waits for who writes to it
+// opening a pipe for reading would wait for a writer
 TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   const std::filesystem::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -17,10 +17,10 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Points on the disk instead of in the record: what is written must not tell.
+/// StoredPoints keeps the points on the disk instead of in the record; the written files must be the same.
 class StoredPoints : public fixture::Folder {
  protected:
-  /// A recording with columns of several chunks, written as a bag.
+  /// The recording has columns of several chunks and is written as a bag.
   StoredPoints() {
     fixture::Numbers numbers;
     sim::Recording recording;
@@ -52,7 +52,7 @@ TEST_F(StoredPoints, GiveTheSameFile) {
   EXPECT_EQ(read_info(folder_ / "stored.h5").digest, read_info(folder_ / "held.h5").digest);
   EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.h5") == fixture::bytes_of(folder_ / "held.h5"));
   EXPECT_EQ(files(), 3u) << "nothing else stays";
-  // one number that is another one is another file
+  // a file with one different number must be a different file
   Imported changed = read(folder_);
   changed.points[1].ring.change([](std::uint16_t& ring) { ring ^= 1; });
   write_recording(folder_ / "stored.h5", changed.info, changed.sensors, changed.points, nullptr);
@@ -72,7 +72,7 @@ TEST_F(StoredPoints, AreReadFromARecordingAndGiveTheSameBag) {
   EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.mcap") == fixture::bytes_of(folder_ / "held.mcap"));
   export_recording(folder_ / "a.h5", "rosbag2", folder_ / "new/folders/bag");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folders/bag/metadata.yaml"));
-  // damage is found on this way too
+  // damage is found when the points are on the disk too
   std::string bytes = fixture::bytes_of(folder_ / "a.h5");
   const float first = held.sensors.lidars[0].range_m[1000];
   const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&first), sizeof(first)));
@@ -100,7 +100,7 @@ TEST_F(StoredPoints, NeedAFolder) {
               HasSubstr("none: cannot create a temporary file in this folder: No such file"));
 }
 
-/// Ends the process with 0 when BadInput says so, and nothing is left but what was there.
+/// Ends the process with 0 when BadInput reports the full disk, and only the earlier files are left.
 [[noreturn]] void write_with_little_room(const Imported& stored, const std::filesystem::path& folder, rlim_t bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};

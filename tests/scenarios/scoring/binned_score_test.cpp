@@ -13,7 +13,7 @@ namespace {
 using testing::perfect_estimate;
 using testing::scores;
 
-/// Bins of an axis that have a value of the base metric.
+/// Returns the bins of an axis that have a value of the base metric.
 std::map<double, double> bins_of(const std::map<std::string, double>& values, const std::string& base,
                                  const std::string& axis) {
   std::map<double, double> bins;
@@ -37,7 +37,8 @@ TEST(BinnedMetric, NamesComeBack) {
     EXPECT_FALSE(parse_binned(other)) << other;
 }
 
-// the synthetic rig turns about one axis, up to 14 rad/s: the y axis alone clips, up to 2.9 rad/s deep, in one segment
+// the synthetic rig turns about one axis, up to 14 rad/s: only the y axis is saturated, up to 2.9 rad/s deep, in one
+// segment
 TEST(BinnedScores, AnErrorOfDeepSamplesStaysInTheirBins) {
   const sim::Recording recording = testing::synthetic_rig();
   const ClippingTruth truth(recording.sensors, recording.truth);
@@ -68,7 +69,8 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
   sim::ImuTruth& exact = recording.truth.imus.front();
-  // all clipping anew: one segment of 3 samples on one axis, one of 12 on two; 200 Hz: 0.015 s and 0.06 s
+  // the test replaces all saturation: one segment of 3 samples on one axis, one of 12 on two; at 200 Hz these are 0.015
+  // s and 0.06 s
   imu.gyro_rad_s = exact.gyro_unclipped_rad_s;
   for (std::size_t k = 100; k < 103; ++k) imu.gyro_rad_s[k].x() -= 2.0;
   for (std::size_t k = 200; k < 212; ++k) imu.gyro_rad_s[k] -= Eigen::Vector3d(0.0, 2.0, 1.0);
@@ -86,7 +88,7 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   EXPECT_NEAR(axes.at(2.0), 2.0, 1e-12);
 }
 
-// Coverage of clipped axes and of axes with a cross-axis error are two numbers.
+// The test checks that the coverage of saturated axes and of axes with a cross-axis error are two numbers.
 TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuTruth& imu = recording.truth.imus.front();

@@ -12,8 +12,8 @@ constexpr std::int64_t kPhysics_ns = 500'000, kImu_ns = 10'000'000;
 constexpr std::size_t kStepsPerSample = 20, kSamples = 200;
 constexpr double kRail_rad_s = 10.5, kAccelRail_m_s2 = 50.0;
 
-/// Two seconds along x: at rest, from 0.5 s to 1.5 s at 2 m/s while it turns, at rest again; in the air from 1.0 s to
-/// 1.25 s; hit three times, the last two 10 ms apart.
+/// Returns two seconds along x: at rest, from 0.5 s to 1.5 s at 2 m/s with a rotation, at rest again; in the air from
+/// 1.0 s to 1.25 s; with three impacts, the last two 10 ms apart.
 sim::Recording hand_made() {
   sim::Recording recording;
   sim::Truth& truth = recording.truth;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Offsets in time of estimates that are the truth of another instant: an offset in closed form.
+// The test checks time offsets in closed form: the estimates are the truth of another instant.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ const sim::Recording& moving_rig() {
   return recording;
 }
 
-/// Attitudes and poses of the body as they truly were `late_s` before their stamps.
+/// Returns attitudes and poses of the body as they truly were `late_s` before their stamps.
 Estimate late_estimate(double late_s) {
   Estimate estimate = perfect_estimate(moving_rig(), Frame::body);
   for (AttitudeState& attitude : estimate.attitudes)
@@ -48,7 +48,8 @@ const std::map<Kind, std::string>& of_attitudes() {
   return all;
 }
 
-// to the first order in the offset; the second, of the acceleration, cancels from rest to rest, the third is 1e-8 of it
+// the equality holds to first order in the offset; the second-order term, of the acceleration, cancels from rest to
+// rest, and the third is 1e-8 of the offset
 TEST(TimeOffset, OfAttitudesAndPosesIsWhatTheyAreLateBy) {
   for (const auto& [kind, name] : of_attitudes()) {
     for (const double late_s : {kLate_s, -kLate_s, 1e-3, 0.0})
@@ -64,7 +65,7 @@ TEST(TimeOffset, OfAttitudesIsTheSameInAWorldOfItsOwn) {
     EXPECT_NEAR(scores(kind, estimate, moving_rig()).at(name), kLate_s, 1e-9) << to_string(kind);
 }
 
-/// The recording with a turning rate that rises steadily, nothing clipped: differences of it are exact.
+/// Returns the recording with a rate that rises steadily and no saturation: differences of the rate are exact.
 sim::Recording steadily_faster(const Eigen::Vector3d& acceleration_rad_s2) {
   sim::Recording recording = moving_rig();
   sim::ImuTruth& truth = recording.truth.imus.front();
@@ -86,7 +87,7 @@ TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
   }
 }
 
-// in the motion there and back the rail hides samples: they have no part, whatever is claimed of them
+// in the motion there and back, saturation hides samples: they do not count, whatever the estimate reports for them
 TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
   Estimate estimate = perfect_estimate(moving_rig());
   const ClippingTruth truth(moving_rig().sensors, moving_rig().truth);
@@ -100,12 +101,12 @@ TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
     estimate.rates[k].w_WI_I_rad_s.setZero();
   }
   ASSERT_GT(clipped, 50u);
-  // the acceleration is a difference over 10 ms: 1e-4 of an offset
+  // the acceleration is a difference over 10 ms, which is accurate to 1e-4 of an offset
   EXPECT_NEAR(scores(Kind::rate, estimate, moving_rig()).at("rate_time_offset_s"), kLate_s, 1e-3 * kLate_s);
 }
 
-// what is wrong, but not late: across the turn, along it now forth and now back, or the same whichever way it turns;
-// each is zero where the estimate stands at the start, where its world is aligned
+// these errors are not delays: across the turn, along it with changing sign, or the same in either direction; each is
+// zero at the start of the estimate, where its world is aligned
 TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
   Estimate estimate = late_estimate(0.0);
   const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();

@@ -23,7 +23,8 @@ TEST(MeanRanks, ShareTheirMeanInTies) {
   EXPECT_TRUE(std::isnan(mean_ranks(std::vector<double>{1.0, std::nan("")})[1]));
 }
 
-// the textbook's ten pairs (IQ and hours of television: -29/165), and scipy 1.17.1: spearmanr of 60 pairs with ties
+// the test uses the textbook's ten pairs (IQ and hours of television: -29/165), and scipy 1.17.1: spearmanr of 60 pairs
+// with ties
 TEST(RankCorrelation, AgreesWithTheTextbookAndScipy) {
   const std::vector<double> iq = {106, 100, 86, 101, 99, 103, 97, 113, 112, 110};
   const std::vector<double> hours = {7, 27, 2, 50, 28, 29, 20, 12, 6, 17};
@@ -47,14 +48,14 @@ TEST(RankCorrelation, SeesOrderAloneAndFailuresAsTheLast) {
   EXPECT_EQ(rank_correlation(x, x).rho, 1.0);
   EXPECT_EQ(rank_correlation(x, x).chance, 0.0);
   EXPECT_EQ(rank_correlation(x, x).low, 1.0);
-  // nothing is known: few pairs, or what does not vary
+  // a few pairs, or constant values, allow no conclusion
   EXPECT_EQ(rank_correlation(std::vector<double>{1, 2, 3}, std::vector<double>{1, 2, 3}).chance, 1.0);
   EXPECT_EQ(rank_correlation(x, std::vector<double>(10, 2.0)).chance, 1.0);
   EXPECT_EQ(rank_correlation(x, std::vector<double>(10, 2.0)).high, 1.0);
   EXPECT_THROW(rank_correlation(x, std::vector<double>{1.0}), BadInput);
 }
 
-// of normal pairs with correlation r the rank correlation is 6/pi asin(r/2)
+// the rank correlation of normal pairs with correlation r is 6/pi asin(r/2)
 TEST(RankCorrelation, IntervalsHoldTheTruthAsOftenAsTheySay) {
   for (const double r : {0.0, 0.5, 0.8}) {
     const double truth = 6.0 / std::numbers::pi * std::asin(0.5 * r);
@@ -81,7 +82,7 @@ TEST(RankCorrelation, IntervalsHoldTheTruthAsOftenAsTheySay) {
   }
 }
 
-// y = x in M classes of k: what is left inside of a class is (k^2 - 1)/12 of (n^2 - 1)/12
+// for y = x in M classes of k values, the variance within a class is (k^2 - 1)/12 of (n^2 - 1)/12
 TEST(FirstOrder, OfItselfIsWhatTheClassesLeave) {
   std::vector<double> x;
   for (int i = 0; i < 1000; ++i) x.push_back(i);
@@ -91,8 +92,8 @@ TEST(FirstOrder, OfItselfIsWhatTheClassesLeave) {
   EXPECT_LT(all.chance, 1e-100);
 }
 
-// Ishigami and Homma's function with a = 7, b = 0.1: the indices in closed form are 0.3139, 0.4424 and 0. The second is
-// of a shape that no rank correlation sees.
+// For Ishigami and Homma's function with a = 7, b = 0.1, the indices in closed form are 0.3139, 0.4424 and 0. The
+// second variable's influence has a shape that no rank correlation detects.
 TEST(FirstOrder, MatchesIshigamisFunction) {
   sim::Stream stream(6, "test.ishigami");
   const double pi = std::numbers::pi;
@@ -107,7 +108,7 @@ TEST(FirstOrder, MatchesIshigamisFunction) {
   EXPECT_LT(std::abs(rank_correlation(b, y).rho), 0.03);
 }
 
-// y = x1 + 2 x2 of uniform numbers: 1/5 and 4/5
+// for y = x1 + 2 x2 with uniform numbers, the indices are 1/5 and 4/5
 TEST(FirstOrder, PartsTheVarianceOfASum) {
   sim::Stream stream(8, "test.sum");
   const auto a = uniform(stream, 3000), b = uniform(stream, 3000);
@@ -117,7 +118,7 @@ TEST(FirstOrder, PartsTheVarianceOfASum) {
   EXPECT_NEAR(first_order_index(b, y).index, 0.8, 0.03);
 }
 
-// scipy 1.17.1: kruskal of four groups, H = 3.6216 with 3 degrees of freedom
+// the expected chance is from scipy 1.17.1: kruskal of four groups, H = 3.6216 with 3 degrees of freedom
 TEST(FirstOrder, ChanceOfRanksIsKruskalAndWallis) {
   std::vector<double> x, y;
   for (int i = 0; i < 60; ++i) {
@@ -139,7 +140,8 @@ TEST(FirstOrder, OfNothingIsNothing) {
       sum += index.index;
       refused += index.chance < 0.05;
     }
-    // cut off at zero, so that the mean is a little above it; uncorrected it would be (M - 1)/(n - 1): 0.10 and 0.025
+    // the index is limited to zero from below, so its mean is a little above zero; without correction it would be (M -
+    // 1)/(n - 1): 0.10 and 0.025
     EXPECT_LT(sum / 2000.0, n == 40 ? 0.045 : 0.008) << n;
     EXPECT_GT(refused, 2000 * 0.025) << n;
     EXPECT_LT(refused, 2000 * 0.065) << n;

@@ -14,7 +14,8 @@
 namespace tumble::scenarios {
 namespace {
 
-/// The definition: over all signs, how often the positive ranks add up to as much. Ties share their mean rank.
+/// The function applies the definition: over all signs, it counts how often the positive ranks add up to at least as
+/// much. Ties share their mean rank.
 double by_enumeration(const std::vector<double>& differences) {
   const std::size_t n = differences.size();
   std::vector<double> ranks(n);
@@ -47,9 +48,10 @@ TEST(SignedRank, IsTheShareOfSignsWithSuchASum) {
   }
 }
 
-// Wilcoxon 1945 and every table since: of ten differences a sum of 8 or less is rarer than 2.5 %, one of 9 is not
+// Wilcoxon 1945 and all later tables agree: for ten differences a sum of 8 or less is rarer than 2.5 %, and a sum of 9
+// is not
 TEST(SignedRank, MatchesTheTable) {
-  // ranks 1..10; negatives 1 + 7 = 8
+  // the ranks are 1 to 10, and the negative ones are 1 + 7 = 8
   const std::vector<double> eight = {-1, 2, 3, 4, 5, 6, -7, 8, 9, 10};
   const std::vector<double> nine = {-1, 2, 3, 4, 5, 6, 7, -8, 9, 10};
   EXPECT_LT(signed_rank_chance(eight), 0.025);
@@ -63,7 +65,7 @@ TEST(SignedRank, ZerosAndNothingSayNothing) {
   EXPECT_NEAR(signed_rank_chance(std::vector<double>(30, 1.0)), std::pow(0.5, 30), 1e-15);
 }
 
-/// Differences 1 to n, those with these ranks negative so that the negative ranks add up to `sum`.
+/// Returns the differences 1 to n, of which those with negative signs have ranks that add up to `sum`.
 std::vector<double> with_negative_sum(int n, int sum) {
   std::vector<double> differences;
   for (int rank = n; rank > 0; --rank) {
@@ -75,8 +77,8 @@ std::vector<double> with_negative_sum(int n, int sum) {
   return differences;
 }
 
-// the two-sided 5 % points of every table of the test (Conover, Practical Nonparametric Statistics, table A12; from 26
-// on other tables): the last sum that is refused
+// the test uses the two-sided 5 % points of every table of the test (Conover, Practical Nonparametric Statistics, table
+// A12; from 26 on other tables): the last sum that is rejected
 TEST(SignedRank, MatchesTheTableOfCriticalValues) {
   const std::vector<std::pair<int, int>> table = {{6, 0},   {7, 2},   {8, 3},    {9, 5},    {10, 8},
                                                   {11, 10}, {12, 13}, {13, 17},  {14, 21},  {15, 25},
@@ -87,8 +89,8 @@ TEST(SignedRank, MatchesTheTableOfCriticalValues) {
   }
 }
 
-// scipy 1.17.1: wilcoxon(d, mode="exact") of the nine pairs of Hollander and Wolfe's depression scores;
-// wilcoxon(d, correction=True, mode="approx") of 120 differences with many ties
+// the test compares with scipy 1.17.1: wilcoxon(d, mode="exact") of the nine pairs of Hollander and Wolfe's depression
+// scores; wilcoxon(d, correction=True, mode="approx") of 120 differences with many ties
 TEST(SignedRank, AgreesWithScipy) {
   const std::vector<double> depression = {-0.952, 0.147, -1.022, -0.43, -0.62, -0.59, -0.49, 0.08, -0.01};
   EXPECT_NEAR(signed_rank_test(depression), 0.0390625, 1e-12);
@@ -101,7 +103,8 @@ TEST(SignedRank, AgreesWithScipy) {
   EXPECT_NEAR(signed_rank_chance(many), 0.0016049128983107177, 1e-14);
 }
 
-// one more pair, and the sum as far from its middle: at the border the two are within half a percent of each other
+// with one more pair, the sum is as far from its middle: where the exact test ends, the two tests are within half a
+// percent of each other
 TEST(SignedRank, GoesOverIntoTheApproximation) {
   const int n = static_cast<int>(kExactPairsMax);
   for (const int sum : {1700, 2000, 2300}) {
@@ -125,7 +128,8 @@ TEST(SignedRank, IsRefusedAsOftenAsItSaysOfAlikeOnes) {
   }
 }
 
-// scipy 1.17.1: binomtest(3, 20).pvalue; statsmodels' mcnemar([[10, 5], [16, 9]], exact=True)
+// the test compares with scipy 1.17.1: binomtest(3, 20).pvalue; and with statsmodels' mcnemar([[10, 5], [16, 9]],
+// exact=True)
 TEST(SignTest, IsBinomial) {
   std::vector<double> differences(17, 1.0);
   differences.insert(differences.end(), {-1.0, -2.0, -0.5, 0.0, std::nan("")});
@@ -135,15 +139,15 @@ TEST(SignTest, IsBinomial) {
   EXPECT_EQ(sign_test({}), 1.0);
 }
 
-// 40 pairs are refused at 13 of one sign or fewer: 3.85 %, whatever the differences' shape (Conover, table A3). Of 2000
-// the deviation is 0.43 %
+// For 40 pairs, the test rejects at 13 of one sign or fewer: 3.85 %, whatever the differences' shape (Conover, table
+// A3). The standard deviation of the share in 2000 tests is 0.43 %
 TEST(SignTest, IsRefusedAsOftenAsItSaysOfAlikeOnes) {
   const auto refused_share = [](double shift) {
     sim::Stream stream(40, "test.signs");
     int refused = 0;
     for (int k = 0; k < 2000; ++k) {
       std::vector<double> differences;
-      // of a skewed distribution with its median at the shift: a test of means would refuse it
+      // the distribution is skewed and has its median at the shift: a test of means would reject it
       for (int i = 0; i < 40; ++i) differences.push_back(std::exp(1.5 * stream.normal()) - 1.0 + shift);
       refused += sign_test(differences) < 0.05;
     }
@@ -162,7 +166,8 @@ TEST(PairedFailures, IsMcNemarsInItsExactForm) {
   EXPECT_THROW(paired_failures_test(-1, 3), BadInput);
 }
 
-// Of 200 draws a fifth fails under both: the test looks at the others alone. Exact tests keep below what they say.
+// A fifth of the 200 draws fails under both methods: the test considers only the others. Exact tests reject at most as
+// often as their level states.
 TEST(PairedFailures, IsRefusedAsSeldomAsItSaysOfAlikeOnes) {
   const auto refused_share = [](double first, double second) {
     sim::Stream stream(200, "test.failures");

@@ -46,7 +46,8 @@ TEST(PartialDependence, MatchesIshigamisFunction) {
   check(c, of_c);
 }
 
-// y = x + e, e symmetric: of a class from l to h mean and median are its middle. Negative control: not its lower end.
+// For y = x + e with symmetric e, mean and median of a class from l to h are its middle. The negative control uses the
+// lower end of the class.
 TEST(PartialDependence, IntervalsHoldTheTruthAsOftenAsTheySay) {
   for (const Centre centre : {Centre::mean, Centre::median}) {
     sim::Stream stream(5, "test.coverage");
@@ -57,7 +58,7 @@ TEST(PartialDependence, IntervalsHoldTheTruthAsOftenAsTheySay) {
       for (const double each : x) y.push_back(each + 0.1 * stream.normal());
       for (const DependenceClass& each : partial_dependence(x, y, centre)) {
         ++all;
-        // between the first and the last draw of a class the others are uniform
+        // between the first and the last draw of a class, the other draws are uniform
         const double middle = 0.5 * (each.low + each.high);
         held += each.centre.low <= middle && middle <= each.centre.high;
         held_end += each.centre.low <= each.low && each.low <= each.centre.high;

@@ -15,8 +15,8 @@ namespace {
 
 using Verdict = SequentialSignTest::Verdict;
 
-/// Chance of each verdict when a sign is positive with probability `p`, and of pairs seen until it: over all sequences
-/// of `n` signs, looked at after every `every`.
+/// An Enumerated contains the chance of each verdict when a sign is positive with probability `p`, and the mean number
+/// of pairs until it: over all sequences of `n` signs, with a look after every `every` pairs.
 struct Enumerated {
   double negative = 0.0, positive = 0.0, pairs = 0.0;
 };
@@ -46,11 +46,11 @@ TEST(SpentBy, IsNothingAtFirstAndHalfOfTheRiskASideAtTheEnd) {
   EXPECT_EQ(spent_by(0.05, 0.0), 0.0);
   EXPECT_NEAR(spent_by(0.05, 1.0), 0.025, 1e-12);
   EXPECT_LT(spent_by(0.05, 0.2), 1e-6);
-  // Lan and DeMets: 2 (1 - Phi(2.2414 / sqrt(0.5)))
+  // Lan and DeMets' formula is 2 (1 - Phi(2.2414 / sqrt(0.5)))
   EXPECT_NEAR(spent_by(0.05, 0.5), 2.0 * 0.5 * std::erfc(2.241402728 / std::sqrt(0.5) / std::sqrt(2.0)), 1e-9);
 }
 
-// what it says to have spent is what all sequences of fair signs add up to
+// the risk that the test states as spent equals the sum over all sequences of fair signs
 TEST(SequentialSignTest, SpendsWhatItSays) {
   for (const int every : {1, 4}) {
     const int n = 16;
@@ -66,7 +66,7 @@ TEST(SequentialSignTest, SpendsWhatItSays) {
   }
 }
 
-// against unequal signs it finds the right one, and before the end
+// with unequal signs the test reaches the right verdict, and before the end
 TEST(SequentialSignTest, HasPowerAndStopsEarly) {
   const Enumerated uneven = enumerate(16, 4, 0.9, 0.1);
   EXPECT_GT(uneven.positive, 0.9);
@@ -74,7 +74,7 @@ TEST(SequentialSignTest, HasPowerAndStopsEarly) {
   EXPECT_LT(uneven.pairs, 14.0);
 }
 
-// With one look it is the sign test: of 10 pairs 9 are needed at 5 %.
+// With one look the test is the sign test: of 10 pairs 9 are needed at 5 %.
 TEST(SequentialSignTest, OfOneLookIsTheSignTest) {
   SequentialSignTest test(0.05);
   EXPECT_EQ(test.look(1.0, 2, 8), Verdict::open);
@@ -83,7 +83,8 @@ TEST(SequentialSignTest, OfOneLookIsTheSignTest) {
   EXPECT_EQ(SequentialSignTest(0.05).look(1.0, 9, 1), Verdict::negative);
 }
 
-// Bounds of five equally spaced looks, two-sided 5 %: Lan and DeMets' table for O'Brien and Fleming's spending
+// The bounds of five equally spaced looks, two-sided 5 %, are in Lan and DeMets' table for O'Brien and Fleming's
+// spending
 TEST(SequentialSignTest, OfManyPairsHasThePublishedBounds) {
   const std::vector<double> published = {4.8769, 3.3569, 2.6803, 2.2898, 2.0310};
   SequentialSignTest test(0.05);
@@ -92,7 +93,7 @@ TEST(SequentialSignTest, OfManyPairsHasThePublishedBounds) {
     test.look(0.2 * static_cast<double>(k + 1), pairs / 2, pairs / 2);
     const double root = std::sqrt(static_cast<double>(pairs));
     const double bound = static_cast<double>(2 * test.needed() - pairs) / root;
-    // signs come in whole numbers: one more moves the bound by 2/sqrt(pairs)
+    // signs are whole numbers: one more sign moves the bound by 2/sqrt(pairs)
     EXPECT_NEAR(bound, published[k], 2.0 / root + 0.005) << k;
   }
 }
@@ -101,7 +102,7 @@ struct Simulated {
   double answered = 0.0, pairs = 0.0;
 };
 
-/// Differences of which a third are zero, 200 draws in ten looks.
+/// Simulates 200 draws in ten looks, with differences of which a third are zero.
 Simulated simulate(double p, int runs) {
   sim::Stream random(7, "test.sequential");
   Simulated out;
@@ -120,8 +121,8 @@ Simulated simulate(double p, int runs) {
   return out;
 }
 
-// the level holds whatever share of the draws are ties, and little of it is lost; four standard errors of the
-// simulation
+// the level is kept whatever share of the draws are ties, and little of it is lost; the tolerance is four standard
+// errors of the simulation
 TEST(SequentialSignTest, KeepsItsLevelBySimulation) {
   constexpr int kRuns = 4000;
   const double error = std::sqrt(0.05 * 0.95 / kRuns);
@@ -130,7 +131,7 @@ TEST(SequentialSignTest, KeepsItsLevelBySimulation) {
   EXPECT_GT(fair.answered, 0.035 - 4.0 * error);
 }
 
-// of 133 pairs and signs of 0.65 a test with one look has power 0.94 (normal approximation: the looks cost a little)
+// with 133 pairs and signs of 0.65, a test with one look has power 0.94 (normal approximation: the looks cost a little)
 TEST(SequentialSignTest, KeepsItsPowerBySimulation) {
   const Simulated uneven = simulate(0.65, 2000);
   EXPECT_GT(uneven.answered, 0.88);
@@ -138,7 +139,7 @@ TEST(SequentialSignTest, KeepsItsPowerBySimulation) {
   EXPECT_LT(uneven.pairs, 100.0);
 }
 
-// Control: the same test looked at with all of its risk each time finds what is not there
+// Control: when the same test uses all of its risk at each look, it finds differences that do not exist
 TEST(SequentialSignTest, WithoutSpendingWouldNotKeepIt) {
   sim::Stream random(8, "test.sequential");
   int answered = 0;
@@ -168,7 +169,7 @@ TEST(SequentialSignTest, AnswersOnceAndRefusesWhatCannotBe) {
   EXPECT_THROW(other.look(0.6, 4, 5), BadInput);
 }
 
-// before there is enough to say anything no outcome is an answer
+// before there are enough pairs for any conclusion, no outcome is an answer
 TEST(SequentialSignTest, OfLittleNothingIsAnAnswer) {
   SequentialSignTest test(0.05);
   EXPECT_EQ(test.look(0.05, 0, 5), Verdict::open);

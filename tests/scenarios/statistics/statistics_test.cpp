@@ -36,7 +36,7 @@ TEST(Quantile, RanksFailuresAsInfinite) {
   EXPECT_EQ(quantile(std::vector{kInfinity, kInfinity}, 0.5), kInfinity);
 }
 
-// ranks of the 95 % interval of the median, as in tables of the sign test (Conover, table A3)
+// the ranks of the 95 % interval of the median are those in tables of the sign test (Conover, table A3)
 TEST(MedianInterval, RanksAreThoseOfTheTables) {
   struct Row {
     int n;
@@ -53,7 +53,7 @@ TEST(MedianInterval, RanksAreThoseOfTheTables) {
   }
 }
 
-// by sorting and by summing all terms, for as few and as many values as there are, with ties and infinities
+// the reference sorts the values and sums all terms, for few and many values, with ties and infinities
 TEST(MedianInterval, IsThatOfTheSortedValuesToTheLastBit) {
   for (const std::size_t count : {1, 2, 5, 6, 7, 8, 60, 61, 1000, 1001, 1500, 1501, 4000, 30001}) {
     std::vector<double> values;
@@ -80,7 +80,8 @@ TEST(MedianInterval, IsThatOfTheSortedValuesToTheLastBit) {
   }
 }
 
-// what the ranks leave, whatever the distribution: 96.48 % of 15, 95.67 % of 25, 96.48 % of 100 values (binomial)
+// the coverage depends only on the ranks, whatever the distribution: 96.48 % of 15, 95.67 % of 25, 96.48 % of 100
+// values (binomial)
 TEST(MedianInterval, CoversTheTrueMedianAsOftenAsItSays) {
   for (const auto& [n, said] : {std::pair{15, 0.9648}, {25, 0.9567}, {100, 0.9648}}) {
     sim::Stream stream(static_cast<std::uint64_t>(n), "test.median");
@@ -103,7 +104,7 @@ TEST(MedianInterval, TooFewValuesBoundNothing) {
   EXPECT_TRUE(std::isnan(median_interval({}).value));
 }
 
-// Clopper and Pearson's limits; 0 of n has the closed form 1 - 0.025^(1/n)
+// the limits are Clopper and Pearson's; 0 of n has the closed form 1 - 0.025^(1/n)
 TEST(ShareInterval, AgreesWithPublishedLimits) {
   struct Row {
     int count, total;
@@ -133,7 +134,7 @@ TEST(ShareInterval, EndsAreExact) {
   EXPECT_THROW(share_interval(5, 4), BadInput);
 }
 
-// the limits by their definition: the binomial tail beyond the count is 2.5 % there
+// by definition of the limits, the binomial tail beyond the count is 2.5 % there
 TEST(ShareInterval, LimitsLeaveTheirTails) {
   const int n = 40;
   for (int count = 1; count < n; ++count) {
@@ -151,7 +152,7 @@ TEST(ShareInterval, LimitsLeaveTheirTails) {
   }
 }
 
-// exact intervals cover at least as often as they say, shares near 0 and few draws too
+// exact intervals cover at least as often as they state, also for shares near 0 and few draws
 TEST(ShareInterval, CoversTheTrueShareAtLeastAsOftenAsItSays) {
   for (const int n : {12, 60, 400}) {
     for (const double share : {0.02, 0.1, 0.5}) {

@@ -6,7 +6,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// A scenario whose baseline has these errors on seeds 1, 2, ...
+/// Returns a scenario whose baseline has these errors on seeds 1, 2, ...
 Section section_of(const std::string& scenario, Kind kind, const std::vector<double>& errors) {
   MetricSummary metric;
   for (std::size_t i = 0; i < errors.size(); ++i) metric.seeds.push_back(i + 1);
@@ -47,7 +47,7 @@ TEST(ExampleChoice, GoesRoundTheRobotsInTheOrderOfTheSuite) {
   EXPECT_TRUE(choose_examples(summary, suite, 0).empty());
 }
 
-/// A method that failed on these seeds.
+/// Returns a method that failed on these seeds.
 MethodSummary failing(const std::string& name, std::vector<std::uint64_t> seeds, bool needs_truth = false) {
   MethodSummary method;
   method.method = name;

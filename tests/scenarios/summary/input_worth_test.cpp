@@ -20,8 +20,8 @@ TriageRow row(const std::string& input, double error_m, bool fails, OutcomeStatu
   return out;
 }
 
-/// Twenty draws whose error is k: "good" takes 1 m off each and cures all, "half" cures every second one and changes no
-/// error, "harm" breaks the even draws, which do not fail, and adds 2 m.
+/// Returns twenty draws whose error is k: "good" removes 1 m from each and cures all, "half" cures every second one and
+/// changes no error, "harm" makes the even draws fail and adds 2 m.
 std::vector<DrawTriage> draws(const std::string& scenario, int count = 20) {
   std::vector<DrawTriage> out;
   for (int k = 1; k <= count; ++k) {

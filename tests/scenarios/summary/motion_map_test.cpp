@@ -29,13 +29,13 @@ TEST(MotionMap, OfOneDrawHasItsSummitThere) {
   const double step = std::log10(map.rate_rad_s[1] / map.rate_rad_s[0]);
   EXPECT_NEAR(std::log10(map.rate_rad_s[summit % kCells]), 1.0, 0.51 * step);
   EXPECT_NEAR(std::log10(map.force_m_s2[summit / kCells]), 2.0, 0.51 * step);
-  // a Gaussian of half a cell: the next cell has exp(-2) of it
+  // the kernel is a Gaussian of half a cell: the next cell has exp(-2) of the summit
   EXPECT_NEAR(map.share[summit + 1] / map.share[summit], std::exp(-2.0), 1e-9);
   EXPECT_NEAR(map.share[summit + kCells] / map.share[summit], std::exp(-2.0), 1e-9);
 }
 
 TEST(MotionMap, SharesAreThoseOfTheDraws) {
-  // three of four lie together, far from the fourth
+  // three of four draws lie together, far from the fourth
   const MotionMap map = motion_map(std::vector<DrawValues>{draw("hill", 1, 1.0, 10.0), draw("hill", 2, 1.0, 10.0),
                                                            draw("hill", 3, 1.0, 10.0), draw("roll", 1, 1e4, 10.0)});
   double slow = 0.0;

@@ -33,7 +33,7 @@ class QuestionTest : public testing::TemporaryFolder {
  protected:
   using Value = std::function<std::optional<double>(std::uint64_t)>;
 
-  /// Seeds first to last of a scenario; no value: the run failed.
+  /// Adds the seeds first to last of a scenario; a missing value means that the run failed.
   void add(const std::string& scenario, std::uint64_t first, std::uint64_t last, const Value& tumble,
            const Value& raw) {
     Results results(path(), Results::Mode::create_or_append);
@@ -73,7 +73,7 @@ TEST_F(QuestionTest, StopsAtTheLookThatAnswers) {
   add(
       "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
   const Question question = question_of(100);
-  // a look that was too early to answer, then the first one that does; what comes after it changes nothing
+  // the first look is too early for an answer and the second gives one; later pairs change nothing
   EXPECT_EQ(ask(question, 10).front().finding, Finding::undecided);
   const std::vector<Answer> at_end = ask(question, 100);
   EXPECT_EQ(at_end.front().finding, Finding::better);
@@ -94,7 +94,7 @@ TEST_F(QuestionTest, TheOtherWayRoundIsWorse) {
   EXPECT_EQ(ask(question, 100).front().finding, Finding::worse);
 }
 
-// better by 0.1 on every draw is not better by 10 % of 2, nor by 0.15, but by 0.05
+// a method that is better by 0.1 on every draw is not better by 10 % of 2, nor by 0.15, but by 0.05
 TEST_F(QuestionTest, AMarginAsksForMore) {
   add(
       "hill", 1, 60, [](auto) { return 1.9; }, [](auto) { return 2.0; });
@@ -108,7 +108,7 @@ TEST_F(QuestionTest, AMarginAsksForMore) {
   EXPECT_EQ(ask(question, 60).front().finding, Finding::better);
 }
 
-// a failed run is the worst, with a margin too; where both fail neither is better
+// a failed run is the worst value, with a margin too; where both methods fail neither is better
 TEST_F(QuestionTest, FailuresRankAsTheWorst) {
   const auto odd = [](std::uint64_t seed) { return seed % 2 == 1; };
   add(
@@ -122,7 +122,7 @@ TEST_F(QuestionTest, FailuresRankAsTheWorst) {
   EXPECT_EQ(answer.better, static_cast<std::int64_t>(answer.seeds) / 2);
 }
 
-// each of two scenarios has half of the risk; one ended before the function returned a result keeps the sweep going
+// each of two scenarios has half of the risk; the question stays open while one of them is undecided
 TEST_F(QuestionTest, EveryScenarioIsAsked) {
   add(
       "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });

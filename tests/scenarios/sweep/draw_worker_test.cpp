@@ -18,8 +18,8 @@
 namespace tumble::scenarios {
 namespace {
 
-/// Takes the memory that earlier tests have freed and that malloc still holds. Otherwise a worker that is forked from
-/// this process could serve itself from it, whatever its limit.
+/// Takes the memory that earlier tests have freed and that malloc still keeps. Otherwise a worker that is forked from
+/// this process could use that memory, whatever its limit.
 std::vector<std::unique_ptr<char[]>> freed_memory() {
   malloc_trim(0);
   std::vector<std::unique_ptr<char[]>> out;
@@ -32,7 +32,8 @@ std::vector<std::unique_ptr<char[]>> freed_memory() {
   return out;
 }
 
-/// Enough for the process as it is, too little for a world: what it has of data now, and a little.
+/// Returns a limit that is enough for the process as it is and too little for a world: its present data and a little
+/// more.
 double too_little_mib() {
   std::ifstream file("/proc/self/statm");
   double pages[6] = {};
@@ -51,7 +52,7 @@ class DrawWorkerTest : public testing::SmallCatalogue {
     suite_.timeout_s = 60;
   }
 
-  /// What it says until it is idle or ended.
+  /// Returns the worker's messages until it is idle or has ended.
   static std::vector<Message> all_of(DrawWorker& worker) {
     std::vector<Message> said;
     while (worker.is_busy() && worker.hear(said)) {
@@ -65,7 +66,7 @@ class DrawWorkerTest : public testing::SmallCatalogue {
   SweepOptions options_;
 };
 
-// the second draw of a worker has the bits of the first draw of another, for each seed
+// for each seed, the second draw of a worker has the bits of another worker's first draw
 TEST_F(DrawWorkerTest, NothingOfADrawIsThereAtTheNext) {
   const DataRoot data{folder_};
   SweepPlan plan(data, suite_, options_, folder_ / "a.db");
@@ -97,7 +98,7 @@ TEST_F(DrawWorkerTest, NothingOfADrawIsThereAtTheNext) {
   EXPECT_GT(end.peak_mib, 1.0);
 }
 
-// one that has died while it was idle takes no draw, and does not take the sweep with it
+// a worker that died while idle receives no draw, and does not end the sweep
 TEST_F(DrawWorkerTest, OneThatDiedIdleIsSeen) {
   const DataRoot data{folder_};
   const SweepPlan plan(data, suite_, options_, folder_ / "a.db");
@@ -111,7 +112,8 @@ TEST_F(DrawWorkerTest, OneThatDiedIdleIsSeen) {
   EXPECT_EQ(worker.dismiss().signal, SIGKILL);
 }
 
-// what needs more than a worker may hold is `killed`, which is no verdict on a method; the worker ends in good order
+// a draw that needs more memory than its worker may use is `killed`, which is no verdict on a method; the worker ends
+// without a fault
 TEST_F(DrawWorkerTest, MemoryIsLimited) {
   const DataRoot data{folder_};
   const SweepPlan plan(data, suite_, options_, folder_ / "a.db");

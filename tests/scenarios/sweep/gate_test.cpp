@@ -28,7 +28,7 @@ Outcome outcome_of(std::uint64_t seed) {
   outcome.method = "tumble";
   outcome.status = OutcomeStatus::ok;
   const auto number = static_cast<double>(seed);
-  // draws differ by a factor of four: only pairs tell a change of 5 %
+  // draws differ by a factor of four: only pairs reveal a change of 5 %
   outcome.scores = {{kError, 0.01 + 0.002 * number},
                     {kShare, 0.9 + 0.002 * number},
                     {kNees, 0.4 + 0.1 * number},
@@ -50,7 +50,7 @@ Gate gate_of(const std::vector<Outcome>& outcomes) {
 
 using Change = std::function<void(Outcome&)>;
 
-/// What becomes of every outcome after `change`.
+/// Returns the gate's results after `change` was applied to every outcome.
 std::vector<GateResult> held_after(const Change& change) {
   std::vector<Outcome> outcomes = accepted_outcomes();
   for (Outcome& outcome : outcomes) change(outcome);
@@ -101,7 +101,8 @@ TEST(Gate, WhatGoesUpAndDownPasses) {
   EXPECT_EQ(fault_after(kError, [](Outcome& o) { score_of(o, kError) *= o.seed % 2 == 0 ? 1.3 : 1.0 / 1.3; }), "");
 }
 
-// one of the sphere's IMUs left out: 10 to 50 % worse on each of three scenarios, and seen on none of them
+// one of the sphere's IMUs is missing: the error is 10 to 50 % worse on each of three scenarios, and significant on
+// none of them
 TEST(Gate, AShiftThatNoScenarioTellsByItselfIsToldByAllTogether) {
   const auto both = [](double factor) {
     std::vector<Outcome> outcomes = accepted_outcomes();

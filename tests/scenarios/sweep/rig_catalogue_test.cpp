@@ -18,11 +18,11 @@
 namespace tumble::scenarios {
 namespace {
 
-// a seed of the range that development looks at, at which the gyro clips in every scenario: mild draws spin below the
-// rail
+// the seed is of the range used for development, and the gyro is saturated with it in every scenario: mild draws spin
+// below the saturation level
 constexpr std::uint64_t kClippedSeed = 1003;
 
-// those whose sensors are the question are suites of their own; `stroll` is of peers/gentle.yaml, where no gyro clips
+// scenarios about their sensors have separate suites; `stroll` is of peers/gentle.yaml, where no gyro is saturated
 TEST(HillSuite, HoldsWithThoseOfRailsAndFaultsEveryScenarioButTheSpheres) {
   std::multiset<std::string> listed;
   for (const char* name : {"hill", "rails", "faults"}) {
@@ -48,7 +48,7 @@ TEST(HillSuite, DrawsOnThirtySeeds) {
   }
 }
 
-/// What a scenario is about.
+/// A RigExpected describes the purpose of a scenario.
 struct RigExpected {
   const char* scenario;
   const char* touched;  ///< beginning of the name of a surface that the rig meets, the ground apart; "" for none
@@ -77,7 +77,7 @@ double longest_flight_s(const sim::Truth& truth) {
 
 class RigScenario : public ::testing::TestWithParam<RigExpected> {};
 
-// a simulation that meets a warning of the engine throws
+// a simulation that causes a warning of the engine throws
 TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   const RigExpected& expected = GetParam();
   const sim::ResolvedSituation situation =
@@ -97,7 +97,7 @@ TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   EXPECT_GE(longest_flight_s(truth), expected.flight_least_s);
   const auto named = [&](const std::string& surface) { return surface.starts_with(expected.touched); };
   if (*expected.touched == '\0') {
-    // nothing but the ground is there at all
+    // the world contains only the ground
     EXPECT_EQ(truth.surfaces.size(), 1u);
   } else {
     EXPECT_GT(std::count_if(truth.contacts.begin(), truth.contacts.end(),
@@ -108,7 +108,7 @@ TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   }
 }
 
-// falls and flights: about half of what the gentlest draw of the scenario gives
+// the falls and flights are about half of those in the gentlest draw of the scenario
 INSTANTIATE_TEST_SUITE_P(
     Catalogue, RigScenario,
     ::testing::Values(RigExpected{"hill", "terrain", 0.7, 0.2}, RigExpected{"bare", "", 0.7, 0.2},
@@ -117,14 +117,14 @@ INSTANTIATE_TEST_SUITE_P(
                       RigExpected{"throw", "terrain", 1.0, 0.9}, RigExpected{"drop", "terrain", 1.5, 0.3}),
     [](const auto& test) { return std::string(test.param.scenario); });
 
-/// Share of samples whose reading repeats the one before.
+/// Returns the share of samples whose reading repeats the one before.
 double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
   std::size_t repeated = 0;
   for (std::size_t k = 1; k < readings.size(); ++k) repeated += readings[k] == readings[k - 1];
   return static_cast<double>(repeated) / static_cast<double>(readings.size() - 1);
 }
 
-// to the measure of RepoIMU's pendulum, segment 3: models/README.md
+// the expected values are those of RepoIMU's pendulum, segment 3: models/README.md
 TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
   std::size_t railed_force = 0;  // of all draws: a whip may fall between two of the accelerometer's readings
   for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
@@ -152,8 +152,8 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
   EXPECT_GT(railed_force, 0u);
 }
 
-// what a peer must follow before its failure on a tumble is the tumble's: far from the rail, no contact, not back at
-// the start, where one that stands still would be right
+// a failure of a compared method on a tumble is due to the tumble only when the method follows a motion far from
+// saturation, without contact, whose end is not its start: otherwise an estimate without motion would be right
 TEST(StrollScenario, IsGentleGoesAwayAndEndsAtRest) {
   for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
     const sim::ResolvedSituation situation =

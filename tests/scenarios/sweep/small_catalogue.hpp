@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios::testing {
 
-/// A sphere whose draws are short and have no map to score.
+/// kRoll is a scenario of a sphere whose draws are short and have no map to score.
 inline constexpr const char* kRoll = R"(name: roll
 doc: A short straight way.
 duration_s: 3
@@ -20,7 +20,7 @@ sensors:
   - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
 )";
 
-/// The delivered models under a catalogue of that one scenario.
+/// SmallCatalogue has the project's models and a catalogue of that one scenario.
 class SmallCatalogue : public TemporaryFolder {
  protected:
   void SetUp() override {

@@ -13,7 +13,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// A tumble with all sensors, once for all tests.
+/// Returns a tumble with all sensors, made once for all tests.
 const SimulatedDraw& tumble() {
   static const SimulatedDraw kDraw = [] {
     Scenario scenario = load_scenario(tree_data(), "hill");
@@ -62,7 +62,7 @@ TEST(TrueInputs, ExactStampsTakeAnOffsetAway) {
   EXPECT_FALSE(input_named("stamps_exact").replace(sensors, tumble().recording.truth));
 }
 
-/// Points of all sweeps at their own times, carried to the world by the true pose.
+/// Returns the largest distance of the points of all sweeps, moved to the world by the true pose at their own times.
 double largest_miss_m(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride) {
   const TruthTrack track(truth, Frame::lidar);
   const sim::LidarRecord& lidar = sensors.lidars[0];
@@ -120,7 +120,7 @@ TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
   EXPECT_TRUE(Failure{}.holds(outcome));
 }
 
-/// The rate that raw gives fails where the gyro clips: the unclipped gyro cures it, the accelerometer does not.
+/// The rate of `raw` fails where the gyro is saturated: the unsaturated gyro cures it, and the accelerometer does not.
 TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
   Scenario scenario = load_scenario(tree_data(), "hill");
   scenario.duration_s.shape = Distribution::Shape::constant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Synthetic poses of a sensor over and under a slope whose depth is known in closed form.
+// The test uses synthetic poses of a sensor over and under a slope, whose depth is known in closed form.
 #include "sim/truth/above_ground.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 constexpr double kSlope = 0.5;
 
-/// 6 m x 4 m of ground that rises along x, 1.6 m high in the middle; beside it a rock.
+/// Returns 6 m x 4 m of ground that rises along x, 1.6 m high in the middle, with a rock next to it.
 engine::World slope() {
   engine::World world = testing::world_of(
       "<mujoco><asset><hfield name='ground' nrow='5' ncol='7' size='3 2 3 0.3'/></asset><worldbody><geom type='hfield' "
@@ -30,8 +30,8 @@ engine::World slope() {
   return world;
 }
 
-/// A body that stands still, a sensor 0.2 m before it; the sensor is `depth_m` below the slope for some of 200 steps of
-/// 0.5 ms, which end with the recording or before it, and 0.3 m above it else.
+/// Returns a body at rest with a sensor 0.2 m in front of it; the sensor is `depth_m` below the slope for some of 200
+/// steps of 0.5 ms, which end with the recording or before it, and otherwise 0.3 m above it.
 Truth dip(double depth_m, int steps, int steps_after = 50) {
   Truth truth;
   const double upright = std::sqrt(1.0 + kSlope * kSlope);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contacts of a strut with rough ground against the engine's own search, which a margin of a picometre makes it do
-// whatever stands in its table.
+// The test compares contacts of a strut with rough ground with the engine's own search, which a margin of a picometre
+// forces, whatever its table contains.
 #include "sim/engine/field_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 using Eigen::Vector3d;
 using Contacts = std::array<mjPreContact, mjMAXCONPAIR>;
 
-/// A strut above 6 m x 4 m of ground: rough to 0.2 m over cells of 0.2 m by 0.16 m.
+/// Ground has a strut above 6 m x 4 m of ground that is rough to 0.2 m over cells of 0.2 m by 0.16 m.
 class Ground {
  public:
   explicit Ground(const char* turn = "0 0 0")
@@ -49,7 +49,7 @@ class Ground {
   std::optional<int> ours(Contacts& contacts) const {
     return field_contacts(*world_.model, *data_, 0, 1, contacts.data());
   }
-  /// The engine's contacts stand in `data` until the next call.
+  /// `data` contains the engine's contacts until the next call.
   const mjData& engines() {
     mj_collision(world_.model.get(), data_.get());
     return *data_;
@@ -65,7 +65,8 @@ Eigen::Quaterniond any_attitude(Stream& chance) {
   return turn.normalized();
 }
 
-/// The largest difference of place, depth and normal, contact by contact; infinite when they are not as many.
+/// Returns the largest difference of position, depth and normal, contact by contact; it is infinite when the numbers of
+/// contacts differ.
 double difference(const Contacts& ours, int count, const mjData& engine) {
   if (count != engine.ncon) return std::numeric_limits<double>::infinity();
   double worst = 0.0;
@@ -84,7 +85,7 @@ TEST(FieldContact, ContactsAreTheEngines) {
   Contacts contacts;
   int touching = 0, clear = 0, several = 0, deep = 0;
   for (int i = 0; i < 20000; ++i) {
-    // also over the rim, and from within the ground to above its tops
+    // the positions include those over the edge, and from within the ground to above its tops
     ground.put({chance.uniform(-3.2, 3.8), chance.uniform(-2.6, 2.2), chance.uniform(0.15, 0.5)}, any_attitude(chance));
     const std::optional<int> count = ground.ours(contacts);
     const mjData& engine = ground.engines();

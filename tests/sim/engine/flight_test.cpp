@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The rig, spun near its unstable axis at 18 rad/s, thrown off 100 m above the hill.
+/// Flight has the rig, spun near its unstable axis at 18 rad/s and thrown 100 m above the hill.
 class Flight : public ::testing::Test {
  protected:
   Flight() : world_(engine::compose(resolve(tumble_down(1.0, 100.0)), models_folder())), physics_(world_) {

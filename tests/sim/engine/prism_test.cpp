@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closest points of an axis and a prism where they can be told by hand: above the top, beside a face, at an edge, at a
-// corner, across and along an edge.
+// The test checks the closest points of an axis and a prism where they are known by hand: above the top, next to a
+// face, at an edge, at a corner, across and along an edge.
 #include "sim/engine/prism.hpp"
 
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// a right angle at the origin, legs of 1 m, the top level at 0
+// this prism has a right angle at the origin, legs of 1 m, and a level top at 0
 const Prism kLevel{{Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(0, 1, 0)}, -5.0};
-// the same, rising by 1 in 1 along x
+// this prism is the same, and its top rises by 1 in 1 along x
 const Prism kRising{{Vector3d(0, 0, 0), Vector3d(1, 0, 1), Vector3d(0, 1, 0)}, -5.0};
 
 void expect_near(const Prism& prism, const Vector3d& a_m, const Vector3d& b_m, const Vector3d& axis_m,

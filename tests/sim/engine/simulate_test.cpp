@@ -18,7 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Attitude, velocity and position that the samples of an ideal IMU lead to, beside the truth at its place.
+/// DeadReckoning contains the attitude, velocity and position integrated from the samples of an ideal IMU, next to the
+/// truth at its position.
 struct DeadReckoning {
   double attitude_rad, velocity_m_s, position_m, peak_m_s2, peak_rad_s;
 };
@@ -101,7 +102,7 @@ TEST(Simulate, TruthIsCompleteAndBeginsAtRest) {
     ASSERT_NEAR(contact.normal_W.norm(), 1.0, 1e-9);
     ASSERT_NEAR(contact.normal_W.dot(contact.slip_velocity_W_m_s), 0.0, 1e-9);
   }
-  // at rest the contacts carry the weight: 8 kg
+  // at rest the contacts carry the weight of 8 kg
   double weight_n = 0.0;
   for (const ContactTruth& contact : truth.contacts) {
     if (contact.time_ns == 250'000'000) weight_n += contact.normal_force_n * contact.normal_W.z();
@@ -181,7 +182,7 @@ TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
   const Situation situation = tumble_down(3.0, 100.0);
   const Truth truth = simulate(built(situation)).truth;
   const Eigen::Isometry3d T_WB = start_pose(built(situation));
-  // it settles through 3 mm of gap into the give of its contacts and leans on uneven ground (measured: 7 mm, 0.040 rad)
+  // the rig settles through 3 mm of gap into its soft contacts and leans on uneven ground (measured: 7 mm, 0.040 rad)
   EXPECT_LT((T_WB.translation() - truth.p_WB_m.front()).norm(), 0.03);
   EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.1);
 }

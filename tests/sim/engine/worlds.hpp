@@ -12,7 +12,7 @@ inline std::filesystem::path models_folder() {
   return test::source_dir() / "models";
 }
 
-/// The world of a situation, from the models of this tree: anew at each call.
+/// Returns the world of a situation, from the models of this repository: each call makes a new one.
 inline BuiltSituation built(const Situation& situation) {
   return {resolve(situation), models_folder()};
 }
@@ -27,7 +27,7 @@ inline SensorSpec imu_at(const std::string& name, const std::string& site, doubl
   return sensor;
 }
 
-/// A tumble with one ideal IMU.
+/// Returns a tumble with one ideal IMU.
 inline Situation tumble_down(double duration_s, double imu_rate_hz) {
   Situation situation;
   situation.scenario = "test";
@@ -44,7 +44,7 @@ inline Situation tumble_down(double duration_s, double imu_rate_hz) {
   return situation;
 }
 
-/// A sphere on a level floor, led along one metre.
+/// Returns a sphere on a level floor that is guided along one metre.
 inline Situation roll_along(double duration_s) {
   Situation situation;
   situation.scenario = "test";

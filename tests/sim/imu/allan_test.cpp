@@ -27,7 +27,8 @@ std::vector<double> walk(std::size_t count, double step, std::uint64_t seed = 1)
 }
 
 TEST(Allan, AgreesWithTheDefinitionOnASeriesWorkedByHand) {
-  // means of pairs: 1.5 3.0 5.5 7.5 6.0 5.0 7.5 8.5; overlapping pairs two apart, half of the mean squared difference
+  // the means of pairs are 1.5 3.0 5.5 7.5 6.0 5.0 7.5 8.5; the overlapping pairs are two apart, and the result is half
+  // of the mean squared difference
   const std::vector<double> series = {1, 2, 4, 7, 8, 4, 6, 9, 8, 2, 0, 3, 5, 1, 4, 6, 7, 2};
   double sum_1 = 0.0, sum_2 = 0.0;
   for (std::size_t i = 0; i + 1 < series.size(); ++i) sum_1 += std::pow(series[i + 1] - series[i], 2);
@@ -68,7 +69,8 @@ TEST(Allan, RandomWalkRisesWithTheRootOfTime) {
 }
 
 TEST(Allan, IntervalsHoldAsOftenAsTheyClaim) {
-  // 300 series of white noise, cluster 16 of 400 samples: 2 sigma hold in 95.4 %; 3.5 standard errors are 4.2 %
+  // in 300 series of white noise with clusters of 16 of 400 samples, 2 sigma contain the truth in 95.4 %; 3.5 standard
+  // errors are 4.2 %
   int held = 0;
   constexpr int kRuns = 300;
   for (int run = 0; run < kRuns; ++run) {
@@ -82,13 +84,14 @@ TEST(Allan, IntervalsHoldAsOftenAsTheyClaim) {
 }
 
 TEST(Allan, IntervalRefusesATenthMoreNoise) {
-  // negative control: 100 000 samples tell 10 % apart at short times
+  // negative control: 100 000 samples distinguish a difference of 10 % at short times
   const AllanPoint point = allan_deviation(white(100'000, 1.1), 1.0).front();
   EXPECT_GT(confidence_interval(point, AllanNoise::white, 3.0).low, 1.0);
 }
 
 TEST(Allan, GaussMarkovTendsToItsTwoLimits) {
-  // far below the correlation time a random walk of sigma sqrt(2 / T), far above it white noise of sigma sqrt(2 T)
+  // far below the correlation time the process is a random walk of sigma sqrt(2 / T), and far above it white noise of
+  // sigma sqrt(2 T)
   EXPECT_NEAR(gauss_markov_deviation(0.1, 100.0, 0.02) / walk_deviation(0.1 * std::sqrt(2.0 / 100.0), 0.02), 1.0, 1e-3);
   EXPECT_NEAR(gauss_markov_deviation(0.1, 1.0, 1e4) / white_deviation(0.1 * std::sqrt(2.0), 1e4), 1.0, 1e-3);
   EXPECT_NEAR(gauss_markov_deviation(0.1, 100.0, 0.0999999) / gauss_markov_deviation(0.1, 100.0, 0.1000001), 1.0, 1e-5);

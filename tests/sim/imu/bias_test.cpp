@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Mean curve of the three axes of a bias alone.
+/// Returns the mean Allan curve of the three axes of a bias alone.
 std::vector<AllanPoint> curve_of(const Bias::Params& params, double period_s, double duration_s, std::uint64_t seed) {
   Bias bias(params, period_s, Stream(seed, "test"));
   std::vector<std::vector<double>> axes(3);
@@ -94,7 +94,7 @@ TEST(BiasStage, InRunFollowsItsClosedForm) {
 }
 
 TEST(BiasStage, OneProcessAloneHasNoFloor) {
-  // negative control of the test above: a single process of the same peak falls out of the interval on both sides
+  // negative control of the test above: a single process with the same peak is outside the interval on both sides
   EXPECT_LT(gauss_markov_deviation(3.0 / 0.617, 100.0, 5.0), 0.7 * 3.0);
 }
 

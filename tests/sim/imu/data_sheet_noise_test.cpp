@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The devices' data sheets against what the simulation makes of them, from an hour at rest; and the options of a
-// scenario that reach the simulation.
+// The test compares the devices' data sheets with an hour of simulated rest, and checks the options of a scenario that
+// the simulation uses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,8 +40,9 @@ std::vector<std::string> imus_of_the_sheets() {
   return imus;
 }
 
-/// The device with its own numbers, but for those given; at rest the bandwidths have nothing to do and are off, and so
-/// are windows shorter than a period, which let more of the noise pass, and the hold (sampling_test.cpp has them).
+/// Returns the device with its data sheet's numbers, except the given ones; at rest the bandwidths have no effect and
+/// are off, and so are windows shorter than a period, which let more of the noise pass, and the hold (sampling_test.cpp
+/// has them).
 sim::SensorSpec device(const std::string& name, const std::map<std::string, double>& given) {
   sim::SensorSpec sensor;
   sensor.name = "imu";
@@ -83,7 +84,7 @@ void expect_within(const AllanPoint& point, AllanNoise noise, double expected, c
   EXPECT_GT(interval.high, expected) << what << " at " << point.tau_s << " s";
 }
 
-/// Numbers of one triad that make an error at rest, all 0.
+/// Returns the numbers of one triad that make an error at rest, all of them 0.
 std::map<std::string, double> silent() {
   return {{"gyro_noise_rad_s_sqrt_hz", 0}, {"gyro_bias_in_run_rad_s", 0}, {"gyro_bias_walk_rad_s_sqrt_s", 0},
           {"gyro_quantum_rad_s", 0},       {"gyro_handover_rad_s", 0},    {"gyro_g_sensitivity_s_m", 0},
@@ -94,7 +95,7 @@ std::map<std::string, double> silent() {
 class DataSheetNoise : public testing::TestWithParam<std::string> {
  protected:
   double number(const std::string& key) const { return device(GetParam(), {}).values.at(key); }
-  /// The device with every noise off but `keys`, as its sheet has them.
+  /// Returns the device with every noise off except `keys`, which have the values of its data sheet.
   sim::SensorSpec only(const std::vector<std::string>& keys) const {
     std::map<std::string, double> given = silent();
     for (const std::string& key : keys) given.erase(key);
@@ -112,7 +113,7 @@ TEST_P(DataSheetNoise, WhiteNoiseOfAnHourAgrees) {
     expect_within(accel, AllanNoise::white, sim::white_deviation(number("accel_noise_m_s2_sqrt_hz"), accel.tau_s),
                   "accel");
   }
-  // and an hour tells 3 % apart
+  // an hour of data distinguishes a difference of 3 %
   const AllanPoint& sharp = nearest_point(curves.gyro, 0.1);
   EXPECT_GT(confidence_interval(sharp, AllanNoise::white).low,
             0.97 * sim::white_deviation(number("gyro_noise_rad_s_sqrt_hz"), sharp.tau_s));
@@ -121,7 +122,7 @@ TEST_P(DataSheetNoise, WhiteNoiseOfAnHourAgrees) {
 TEST_P(DataSheetNoise, BiasInstabilityOfAnHourIsTheFloor) {
   const Curves curves = at_rest(only({"gyro_bias_in_run_rad_s", "accel_bias_in_run_m_s2"}), kHour_s, 12);
   for (const double tau_s : {10.0, 25.0, 63.0, 160.0}) {
-    // the floor of four processes is within 5 % of the figure (BiasStage.InRunHasAFlatFloorAtItsFigure)
+    // the minimum of four processes is within 5 % of the stated figure (BiasStage.InRunHasAFlatFloorAtItsFigure)
     const AllanPoint& gyro = nearest_point(curves.gyro, tau_s);
     const AllanPoint& accel = nearest_point(curves.accel, tau_s);
     expect_within(gyro, AllanNoise::flicker, 0.98 * number("gyro_bias_in_run_rad_s"), "gyro");
@@ -147,7 +148,8 @@ TEST_P(DataSheetNoise, RandomWalkOfAnHourAgrees) {
 }
 
 TEST_P(DataSheetNoise, WholeDeviceIsTheSumOfItsNoises) {
-  // without quantisation: at the step of a device with little noise, it adds up to a tenth to the white noise
+  // the test runs without quantisation, because for a device with little noise the step adds up to a tenth to the white
+  // noise
   const sim::SensorSpec sensor = device(
       GetParam(),
       {{"gyro_handover_rad_s", 0}, {"accel_handover_m_s2", 0}, {"gyro_quantum_rad_s", 0}, {"accel_quantum_m_s2", 0}});
@@ -167,7 +169,7 @@ TEST_P(DataSheetNoise, WholeDeviceIsTheSumOfItsNoises) {
 INSTANTIATE_TEST_SUITE_P(Devices, DataSheetNoise, testing::ValuesIn(imus_of_the_sheets()));
 
 TEST(DataSheetNoise, AWrongFigureIsFound) {
-  // negative controls: 10 % more white noise, twice the floor, twice the walk
+  // the negative controls are 10 % more white noise, twice the floor and twice the random walk
   sim::SensorSpec sensor = device("mti30", silent());
   const double white = 5.23598776e-4, floor = 8.7266463e-5, walk = 2.0e-6;
   sensor.values.set("gyro_noise_rad_s_sqrt_hz", 1.1 * white);
@@ -187,7 +189,7 @@ TEST(DataSheetNoise, PhidgetAtRestIsReadByItsPrecisePart) {
   const sim::SensorSpec sensor = device("phidget1044", {});
   const AllanPoint gyro = nearest_point(at_rest(sensor, 300.0, 5).gyro, 0.02);
   const AllanPoint accel = nearest_point(at_rest(sensor, 300.0, 5).accel, 0.02);
-  // quantum of 0.02 deg/s under 0.13 deg/s of noise: its own noise, 1 % of the variance
+  // the quantum of 0.02 deg/s is small against 0.13 deg/s of noise: it adds noise of 1 % of the variance
   expect_within(gyro, AllanNoise::white, 1.004 * sim::white_deviation(1.048661e-4, gyro.tau_s), "gyro");
   expect_within(accel, AllanNoise::white, 1.003 * sim::white_deviation(1.736638e-4, accel.tau_s), "accel");
 }
@@ -207,7 +209,7 @@ TEST(DataSheets, EveryImuStatesEveryNumberOfItsKind) {
   }
 }
 
-/// The hill with other options of its first IMU, drawn.
+/// Returns the first IMU of a draw of the hill with other options.
 sim::SensorSpec drawn_imu(const std::string& options) {
   const std::string text = R"(
 name: options

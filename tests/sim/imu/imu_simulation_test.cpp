@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A body that turns about z with a constant rate while its origin moves along x by an acceleration of a sin.
+/// Returns a body that turns about z with a constant rate while its origin moves along x with an acceleration of a sin.
 Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3.0) {
   Truth truth;
   constexpr double kFrequency_rad_s = 20.0;
@@ -31,7 +31,7 @@ Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3
   return truth;
 }
 
-/// A body that swings about an axis near x with up to 12 rad/s and is shaken along x.
+/// Returns a body that swings about an axis near x with up to 12 rad/s and is shaken along x.
 Truth swinging(double duration_s) {
   Truth truth = turning(0.0, duration_s, 5.0);
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -68,7 +68,7 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation() = Vector3d(0.1, 0, 0.03);
   const SimulatedImu r = simulated(turning(15.0, 0.5, 0.0), ideal(), T_BI);
-  // w^2 r towards the axis, as a gain of velocity over a turn of 0.15 rad: the chord is shorter than the arc
+  // the velocity gain from w^2 r towards the axis, over a turn of 0.15 rad: the chord is shorter than the arc
   const Vector3d expected(-22.5 * std::sin(0.075) / 0.075, 0, kGravity_m_s2);
   ASSERT_EQ(r.record.accel_m_s2.size(), 50u);
   for (const Vector3d& f : r.record.accel_m_s2) ASSERT_NEAR((f - expected).norm(), 0.0, 1e-9);
@@ -175,7 +175,8 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
   const Truth motion = swinging(1.0);
   const SimulatedImu exact = simulated(motion, ideal());
   ASSERT_EQ(exact.record.gyro_rad_s, exact.truth.rate_rad_s);
-  // every number that makes an error, at a size that must show, after those without which it does nothing
+  // the list contains every number that makes an error, with a visible size, after the numbers without which it has no
+  // effect
   const std::vector<std::vector<std::pair<const char*, double>>> options = {
       {{"gyro_rail_rad_s", 8.0}},
       {{"gyro_rail_rad_s", 8.0}, {"gyro_plateau_axis_spread_rad_s", 0.1}},
@@ -241,7 +242,7 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
 }
 
 TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
-  // x swings through the rail while y and z stay below it; noise, bias and axis errors on
+  // x swings through the saturation level while y and z stay below it; noise, bias and axis errors are on
   SensorSpec sensor = ideal(200.0);
   for (const auto& [name, value] :
        std::initializer_list<std::pair<const char*, double>>{{"gyro_rail_rad_s", 8.0},
@@ -269,7 +270,7 @@ TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
 }
 
 TEST(ImuSimulation, WholeWindowsAtTheRailReadExactlyTheRail) {
-  // turning about an axis that turns itself: coning would move a compensated reading off the plateau
+  // the axis of the rotation itself turns: coning would move a compensated reading away from the plateau
   SensorSpec sensor = ideal();
   sensor.values.set("gyro_rail_rad_s", 7.5);
   Truth truth = turning(0.0, 0.5);

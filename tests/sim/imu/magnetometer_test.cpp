@@ -31,7 +31,8 @@ std::vector<Vector3d> straight_path() {
 TEST(MagneticField, OfADipoleAgreesWithTheTextbook) {
   MagneticField field;
   field.dipoles.push_back({{1, 2, 3}, {0, 0, 5.0}});
-  // on the axis mu_0 m / (2 pi d^3), beside it half of that against the moment (Jackson 5.56 with r along and across m)
+  // on the axis the field is mu_0 m / (2 pi d^3), and to the side half of that against the moment (Jackson 5.56 with r
+  // along and across m)
   EXPECT_NEAR((field.at({1, 2, 3.5}) - Vector3d(0, 0, 2e-7 * 5.0 / 0.125)).norm(), 0.0, 1e-18);
   EXPECT_NEAR((field.at({1.5, 2, 3}) - Vector3d(0, 0, -1e-7 * 5.0 / 0.125)).norm(), 0.0, 1e-18);
 }
@@ -95,7 +96,7 @@ TEST(Magnetometer, ErrorsHaveTheirSizes) {
     hard += mean.squaredNorm();
     for (const Vector3d& reading : readings) noise += (reading - mean).squaredNorm();
   }
-  // 3000 offsets and 57000 degrees of freedom: 5 standard errors are 6.5 % and 1.5 %
+  // for 3000 offsets and 57000 degrees of freedom, 5 standard errors are 6.5 % and 1.5 %
   EXPECT_NEAR(std::sqrt(hard / (3 * kDevices)), 2e-6, 0.065 * 2e-6);
   EXPECT_NEAR(std::sqrt(noise / (3 * kDevices * (kReadings - 1))), 5e-8, 0.015 * 5e-8);
 }
@@ -108,7 +109,7 @@ TEST(Magnetometer, ClipsAndQuantises) {
   EXPECT_NEAR(reading.z(), 1.2e-6, 1e-15);
 }
 
-/// A body that turns about z while it moves along x.
+/// Returns a body that turns about z while it moves along x.
 Truth turning_along() {
   Truth truth;
   for (int k = 0; k <= 2000; ++k) {
@@ -147,7 +148,8 @@ TEST(ImuMagnetometer, ReadsTheEarthInItsOwnAxes) {
   ASSERT_EQ(r.record.magnetic_field_t.size(), 100u);
   EXPECT_EQ(r.record.magnetic_field_t, r.truth.magnetic_field_t);
   for (std::size_t i = 0; i < 100; ++i) {
-    // mean over a turn of 0.06 rad about z, read half a step behind the middle of the window; y of I is z of B
+    // the reading is the mean over a turn of 0.06 rad about z, half a step behind the middle of the window; y of I is z
+    // of B
     const double heading = 6.0 * (0.01 * (static_cast<double>(i) + 0.5) + 0.00025);
     const Vector3d& earth = r.record.earth_field_W_t;
     const Vector3d in_B(earth.x() * std::cos(heading), -earth.x() * std::sin(heading), earth.z());

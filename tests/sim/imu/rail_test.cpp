@@ -70,7 +70,7 @@ TEST(RailStage, PlateauDiffersFromOneClippingToTheNextAndKeepsWithinOne) {
   constexpr int kEvents = 400;
   for (int event = 0; event < kEvents; ++event) {
     const double level = x_of(plateau, 13.0);
-    // noise about the rail does not end a clipping: 9.6 is above nine tenths of any level here
+    // noise about the saturation level does not end a saturated period: 9.6 is above nine tenths of any level here
     for (const double x : {14.0, 9.8, 12.0, 15.0}) ASSERT_EQ(x_of(plateau, x), std::min(x, level)) << "event " << event;
     levels.insert(level);
     sum += level - 10.5;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Devices that sample: windows, delays and rates of their own.
+// The test checks devices that sample: their windows, delays and rates.
 #include "sim/imu/sampling.hpp"
 
 #include <gmock/gmock.h>
@@ -90,7 +90,8 @@ TEST(Sampling, ThePhaseIsDrawn) {
   EXPECT_NE(first_change(1), first_change(2));
 }
 
-/// Turns about z by a rate that rises by 10 rad/s^2 from 1 rad/s; pushed along x by as many m/s^2.
+/// Returns a turn about z with a rate that rises by 10 rad/s^2 from 1 rad/s, and the same acceleration in m/s^2 along
+/// x.
 Truth ramp(double duration_s) {
   Truth truth;
   for (int k = 0; k <= std::lround(duration_s * kSteps_hz); ++k) {
@@ -126,7 +127,8 @@ TEST(SampledDevice, AWindowAsLongAsTheOutputsSaysTheSameAboutOneAxis) {
 }
 
 TEST(SampledDevice, WindowsAndDelaysOfGyroAndAccelerometerAreTenMillisecondsApart) {
-  // over a ramp a mean over T is late by T / 2, and a delay by itself: the truth is the mean over the output's 10 ms
+  // on a ramp, a mean over T is late by T / 2, and a delay by its own length: the truth is the mean over the output's
+  // 10 ms
   const SimulatedImu r = sampled_ramp({{"gyro_window_s", 0.03}, {"accel_window_s", 0.0005}, {"accel_delay_s", 0.01}});
   const SimulatedImu late = sampled_ramp({{"gyro_delay_s", 0.01}});
   for (std::size_t k = 5; k < 100; ++k) {
@@ -139,7 +141,7 @@ TEST(SampledDevice, WindowsAndDelaysOfGyroAndAccelerometerAreTenMillisecondsApar
 }
 
 TEST(SampledDevice, ALogFasterThanItsSensorRepeats) {
-  // 40 readings a second in a log of 100: 60 % repeat the one before
+  // with 40 readings per second in a log of 100, 60 % repeat the one before
   const SimulatedImu r = sampled_ramp({{"gyro_update_hz", 40.0}, {"accel_update_hz", 25.0}});
   int gyro = 0, accel = 0;
   for (std::size_t k = 4; k < 100; ++k) {
@@ -169,7 +171,7 @@ TEST(SampledDevice, HeldReadingsKeepTheirFlags) {
 
 TEST(SampledDevice, TheSpreadOfTheGSensitivityIsDrawn) {
   const SimulatedImu none = sampled_ramp({}), r = sampled_ramp({{"gyro_g_sensitivity_spread_s_m", 1e-3}});
-  // about x and y nothing turns: what is read there is column z of the matrix times the force
+  // the body does not turn about x and y: the readings there are column z of the matrix times the force
   const Vector3d first = r.record.gyro_rad_s[10] - none.record.gyro_rad_s[10];
   const Vector3d last = r.record.gyro_rad_s[90] - none.record.gyro_rad_s[90];
   const double more = r.truth.specific_force_m_s2[90].z() / r.truth.specific_force_m_s2[10].z();

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Amplitude of the low-pass's answer to a sine, after its transient.
+/// Returns the amplitude of the low-pass's response to a sine, after its transient.
 double gain(double cutoff_hz, double tone_hz) {
   constexpr double kRate_hz = 2000.0;
   LowPass low_pass(cutoff_hz, kRate_hz);
@@ -36,7 +36,8 @@ TEST(LowPassStage, OffReturnsTheInputBitForBit) {
 }
 
 TEST(LowPassStage, HasTheGainOfASecondOrderButterworth) {
-  // bilinear transform with the cutoff prewarped: |H|^2 = 1 / (1 + (tan(pi f / fs) / tan(pi fc / fs))^4)
+  // the filter is a bilinear transform with the cutoff prewarped: |H|^2 = 1 / (1 + (tan(pi f / fs) / tan(pi fc /
+  // fs))^4)
   for (const double tone_hz : {10.0, 100.0, 415.0, 700.0}) {
     const double ratio = std::tan(std::numbers::pi * tone_hz / 2000.0) / std::tan(std::numbers::pi * 415.0 / 2000.0);
     EXPECT_NEAR(gain(415.0, tone_hz), 1.0 / std::sqrt(1.0 + std::pow(ratio, 4)), 1e-9) << tone_hz << " Hz";
@@ -70,8 +71,8 @@ TEST(AxisErrorStage, DrawsScaleOnTheDiagonalAndAnglesBesideIt) {
     scale += errors.diagonal().squaredNorm();
     angle += errors.squaredNorm() - errors.diagonal().squaredNorm();
   }
-  // 12000 and 24000 numbers: 5 standard errors of a standard deviation are 5/sqrt(2n), 3.2 % and 2.3 %; false alarm
-  // 6e-7
+  // for 12000 and 24000 numbers, 5 standard errors of a standard deviation are 5/sqrt(2n), 3.2 % and 2.3 %; the
+  // false-alarm probability is 6e-7
   EXPECT_NEAR(std::sqrt(scale / (3 * kDraws)), 0.003, 0.032 * 0.003);
   EXPECT_NEAR(std::sqrt(angle / (6 * kDraws)), 0.01, 0.023 * 0.01);
 }

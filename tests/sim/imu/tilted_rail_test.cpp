@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tilted sensing elements through the whole chain of a device.
+// The test runs tilted sensing elements through all stages of a device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ using Numbers = std::initializer_list<std::pair<const char*, double>>;
 
 constexpr double kRail_rad_s = 10.0;
 
-/// Turns about an axis that itself turns (coning), up to `size` times 15 rad/s about z and 6 about the others, and is
-/// shaken along x.
+/// Returns a turn about an axis that itself turns (coning), up to `size` times 15 rad/s about z and 6 about the others,
+/// with a shake along x.
 Truth wobbling(double duration_s, double size) {
   Truth truth;
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
@@ -58,7 +58,8 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
   return out;
 }
 
-/// Largest distance of a whole window at the positive rail of z from `row` . y = `level`; the number of such windows.
+/// Returns the largest distance of a whole window at the positive saturation level of z from `row` . y = `level`, and
+/// the number of such windows.
 std::pair<double, int> off_plane(const SimulatedImu& r, const Vector3d& row, double level) {
   double largest = 0.0;
   int windows = 0;
@@ -82,7 +83,7 @@ TEST(TiltedRail, WholeWindowsLieOnThePlaneOfTheElement) {
     const auto [off, windows] = off_plane(r, r.truth.gyro_elements[2], level);
     EXPECT_LT(off, 1e-12);
     EXPECT_GT(windows, 20);
-    // an upright plane of any level is not it: the reading moves with the axes beside
+    // an upright plane of any level does not fit: the reading moves with the other axes
     const Vector3d upright = Vector3d::UnitZ() * r.truth.gyro_elements[2].z();
     EXPECT_GT(off_plane(r, upright, level).first, 0.05);
   }

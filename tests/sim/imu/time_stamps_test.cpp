@@ -43,7 +43,7 @@ TEST(TimeStamps, JitterHasItsSizeAndStampsRise) {
     ASSERT_LE(std::abs(error_s), 3 * 0.0016 + 1e-9);
     sum += error_s * error_s;
   }
-  // cutting at three standard deviations takes 0.7 % of it; 5 standard errors are 2.5 %
+  // the cut at three standard deviations reduces the deviation by 0.7 %; 5 standard errors are 2.5 %
   EXPECT_NEAR(std::sqrt(sum / kCount), 0.0016, 0.032 * 0.0016);
 }
 
@@ -58,7 +58,7 @@ TEST(TimeStamps, LossesHaveTheirShareAndLength) {
     runs += now && !before ? 1 : 0;
     before = now;
   }
-  // 4000 runs of geometric length: 5 standard errors of their mean are 7 %, of the share 10 %
+  // for 4000 runs of geometric length, 5 standard errors of their mean are 7 %, and of the share 10 %
   EXPECT_NEAR(static_cast<double>(lost) / kCount, 0.1, 0.01);
   EXPECT_NEAR(static_cast<double>(lost) / runs, 5.0, 0.35);
 }

@@ -18,7 +18,7 @@ using testing::resting;
 constexpr int kRays = 16;
 constexpr double kHalfAngle_rad = 5e-3;
 
-/// One beam along x, ten milliradians wide.
+/// Returns a lidar with one beam along x, ten milliradians wide.
 SensorSpec wide_beam(double echo_length_m) {
   SensorSpec sensor = testing::exact_lidar_of("rosette_lidar");
   for (const char* name : {"prism_1_amplitude", "prism_2_amplitude", "mixed_amplitude"}) sensor.values.set(name, 0.0);
@@ -42,7 +42,7 @@ Cast cast_at(const std::string& walls, double echo_length_m) {
               resting(0.1));
 }
 
-/// The rays' tangents, written out again: equal shares of the ellipse by the golden angle.
+/// The tangents of the rays are computed a second way: equal shares of the ellipse by the golden angle.
 Vector3d ray(int k) {
   const double radius = std::sqrt((k + 0.5) / kRays), angle = k * M_PI * (3.0 - std::sqrt(5.0));
   return {1.0, radius * std::cos(angle) * std::tan(kHalfAngle_rad),
@@ -63,7 +63,7 @@ struct Mixed {
 TEST(BeamWidth, AFlatWallKeepsItsRangeAndIntensity) {
   const Cast out = cast_at(wall(-9, 9, 8.0, 0.6), 0.75);
   ASSERT_EQ(out.record.range_m.size(), 10000u);
-  // the mean of a cone of 5 mrad: at most 8 (1 / cos(0.005) - 1) = 1e-4 m longer
+  // the mean over a cone of 5 mrad is at most 8 (1 / cos(0.005) - 1) = 1e-4 m longer
   EXPECT_GT(out.record.range_m[0], 8.0);
   EXPECT_LT(out.record.range_m[0], 8.0001);
   EXPECT_NEAR(out.record.intensity[0], 0.6, 1e-4);
@@ -87,7 +87,7 @@ TEST(BeamWidth, AnEdgeGivesAMixedReturnBetweenItsSurfaces) {
   const double range = both.moment / both.energy;
   EXPECT_NEAR(out.record.range_m[0], range, 1e-5);
   EXPECT_NEAR(out.record.intensity[0], both.energy / kRays * range * range, 1e-5);
-  // the exact hit lies on a surface, that of the stronger rays: bright and far
+  // the exact hit lies on the surface of the stronger rays, which is bright and far
   EXPECT_EQ(out.truth.surface_id[0], 1);
   EXPECT_NEAR(out.truth.hit_W_m[0].x(), kFar_m, 1e-5);
 }
@@ -108,7 +108,7 @@ TEST(BeamWidth, SurfacesFartherApartThanTheEchoDoNotMix) {
   ASSERT_EQ(out.record.range_m.size(), 10000u);
   EXPECT_NEAR(out.record.range_m[0], stronger.moment / stronger.energy, 1e-5);
   EXPECT_EQ(out.truth.surface_id[0], near.energy > far.energy ? 0 : 1);
-  // negative control: a longer echo mixes the two
+  // negative control: a longer echo mixes the two surfaces
   const Cast mixed = cast_at(wall(kEdge_m, 9, kNear_m, 0.3) + wall(-9, 9, kFar_m, 0.8), 1.5);
   EXPECT_GT(std::abs(mixed.record.range_m.at(0) - out.record.range_m[0]), 0.05);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every option of a lidar: off means exactly the ideal signal, on changes it.
+// The test checks every option of a lidar: when it is off the signal is exactly the ideal one, and when it is on the
+// signal changes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ void PrintTo(const Option& option, std::ostream* out) {
 
 class LidarOption : public ::testing::TestWithParam<Option> {};
 
-/// A room with a step in it, a robot with a post.
+/// Returns a room with a step in it, and a robot with a post.
 engine::World stage() {
   return testing::world_of(
       "<mujoco><worldbody><geom type='box' size='3 5 2'/><geom type='box' size='0.5 0.5 2' pos='1.5 1.5 0'/>"
@@ -101,13 +102,13 @@ TEST(RosetteLidar, Mid40IsTheMiddleUnitOfAMid100) {
   ASSERT_EQ(three.record.range_m.size(), 60000u);
   for (std::size_t i = 0; i < 20000; ++i) {
     ASSERT_EQ(three.record.ring[3 * i + 1], 1);
-    // the unit's place in the packets differs, and with it the last bit
+    // the unit's position in the packets differs, which changes the last bit
     EXPECT_LT((one.record.position_L_m[i] - three.record.position_L_m[3 * i + 1]).norm(), 2e-6f);
     EXPECT_EQ(one.record.offset_ns[i], three.record.offset_ns[3 * i + 1]);
   }
 }
 
-/// 38.4 degrees across for one unit; three at 30 degrees make 98.4 by 38.4 (data sheet).
+/// The field of view is 38.4 degrees for one unit; three units at 30 degrees have 98.4 by 38.4 (data sheet).
 TEST(RosetteLidar, FieldOfViewIsTheDataSheets) {
   const Cast out = cast(testing::room(), testing::exact_lidar_of("rosette_lidar"), resting(1.0));
   double left = 0.0, right = 0.0, up = 0.0;
@@ -118,13 +119,13 @@ TEST(RosetteLidar, FieldOfViewIsTheDataSheets) {
     right = std::min(right, azimuth);
     up = std::max<double>(up, std::atan2(p.z(), std::hypot(p.x(), p.y())));
   }
-  // the fit of the pattern reaches 19.2 degrees within its 0.15
+  // the fitted pattern reaches 19.2 degrees within its tolerance of 0.15
   EXPECT_NEAR(left * 180.0 / M_PI, 49.2, 0.15);
   EXPECT_NEAR(right * 180.0 / M_PI, -49.2, 0.15);
   EXPECT_NEAR(up * 180.0 / M_PI, 19.2, 0.15);
 }
 
-/// Sequences that a sample of the motion falls into turn at two rates: each firing has its own pose there too.
+/// Firing sequences that contain a sample of the motion turn at two rates: each firing has its own pose there too.
 TEST(SpinningLidar, DeskewIdentityThroughImpacts) {
   Stream chance(7, "test.motion");
   Motion motion = resting(0.2);
@@ -154,7 +155,7 @@ TEST(SpinningLidar, DeskewIdentityThroughImpacts) {
                            motion.q_WB[k].slerp(share, motion.q_WB[k + 1]) * p_B;
       worst_m = std::max(worst_m, testing::distance_to_walls(p_W));
     }
-    // float positions and rays of up to 11 m, 1e-7 rad of the rate within a slot; measured 3e-6 m
+    // float positions and rays of up to 11 m, and an error of 1e-7 rad of the rate within a slot; measured 3e-6 m
     EXPECT_LT(worst_m, 1e-5) << "current_driver_timing " << current_timing;
   }
 }

@@ -41,7 +41,7 @@ TEST(LidarParameters, ResolveAndBounds) {
   EXPECT_EQ(spinning_lidar_parameters().size(), 40u);
 }
 
-/// The published formula of the rig's driver, written out again, for a lidar at rest.
+/// The test applies a second implementation of the published formula of the rig's driver to a lidar at rest.
 TEST(SpinningLidar, RestingInARoomIsExact) {
   SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
   const Vector3d at(0.4, -1.3, 0.2);
@@ -65,12 +65,12 @@ TEST(SpinningLidar, RestingInARoomIsExact) {
     worst_position_m =
         std::max(worst_position_m, (out.record.position_L_m[i].cast<double>() - origin - range * direction).norm());
   }
-  // rays in float: 2^-24 of 6 m, a few operations; measured 1.4e-6 and 1.5e-6 m
+  // rays have float precision: 2^-24 of 6 m over a few operations; measured 1.4e-6 and 1.5e-6 m
   EXPECT_LT(worst_m, 5e-6);
   EXPECT_LT(worst_position_m, 5e-6);
 }
 
-/// Negative control of the test above: other published mirror offsets, turning the other way, are seen.
+/// Negative control of the test above: it detects other published mirror offsets and the opposite sense of rotation.
 TEST(SpinningLidar, AnotherMirrorOrSenseIsFound) {
   const Cast right = cast(room(), testing::exact_lidar_of("spinning_lidar"), resting(0.1, Vector3d(0.4, -1.3, 0.2)));
   const auto shift_m = [&](const char* name, double value) {
@@ -93,7 +93,7 @@ TEST(SpinningLidar, RingsCountFromBottomToTop) {
   ASSERT_EQ(out.record.ring.size(), 32000u);
   std::vector<double> elevation_of(16);
   for (std::size_t i = 0; i < 16; ++i) {
-    // the published driver: ring = channel for the first eight, 23 - channel for the others
+    // in the published driver the ring is the channel for the first eight, and 23 - channel for the others
     EXPECT_EQ(out.record.ring[i], i < 8 ? i : 23 - i);
     const Eigen::Vector3f p = out.record.position_L_m[i];
     elevation_of[out.record.ring[i]] = std::atan2(p.z() + 0.010875, p.head<2>().norm() - 0.04638);
@@ -112,7 +112,7 @@ TEST(SpinningLidar, CurrentVendorTimingKeepsItsClockAcrossSweeps) {
   spelled.values.set("sequence_period_s", 55.5e-6);
   expect_same(out, cast(room(), spelled, resting(0.3)));
   ASSERT_EQ(out.record.sweep_start_ns.size(), 3u);
-  // sequences start at multiples of 55.5 us: 1802 of them start within the first 0.1 s, the next at 100.011 ms
+  // firing sequences start at multiples of 55.5 us: 1802 of them start within the first 0.1 s, the next at 100.011 ms
   EXPECT_EQ(out.record.sweep_first[1], 1802u * 16u);
   EXPECT_EQ(out.record.offset_ns[1802 * 16], 1802u * 55500u - 100000000u);
   EXPECT_EQ(out.record.offset_ns[1802 * 16 + 1], 1802u * 55500u - 100000000u + 2800u);
@@ -134,7 +134,8 @@ TEST(SpinningLidar, FaultyDriverStampsCompressPackets) {
 TEST(ColumnLidar, RingsAreEvenlySpacedAndTurnWithTheColumn) {
   const SensorSpec sensor = testing::exact_lidar_of("column_lidar");
   const Cast out = cast(room(), sensor, resting(0.1));
-  // 1024 columns of four banks, and one bank more, because 24414 ns are 0.06 ns less than a quarter of 0.1 s / 1024
+  // there are 1024 columns of four banks, and one bank more, because 24414 ns are 0.06 ns less than a quarter of 0.1 s
+  // / 1024
   ASSERT_EQ(out.record.ring.size(), (1024u * 4u + 1u) * 16u);
   double worst_rad = 0.0;
   for (std::size_t i = 0; i < out.record.ring.size(); ++i) {
@@ -146,7 +147,7 @@ TEST(ColumnLidar, RingsAreEvenlySpacedAndTurnWithTheColumn) {
     worst_rad = std::max(worst_rad, (direction - expected).norm());
   }
   EXPECT_LT(worst_rad, 1e-6) << "float positions";
-  // banks of 16 rings are a quarter of a column apart, which is rounded to whole ns
+  // the banks of 16 rings are a quarter of a column apart, rounded to whole ns
   EXPECT_EQ(out.record.ring[0], 0u);
   EXPECT_EQ(out.record.ring[16], 16u);
   EXPECT_EQ(out.record.offset_ns[15], 0u);
@@ -196,7 +197,8 @@ TEST(RosetteLidar, FollowsTheFormula) {
   }
 }
 
-/// Deskewing with the true pose at each point's time puts every point onto the walls; one pose for all does not.
+/// Deskewing with the true pose at each point's time moves every point onto the walls; one pose for all points does
+/// not.
 TEST(LidarSimulation, DeskewIdentity) {
   const Isometry3d T_BL = mounting();
   const Vector3d rate(9.0, -6.0, 14.0);  // 17.7 rad/s
@@ -220,7 +222,7 @@ TEST(LidarSimulation, DeskewIdentity) {
     }
     ASSERT_GT(out.record.range_m.size(), 50000u) << kind;
     one_pose_mean_m /= static_cast<double>(out.record.range_m.size());
-    // float positions and rays of up to 11 m; measured 3e-6 m
+    // the tolerance covers float positions and rays of up to 11 m; measured 3e-6 m
     EXPECT_LT(worst_m, 1e-5) << kind;
     EXPECT_LT(worst_hit_m, 1e-5) << kind;
     EXPECT_GT(one_pose_mean_m, 0.5) << kind;
@@ -262,8 +264,8 @@ TEST(LidarSimulation, RangeNoiseHasItsStatistics) {
     before = z;
   }
   const double count = static_cast<double>(n);
-  // five standard errors of 128 000 samples: mean 1/sqrt(n), variance sqrt(2/n), fourth moment sqrt(96/n), lag
-  // 1/sqrt(n)
+  // the bounds are five standard errors of 128 000 samples: mean 1/sqrt(n), variance sqrt(2/n), fourth moment
+  // sqrt(96/n), lag 1/sqrt(n)
   EXPECT_NEAR(sum / count, 0.0, 5.0 / std::sqrt(count));
   EXPECT_NEAR(sum2 / count, 1.0, 5.0 * std::sqrt(2.0 / count));
   EXPECT_NEAR(sum4 / count, 3.0, 5.0 * std::sqrt(96.0 / count));
@@ -280,7 +282,7 @@ TEST(LidarSimulation, SkyGivesNoPoint) {
   const engine::World plane =
       testing::world_of("<mujoco><worldbody><geom type='plane' size='0 0 1'/></worldbody></mujoco>");
   const Cast out = cast(plane, testing::exact_lidar_of("spinning_lidar"), resting(0.1, Vector3d(0, 0, 1)));
-  // the eight channels that look down hit the unbounded plane, none of the others does
+  // the eight channels that look down hit the unbounded plane, and none of the others does
   EXPECT_EQ(out.record.range_m.size(), 16000u);
   for (const std::uint16_t ring : out.record.ring) EXPECT_LT(ring, 8);
   const engine::World nothing = testing::world_of("<mujoco><worldbody><light/></worldbody></mujoco>");
@@ -288,7 +290,7 @@ TEST(LidarSimulation, SkyGivesNoPoint) {
   EXPECT_EQ(none.record.sweep_first, (std::vector<std::uint64_t>{0, 0, 0}));
 }
 
-/// Half of the returns come back from the wall whose signal is one, by the definition of detection_range_m.
+/// By the definition of detection_range_m, half of the returns come back from the wall whose signal is one.
 TEST(LidarSimulation, DropOutByRangeAndReflectivity) {
   SensorSpec sensor = testing::lidar_of("rosette_lidar");
   sensor.values.set("units", 1.0);
@@ -350,7 +352,7 @@ TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
     EXPECT_NEAR(std::hypot(p.x() - 0.3f, p.y()), 0.02, 1e-5);
     EXPECT_LT((turned.truth.hit_W_m[i] - Eigen::Vector3f(0.3f, 0.2f, 0.1f)).norm(), 0.7f);
   }
-  // beams run radially from the axis: the post spans 2 asin(0.02 / 0.3) = 0.1334 rad of the turn, in all 16 channels
+  // beams are radial from the axis: the post covers 2 asin(0.02 / 0.3) = 0.1334 rad of the turn, in all 16 channels
   EXPECT_NEAR(static_cast<double>(cage_hits), 2 * std::asin(0.02 / 0.3) / (2 * M_PI) * 32000, 16);
   sensor.values.set("sees_own_cage", 0.0);
   for (const std::int32_t id : cast(world, sensor, resting(0.1)).truth.surface_id) ASSERT_EQ(id, 0);

@@ -28,8 +28,8 @@ Vector3d random_direction(Stream& chance) {
   return Vector3d(chance.normal(), chance.normal(), chance.normal()).normalized();
 }
 
-/// Random rays through the world, by our mirror and by the engine. Rays that graze are left out of the surface
-/// comparison: there a change of the origin within float resolution decides.
+/// The test casts random rays through the world, by this project's ray caster and by the engine. The surface comparison
+/// omits grazing rays: for them a change of the origin within float resolution decides.
 Disagreement compare_with_engine(const engine::World& world, const SceneGeometry& geometry, int packets) {
   const engine::DataPtr data(mj_makeData(world.model.get()));
   mj_forward(world.model.get(), data.get());
@@ -73,13 +73,13 @@ TEST(RayScene, AgreesWithTheEngineOnAllGeomTypes) {
   const Disagreement d = compare_with_engine(world, static_geometry(world, HeightFieldSides::closed), 1250);
   EXPECT_EQ(d.compared, 20000);
   EXPECT_GT(d.hits, 8000);
-  // measured: 0 and 0 of 20 000; two are left for rays that graze an edge
+  // measured: 0 and 0 of 20 000; the bound allows two rays that graze an edge
   EXPECT_LE(d.different_surface, 2);
   EXPECT_LE(d.farther_than_1_mm, 2);
 }
 
-/// Each geom type on its own and many times over, from all around and from inside, above a plane without edge; every
-/// type that a static world can have but the signed-distance plugins, which are refused.
+/// EachGeomType tests each geom type alone and many times over, from all sides and from inside, above a plane without
+/// edge; the types are all that a static world can have, except the signed-distance plugins, which are rejected.
 class EachGeomType : public ::testing::TestWithParam<int> {};
 
 engine::World crowd_of(int type) {
@@ -114,7 +114,7 @@ TEST_P(EachGeomType, AgreesWithTheEngine) {
   EXPECT_EQ(d.compared, 8000);
   EXPECT_GT(d.hits_of_type[static_cast<std::size_t>(GetParam())], 500);
   EXPECT_GT(d.hits_of_type[mjGEOM_PLANE], 500);  // the floor behind them
-  // one is left for a ray that grazes an edge
+  // the bound allows one ray that grazes an edge
   EXPECT_LE(d.different_surface, 1);
   EXPECT_LE(d.farther_than_1_mm, 1);
 }
@@ -185,8 +185,8 @@ void fill(Stream& chance, RayPacket& rays, int i) {
   rays.surface_id[i] = kNothing;
 }
 
-// what lies in lanes that are not used, and which rays share a packet, changes no bit: a kernel that looked at either
-// would give other recordings on other CPUs
+// the content of unused lanes, and which rays share a packet, change no bit: a kernel that depended on either would
+// give other recordings on other CPUs
 TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
   const engine::World world = testing::rough_world(60, 60);
   const RayScene scene(static_geometry(world, HeightFieldSides::closed));
@@ -221,7 +221,7 @@ TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
   EXPECT_GT(hits, 1000);
 }
 
-/// Closed forms: an unbounded plane at an angle, a sphere off the axis, a box face.
+/// The test uses closed forms: an unbounded plane at an angle, a sphere away from the axis, a box face.
 TEST(RayScene, AnalyticPlaneSphereBox) {
   SceneGeometry geometry;
   Shape plane{ShapeKind::plane, Vector3d::Zero(), Eigen::Matrix3d::Identity(), {0.0, 0.0, -2.0}};
@@ -247,15 +247,15 @@ TEST(RayScene, AnalyticPlaneSphereBox) {
   const double cosine[3] = {-directions[0].z(), half_chord / 1.5, std::cos(0.5)};
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(rays.surface_id[i], i);
-    // float at 10 m resolves 1e-6 m
+    // a float at 10 m resolves 1e-6 m
     EXPECT_NEAR(rays.range[i], expected[i], 2e-6);
     EXPECT_NEAR(rays.cosine[i], cosine[i], 1e-6);
     EXPECT_FLOAT_EQ(rays.reflectivity[i], 0.1f * static_cast<float>(i + 1));
   }
 }
 
-/// Every primitive against its own implicit surface: a hit lies on it, nothing of it lies before the hit, a miss is
-/// one.
+/// The test compares every primitive with its implicit surface: a hit lies on it, no part of the surface lies before
+/// the hit, and a missed ray never crosses it.
 TEST(RayScene, AnalyticPrimitivesHoldTheirEquation) {
   Stream chance(31, "test.primitives");
   for (const ShapeKind kind :
@@ -298,7 +298,7 @@ TEST(RayScene, AnalyticPrimitivesHoldTheirEquation) {
       }
     }
     EXPECT_GT(hits, 150) << "kind " << static_cast<int>(kind);
-    // float ranges of up to 5 m, at grazing incidence too; measured 3e-7 m
+    // the tolerance covers float ranges of up to 5 m, at grazing incidence too; measured 3e-7 m
     EXPECT_LT(worst_m, 2e-6) << "kind " << static_cast<int>(kind);
   }
 }

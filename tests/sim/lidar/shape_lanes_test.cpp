@@ -36,7 +36,7 @@ Vector3d normals(Stream& chance) {
   return {chance.normal(), chance.normal(), chance.normal()};
 }
 
-/// Some along the axes of the world, where a box that is not turned is met along its sides.
+/// Returns rays of which some are along the axes of the world, where they run along the sides of an unturned box.
 EightRays random_rays(Stream& chance) {
   EightRays rays;
   for (std::size_t i = 0; i < kShapeLanes; ++i) {
@@ -65,7 +65,7 @@ Shape random_shape(Stream& chance, ShapeKind kind, int number) {
 
 class ShapeLanes : public ::testing::TestWithParam<ShapeKind> {};
 
-/// Exactly: a draw's digest is of these bits.
+/// The comparison is exact, because a draw's digest depends on these bits.
 TEST_P(ShapeLanes, AreCastRayOfEach) {
   Stream chance(7, "test.shape_lanes");
   int met = 0;

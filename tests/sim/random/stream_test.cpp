@@ -14,7 +14,7 @@ namespace {
 
 using Block = std::array<std::uint32_t, 4>;
 
-// Known answers published with the authors' Random123 library (kat_vectors, philox4x32 with 10 rounds).
+// The known answers were published with the authors' Random123 library (kat_vectors, philox4x32 with 10 rounds).
 TEST(Philox, GivesThePublishedKnownAnswers) {
   EXPECT_EQ(philox4x32_10({0, 0, 0, 0}, {0, 0}), (Block{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
   EXPECT_EQ(philox4x32_10({0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}),
@@ -29,7 +29,7 @@ TEST(Philox, OneBitOfTheKeyChangesHalfOfTheOutput) {
     const Block a = philox4x32_10({1, 2, 3, 4}, {7, 9}), b = philox4x32_10({1, 2, 3, 4}, {7u ^ (1u << bit), 9});
     for (int i = 0; i < 4; ++i) changed += __builtin_popcount(a[i] ^ b[i]);
   }
-  // 4096 fair coins: mean 2048, sigma 32; 5 sigma, false alarm 6e-7
+  // 4096 fair coins have mean 2048 and sigma 32; the bound is 5 sigma, with a false-alarm probability of 6e-7
   EXPECT_NEAR(changed, 2048, 160);
 }
 
@@ -87,7 +87,7 @@ TEST(Stream, UniformIsEvenInItsInterval) {
   }
   double chi2 = 0.0;
   for (const int count : counts) chi2 += std::pow(count - kDraws / kCells, 2) / (static_cast<double>(kDraws) / kCells);
-  // chi-square with 99 degrees of freedom: 1e-6 quantiles 45.6 and 181.1 (Wilson-Hilferty)
+  // chi-square with 99 degrees of freedom has the 1e-6 quantiles 45.6 and 181.1 (Wilson-Hilferty)
   EXPECT_LT(chi2, 181.1);
   EXPECT_GT(chi2, 45.6);
   EXPECT_NEAR(sum / kDraws, 0.5, 5.0 * std::sqrt(1.0 / 12.0 / kDraws));  // false alarm 6e-7
@@ -118,7 +118,8 @@ TEST(Stream, NormalHasTheMomentsAndTailsOfTheNormal) {
     beyond_2 += std::abs(x) > 2.0;
   }
   const double n = kDraws;
-  // each bound is 5 standard errors (variances 1, 2, 15, 96, 1 and binomial): false alarm 6e-7 per line
+  // each bound is 5 standard errors (variances 1, 2, 15, 96, 1 and binomial): the false-alarm probability is 6e-7 per
+  // line
   EXPECT_NEAR(m1 / n, 0.0, 5.0 / std::sqrt(n));
   EXPECT_NEAR(m2 / n, 1.0, 5.0 * std::sqrt(2.0 / n));
   EXPECT_NEAR(m3 / n, 0.0, 5.0 * std::sqrt(15.0 / n));

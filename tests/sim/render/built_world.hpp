@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// A world with a robot of this tree's models in it.
+/// Returns a world with a robot, both from this repository's models.
 inline BuiltSituation built_world(const std::string& world, const std::string& robot) {
   Situation situation;
   situation.seed = 3;

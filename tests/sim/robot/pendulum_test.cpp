@@ -37,7 +37,7 @@ Situation hanging(double duration_s = 6.0) {
 TEST(Pendulum, HangsWithItsImusXAxisUpAndItsZAlongTheHinge) {
   const Recording recording = simulate(built(hanging(4.0)));
   const Truth& truth = recording.truth;
-  // the settling before the recording leaves it where it hung
+  // the settling before the recording leaves the pendulum at its position
   EXPECT_NEAR((truth.p_WB_m[0] - Vector3d(0, 0, kHeight_m - 2.5 * kSegment_m)).norm(), 0.0, 1e-9);
   EXPECT_NEAR(truth.q_WB[0].angularDistance(Eigen::Quaterniond::Identity()), 0.0, 1e-9);
   const ImuRecord& imu = recording.sensors.imus.at(0);
@@ -46,7 +46,7 @@ TEST(Pendulum, HangsWithItsImusXAxisUpAndItsZAlongTheHinge) {
   EXPECT_EQ(recording.sensors.robot, "pendulum");
 }
 
-// pose, velocity and rate of the lowest segment are of one motion, and its upper neighbours let it go nowhere else
+// pose, velocity and rate of the lowest segment belong to one motion, and the segments above it constrain its position
 TEST(Pendulum, TruthBelongsTogether) {
   const Truth truth = simulate(built(hanging())).truth;
   const double step_s = 1e-9 * static_cast<double>(truth.period_ns);
@@ -56,7 +56,7 @@ TEST(Pendulum, TruthBelongsTogether) {
     const Vector3d v_m_s = (truth.p_WB_m[k + 1] - truth.p_WB_m[k - 1]) / (2.0 * step_s);
     const Eigen::AngleAxisd turn(truth.q_WB[k - 1].conjugate() * truth.q_WB[k + 1]);
     const Vector3d w_rad_s = turn.angle() * turn.axis() / (2.0 * step_s);
-    // central differences: dt^2 / 6 times the third derivative, some 1e4 m/s^3 and rad/s^3 in a whip
+    // central differences err by dt^2 / 6 times the third derivative, some 1e4 m/s^3 and rad/s^3 in a whip
     ASSERT_NEAR((v_m_s - truth.v_WB_m_s[k]).norm(), 0.0, 2e-3) << k;
     ASSERT_NEAR((w_rad_s - truth.w_WB_B_rad_s[k]).norm(), 0.0, 2e-2) << k;
     farthest_m = std::max(farthest_m, (truth.p_WB_m[k] - hinge_W_m).norm());

@@ -14,7 +14,7 @@ constexpr double kGravity_m_s2 = 9.80665;
 
 TEST(Barometer, FollowsTheStandardAtmosphere) {
   EXPECT_EQ(air_pressure_pa(101325.0, 288.15, kGravity_m_s2, 0.0), 101325.0);
-  // scale height R T / (g M) = 8434.5 m at 15 degrees Celsius
+  // the scale height is R T / (g M) = 8434.5 m at 15 degrees Celsius
   EXPECT_NEAR(air_pressure_pa(101325.0, 288.15, kGravity_m_s2, 8434.5), 101325.0 / std::exp(1.0), 1.0);
 }
 
@@ -32,7 +32,8 @@ TEST(Barometer, WithoutErrorsSaysTheMeanOverItsWindowAtItsPlace) {
   EXPECT_EQ(series.quantities[0].name, "pressure_pa");
   ASSERT_EQ(series.quantities[0].values.size(), 500u);
   for (std::size_t k = 0; k < 500; ++k) {
-    // upside down: 0.1 m below the centre of mass; the steps of a window reach from a half before to its end
+    // the body is upside down, 0.1 m below the centre of mass; the steps of a window are from half a step before to its
+    // end
     const double height_m = 0.02 * static_cast<double>(k) + 0.01025 - 0.1;
     EXPECT_NEAR(series.quantities[0].values[k], air_pressure_pa(101325.0, 288.15, kGravity_m_s2, height_m), 1e-6) << k;
   }

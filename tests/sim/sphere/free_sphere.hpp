@@ -11,22 +11,22 @@ namespace tumble::sim {
 inline constexpr double kRadius_m = 0.145;
 inline constexpr double kGravity_m_s2 = 9.80665;
 
-/// A homogeneous sphere (its inside in the middle) on a world, set free from a given state: truth as a recording has
-/// it.
+/// FreeSphere is a homogeneous sphere (its inside in the middle) on a world, released from a given state; its truth is
+/// that of a recording.
 class FreeSphere {
  public:
   explicit FreeSphere(const Situation& situation)
       : world_(engine::compose(resolve(situation), models_folder())), physics_(world_) {}
 
   engine::World& world() { return world_; }
-  /// m r^2 / I: 1.5 for a thin shell, 2.5 for a homogeneous ball.
+  /// Returns m r^2 / I: 1.5 for a thin shell, 2.5 for a homogeneous ball.
   double mass_ratio() const {
     const mjModel& model = *world_.model;
     return model.body_mass[world_.robot_body] * kRadius_m * kRadius_m / model.body_inertia[3 * world_.robot_body];
   }
 
-  /// Lies still at `p_WB_m` for half a second, then has the velocity and the rate; nothing but gravity and contact
-  /// acts.
+  /// Returns the truth of a sphere that lies still at `p_WB_m` for half a second, then has the velocity and the rate;
+  /// only gravity and contact act.
   Truth launch(const Eigen::Vector3d& p_WB_m, const Eigen::Vector3d& v_m_s, const Eigen::Vector3d& w_rad_s,
                double duration_s, bool settle = true) {
     BodyState state;
@@ -66,7 +66,7 @@ inline Situation level_floor(double friction) {
   return situation;
 }
 
-/// First time from `from_s` on at which the label is `label`; -1 when it never is.
+/// Returns the first time from `from_s` on at which the label is `label`, or -1 when it never is.
 inline double first_s(const Truth& truth, ContactLabel label, double from_s = 0.0) {
   for (std::size_t k = static_cast<std::size_t>(from_s / 0.0005); k < truth.label.size(); ++k) {
     if (truth.label[k] == label) return static_cast<double>(k) * 0.0005;

@@ -88,7 +88,7 @@ TEST(HandPath, LeadsTheSphereAlongThePathFromRestToRest) {
     double path_length_m = 0.0;
     for (std::size_t k = 1; k < truth.q_WB.size(); ++k)
       path_length_m += (centre_m(truth, k) - centre_m(truth, k - 1)).head<2>().norm();
-    // corners are rounded: averaging over 0.3 s at 0.6 m/s cuts 4 cm; the tremor adds some
+    // corners are rounded: averaging over 0.3 s at 0.6 m/s shortens the path by 4 cm; the tremor lengthens it a little
     EXPECT_NEAR(path_length_m, 3.0, 0.08) << shape;
     const Eigen::Vector3d moved = centre_m(truth, truth.q_WB.size() - 1) - centre_m(truth, 0);
     const Eigen::Vector3d aim = shape == 1.0 ? Eigen::Vector3d(1.5, 1.5, 0.0) : Eigen::Vector3d::Zero();
@@ -110,7 +110,7 @@ TEST(HandPath, IsUnsteadyAsItsSeedSays) {
   EXPECT_LT((other.p_WB_m[600] - one.p_WB_m[600]).norm(), 1e-9);  // at rest a hand is steady
 }
 
-/// Ice on the middle of the line.
+/// Returns a path with ice on the middle of its line.
 Situation over_ice(double push, double spin) {
   Situation situation = along(0.0);
   situation.duration_s = 7.0;
@@ -126,7 +126,7 @@ Situation over_ice(double push, double spin) {
 TEST(HandPath, APushThroughTheCentreOnIceSlides) {
   const Truth truth = simulate(built(over_ice(2.2, 1.0))).truth;
   EXPECT_GT(static_cast<double>(count(truth, ContactLabel::slide)) * 0.0005, 0.15);
-  // negative control: without the push the same ice is crossed with hardly a slide
+  // negative control: without the push the sphere hardly slides on the same ice
   const Truth calm = simulate(built(over_ice(1.0, 1.0))).truth;
   EXPECT_LT(static_cast<double>(count(calm, ContactLabel::slide)) * 0.0005, 0.05);
 }

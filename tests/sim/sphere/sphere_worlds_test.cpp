@@ -20,7 +20,8 @@ Situation in_world(const std::string& type) {
   return situation;
 }
 
-/// Share of 2000 directions, evenly over the sphere, in which a ray from `from_m` meets something within 50 m.
+/// Returns the share of 2000 directions, evenly over the sphere, in which a ray from `from_m` hits something within 50
+/// m.
 double closed_share(const Situation& situation, const Vector3d& from_m) {
   const engine::World world = engine::compose(resolve(situation), models_folder());
   const RayScene scene(static_geometry(world, HeightFieldSides::open));
@@ -68,7 +69,7 @@ TEST(SphereWorlds, NothingTouchesTheVaultOfTheTube) {
   EXPECT_EQ(world.model->geom_contype[vault] & world.model->geom_conaffinity[shell], 0);
 }
 
-/// Path of the contact point along the shell over the path of the centre, both from `from_s` on.
+/// Returns the path of the contact point along the shell divided by the path of the centre, both from `from_s` on.
 double rolled_share(const Truth& truth, const Vector3d& normal_W, double from_s) {
   double path_length_m = 0.0, rolled_m = 0.0;
   for (std::size_t k = static_cast<std::size_t>(from_s / 0.0005); k < truth.q_WB.size(); ++k) {
@@ -99,7 +100,7 @@ TEST(Ramp, AReleasedSphereRollsDownByTheLaw) {
   FreeSphere sphere(on_ramp(0.8));
   const Truth truth = released_on_ramp(sphere);
   EXPECT_NEAR(rolled_share(truth, kUp, 0.1), 1.0, 1e-3);
-  // a = g sin(slope) / (1 + I / (m r^2)), between 0.2 and 0.7 s
+  // the acceleration a = g sin(slope) / (1 + I / (m r^2)) is measured between 0.2 and 0.7 s
   const double a_m_s2 = (truth.v_WB_m_s[1400] - truth.v_WB_m_s[400]).norm() / 0.5;
   EXPECT_NEAR(a_m_s2, kGravity_m_s2 * std::sin(0.2) / (1.0 + 1.0 / sphere.mass_ratio()), 0.002 * a_m_s2);
   EXPECT_EQ(count(truth, ContactLabel::slide) + count(truth, ContactLabel::slip), 0u);
@@ -112,7 +113,7 @@ TEST(Ramp, OnIceItSlidesDownInstead) {
   EXPECT_GT(count(truth, ContactLabel::slide), truth.label.size() / 2);
 }
 
-// a height field is triangles: where they lie in one plane the law of the plane must hold
+// a height field consists of triangles: where they lie in one plane, the law of the plane must hold
 TEST(Ground, AHeightFieldRollsAsAPlaneDoes) {
   Situation situation = level_floor(0.8);
   situation.world.values.set("roughness_m", 1e-9);
@@ -122,7 +123,7 @@ TEST(Ground, AHeightFieldRollsAsAPlaneDoes) {
       sphere.launch({-0.61, 0.02, kRadius_m}, {1.0, 0.13, 0}, {-0.13 / kRadius_m, 1.0 / kRadius_m, 0}, 1.0);
   EXPECT_NEAR(rolled_share(truth, Vector3d::UnitZ(), 0.0), 1.0, 1e-3);
   EXPECT_EQ(count(truth, ContactLabel::grip), truth.label.size());
-  // edges between triangles take no speed
+  // edges between triangles must not reduce the speed
   EXPECT_NEAR(truth.v_WB_m_s.back().norm(), truth.v_WB_m_s.front().norm(), 0.01 * truth.v_WB_m_s.front().norm());
 }
 
@@ -152,7 +153,7 @@ double sink_m(double soft_time_s) {
 TEST(Ground, SoftGroundLetsTheSphereSink) {
   EXPECT_LT(sink_m(0.0), 5e-5);
   EXPECT_NEAR(sink_m(0.004), sink_m(0.0), 1e-6);  // as hard as the robot's own 4 ms
-  // stiffness goes with the inverse square of the time
+  // the stiffness is proportional to the inverse square of the time
   EXPECT_NEAR(sink_m(0.02) / sink_m(0.004), 25.0, 5.0);
 }
 
@@ -164,7 +165,7 @@ TEST(Obstacles, AreAsHighAsTheySay) {
     situation.world.values.set("obstacle_1_height_m", 0.02);
     situation.world.values.set("obstacle_1_depth_m", 0.6);
     FreeSphere sphere(situation);
-    // fast enough to climb: v^2 > 2 g h
+    // the sphere is fast enough to climb: v^2 > 2 g h
     const Truth truth = sphere.launch({0, 0, kRadius_m}, {1.2, 0, 0}, {0, 1.2 / kRadius_m, 0}, 1.0);
     double high_m = 0.0;
     for (const Vector3d& p : truth.p_WB_m) high_m = std::max(high_m, p.z());

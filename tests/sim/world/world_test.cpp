@@ -27,7 +27,7 @@ long count_of(const engine::World& world, const std::string& prefix) {
                        [&](const std::string& name) { return name.starts_with(prefix); });
 }
 
-/// Height of the highest surface under a place, by the engine's own ray.
+/// Returns the height of the highest surface under a position, by the engine's ray.
 double top_m(const engine::World& world, double x_m, double y_m) {
   const engine::DataPtr data(mj_makeData(world.model.get()));
   data->qpos[2] = 100.0;  // the robot out of the way
@@ -52,7 +52,7 @@ TEST_P(RigWorld, HoldsWhatItSaysAndStartsOnTheGround) {
   EXPECT_EQ(count_of(world, "building"), 1);
   EXPECT_EQ(std::count(world.surface_geom.begin(), world.surface_geom.end(), -1), 0);
   EXPECT_NEAR(top_m(world, world.start_W_m.x(), 0.0), world.start_W_m.z(), 0.01);
-  // it leads down along +x
+  // the slope descends along +x
   EXPECT_LT(top_m(world, world.start_W_m.x() + 6.0, 0.0), world.start_W_m.z() - 0.8);
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Conversion of a recording's sweeps to evalio's dense clouds: row by row, with a time per point."""
+"""Converts the sweeps of a recording to evalio's dense clouds: row by row, with a time per point."""
 from __future__ import annotations
 
 from typing import Any
@@ -17,7 +17,7 @@ from evalio._cpp import helpers  # noqa: E402
 
 Array = npt.NDArray[Any]
 
-#: Stamp of time 0: that of the program's exports, so that results of evalio, `tumble export` and `tumble score` have one clock.
+#: Stamp of time 0, as in the program's exports, so that results of evalio, `tumble export` and `tumble score` have one clock.
 ORIGIN_NS = 1_000_000_000_000_000_000
 
 _POINT = np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("t", "u4"), ("range", "u4"), ("ring", "u2")])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Import of evalio and of the compiled part, which are optional dependencies."""
+"""Imports evalio and the compiled part, which are optional dependencies."""
 from __future__ import annotations
 
 import importlib

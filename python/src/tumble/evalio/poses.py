@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Conversion of poses to and from evalio."""
+"""Converts poses to and from evalio."""
 from __future__ import annotations
 
 import os
@@ -29,7 +29,7 @@ def read_poses(path: str | os.PathLike[str], imu: Imu | None = None) -> Trajecto
     `score` accept the result.
 
     imu: IMU of the recording, stationary for its first second. If given, the whole trajectory is rotated so that roll and pitch of the
-    first pose agree with the measured gravity; the yaw is unchanged. Use it for pipelines whose world frame is their first pose. The
+    first pose agree with the measured gravity; the yaw is unchanged. Use `imu` for pipelines whose world frame is their first pose. The
     pipeline `tumble` already has a level world frame.
     """
     out = read_tum(path, separator=",")

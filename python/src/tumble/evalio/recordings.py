@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings of this project as an evalio data set."""
+"""Provides recordings of this project as an evalio data set."""
 from __future__ import annotations
 
 import os
@@ -90,7 +90,7 @@ class _Sequences(Dataset):
         return given if isinstance(given, pathlib.Path) else self.folder / given
 
     def download(self) -> None:
-        """Simulates the draw with the program."""
+        """Simulates the sequence with the program."""
         if self.value in files():
             return
         self.folder.mkdir(parents=True, exist_ok=True)
