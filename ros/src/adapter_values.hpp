@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "tumble/common/sensor_health.hpp"
 #include "tumble_ros/publisher.hpp"
 #include "tumble_ros/schedule.hpp"
 
@@ -31,6 +32,15 @@ void add(Diagnostics& out, const char* key, const Value& value) {
   std::ostringstream text;
   text << value;
   out.values.emplace_back(key, text.str());
+}
+
+/// Adds each finding, with its kind, sensor and axis as key, for example "frozen_axis imu gyro_x".
+inline void add_findings(Diagnostics& out, const SensorHealth& health) {
+  for (const HealthFinding& finding : health.findings) {
+    std::string key = to_string(finding.kind);
+    for (const std::string& part : {finding.sensor, std::string(finding.axis)}) key += part.empty() ? "" : " " + part;
+    add(out, key.c_str(), to_text(finding));
+  }
 }
 
 /// Adds the counts of a topic.

@@ -12,7 +12,7 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
-#include "tumble/mapping/calibration.hpp"
+#include "tumble/common/sensor_health.hpp"
 
 namespace tumble::scenarios {
 
@@ -201,13 +201,10 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
                    fmt::format("{} of {} sweeps are registered ({}, minimum {})", registered, sweeps,
                                percent_text(share), percent_text(kRegisteredShareMin)),
                    "check --T-body-lidar and the other findings"});
-  const double moved_sigmas = estimate.lidar_calibration_sigmas.value_or(0.0);
-  if (moved_sigmas > StatedCalibration::kDistanceMax_sigmas)
-    out.push_back({"odometry",
-                   fmt::format("the estimated pose or clock of the lidar is {} standard deviations from the stated one "
-                               "(limit {})",
-                               rounded(moved_sigmas), rounded(StatedCalibration::kDistanceMax_sigmas)),
-                   "--T-body-lidar with the measured pose of the lidar"});
+  for (const HealthFinding& finding : estimate.faults.findings) {
+    const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
+    out.push_back({"odometry", to_text(finding), mounting ? "--T-body-lidar with the measured pose of the lidar" : ""});
+  }
   return out;
 }
 

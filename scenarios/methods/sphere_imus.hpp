@@ -4,15 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
 /// All IMUs of a sphere, for the estimator.
 namespace tumble::scenarios {
-
-/// Returns the sensor and axis for a health key, for example "gyro_z".
-std::string to_string(const FrozenAxis& frozen);
 
 /// Usable readings of the units of a sphere.
 struct SphereImus {
@@ -28,9 +25,12 @@ Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 /// The units of a sphere, merged with knowledge of the whole recording.
 struct MergedImus {
   MergedRecordings merged;
-  std::vector<HealthFinding> faults;  ///< units not used, or not all the time: frozen, silent, or inconsistent
-  int beyond_range = 0;
+  std::vector<std::string> names;  ///< names of the units
+  int beyond_range = 0;            ///< see SphereImus
 };
+
+/// Reports readings that were left out because they exceed what the device can measure.
+void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate);
 
 /// Merges all IMUs by merge_recordings().
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);

@@ -26,6 +26,9 @@ struct SweepCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
+/// Returns `out_of_range` if a calibration is more than StatedCalibration::kDistanceMax_sigmas from the stated one.
+Status verdict_on(double deviations);
+
 /// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
 /// (rotation, translation, time offset). A standard deviation of 0 marks an exact part of the calibration.
 struct StatedCalibration {

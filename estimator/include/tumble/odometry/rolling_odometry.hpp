@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/unit_alignment.hpp"
@@ -24,6 +26,8 @@
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace tumble {
+
+struct MergedFindings;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
@@ -156,11 +160,16 @@ class RollingOdometry {
   /// tilt is levelled at rest. Covariances are relative to this pose.
   void reset(const Eigen::Isometry3d& T_WG);
 
-  /// Reports whether the readings of the IMUs are currently plausible. Returns `ok`, or `out_of_range` with one
-  /// finding. A finding is a frozen axis (FrozenAxes) with its unit and duration, or a force at rest that differs from
-  /// gravity (RestGravity). The readings of a frozen unit are ignored. If all units with readings are frozen,
-  /// add_imus() rejects the sample.
-  Status health() const;
+  /// Reports the suspected faults of the IMUs: frozen axes (FrozenAxes), units that are silent, frozen or disagree
+  /// (ImuMerge), a force at rest that differs from gravity (RestGravity), and readings that contradict each other
+  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends. The readings
+  /// of a frozen unit are ignored. If all units with readings are frozen, add_imus() rejects the sample. With
+  /// kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
+  SensorHealth health() const;
+
+  /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
+  /// finish() and without kWholeRecording.
+  const MergedFindings* recording() const { return whole_.get(); }
 
   /// Returns the estimated centre and radius. With a lag, the estimates are those of the newest smoothed pose.
   Calibration calibration() const;
@@ -213,7 +222,8 @@ class RollingOdometry {
   Status finish_whole_recording();
   bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  Status frozen_axis(const Frozen& frozen) const;
+  void add_frozen(const Frozen& frozen, SensorHealth& health) const;
+  void add_forces_at_rest(SensorHealth& health) const;
 
   Params params_;
   StampOrder stamp_order_;
@@ -237,6 +247,9 @@ class RollingOdometry {
   Frozen frozen_{};
   RestGravity rest_gravity_;
   std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state_{};
+  ImuPlausibility plausibility_;  ///< of the merged readings
+  ImuPlausibility::State plausibility_state_;
+  std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
   std::vector<RollingEstimate> results_;
   std::size_t returned_count_ = 0;
   std::optional<Eigen::Isometry3d> start_;    ///< pose given to reset(), until the first sample

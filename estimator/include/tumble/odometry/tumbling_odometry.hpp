@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/gyro_offset.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
@@ -125,17 +127,12 @@ class TumblingOdometry {
   /// since the last sweep). `velocity_covariance_I_m2_s2` receives the covariance of the error of the velocity in IMU
   /// axes, unless null.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding, and a finding
-  /// ends when its cause ends (at the latest a minute later). Returns `ok`, or `out_of_range` with a finding:
-  /// - a frozen IMU axis and the duration of the freeze,
-  /// - an inverted accelerometer (FlightSignCheck),
-  /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
-  /// - a wrong scale of the lidar's ranges (SweepScale),
-  /// - an uncertain vertical after a start in motion (LidarInertialOdometry::check_vertical),
-  /// - a run that is not localised in its prior map (LidarInertialOdometry::localised),
-  /// - tracking failure (Localisation::present),
-  /// - too large a change of the lidar's calibration (StatedCalibration).
-  Status health() const;
+  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
+  /// finding ends when its cause ends (at the latest a minute later). The checks are RateStream::health(),
+  /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical and localised, Localisation and
+  /// StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and before
+  /// finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a finding.
+  SensorHealth health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;
   /// Returns the time of the newest accepted IMU sample.
@@ -208,7 +205,6 @@ class TumblingOdometry {
   bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status record(const ImuSample& sample);
   Status finish_whole_recording(const SweepProgress& on_sweep);
-  Status health_of_recording() const;
 
   Params params_;
   StampOrder stamp_order_;
@@ -219,6 +215,8 @@ class TumblingOdometry {
   OutlierFilter::State outlier_filter_state_;
   SampleClock sample_clock_;
   SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
+  ImuPlausibility plausibility_;
+  ImuPlausibility::State plausibility_state_;
   OdometryPass pass_;
   SecondPass second_pass_;
   std::optional<TimeNs> newest_ns_;           ///< time of the newest accepted sample

@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/sensor_health.hpp"
 
 namespace tumble {
 
@@ -91,9 +93,10 @@ class FrozenAxes {
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
-  /// Returns `out_of_range` with the name of a currently frozen axis, the duration and the limit. Returns `ok` if no
-  /// axis is frozen.
-  Status verdict(const State& state) const;
+  static bool any_frozen(const State& state);
+  /// Adds a finding of this kind (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
+  void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
+                    SensorHealth& health) const;
 
   /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The rate of a frozen gyro axis is
   /// unknown up to the largest rate read so far. The variance is zero for axes that are not frozen.
@@ -114,6 +117,9 @@ struct FrozenAxis {
   int axis = 0;
   TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
 };
+
+/// Adds a finding about an interval in which an axis is frozen, with FrozenAxes::Params::frozen_s as bound.
+void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval, SensorHealth& health);
 
 /// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. O(N).
 std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<const ImuSample> samples);

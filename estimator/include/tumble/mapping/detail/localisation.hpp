@@ -39,6 +39,8 @@ class Localisation {
   Status verdict() const;
   /// Returns `out_of_range` with the present finding and the violated limit. Returns `ok` without a finding.
   Status current_verdict() const;
+  /// Returns the sweep since which current_verdict() reports a finding.
+  std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
   /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
@@ -50,6 +52,7 @@ class Localisation {
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
   double sigma_m_ = 0.0;  ///< of the newest sweep, relative to the map
   TimeNs newest_ns_ = 0;
+  std::optional<TimeNs> lost_since_ns_;  ///< first of the latest sweeps without a certain position
   std::optional<TimeNs> last_contradicted_ns_,
       previous_contradicted_ns_;  ///< the last two sweeps that surfaces corrected beyond the prior
 };

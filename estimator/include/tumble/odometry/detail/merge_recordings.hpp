@@ -3,15 +3,15 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/detail/unit_sign_check.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
@@ -22,20 +22,6 @@ struct UnitRecording {
   ImuSheet sheet;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   std::vector<ImuSample> samples;
-};
-
-/// UnitFault is a fault of one unit. The readings of a faulty unit are not used.
-struct UnitFault {
-  enum class Kind : std::uint8_t {
-    silent,       ///< no readings for half a second or until the end
-    frozen,       ///< a triad repeats one reading while the other units' readings change
-    frozen_axis,  ///< `axis` repeats one reading; only the readings of its interval are not used
-    disagrees,    ///< the unit contradicts the others; none of its readings is used
-  };
-  Kind kind = Kind::silent;
-  std::size_t unit = 0;  ///< index of the unit
-  TimeNs since_ns = 0;
-  FrozenAxis axis;
 };
 
 /// One IMU that replaces several.
@@ -49,11 +35,16 @@ struct MergedRecordings {
   std::vector<ImuSample> samples;                         ///< body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, body axes
   std::vector<Unit> units;                                ///< units in use
-  std::vector<UnitFault> faults;
+  /// Faulty units, whose readings are not used: silent, frozen, or in disagreement with the others. The readings of a
+  /// unit with a frozen axis are used outside the interval of the fault. Units are named by unit_name().
+  SensorHealth faults;
   std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
   std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
   std::optional<UnitSignCheck::Detected> mislabelled_axes;  ///< axes of the units that ImuMerge found mislabelled
 };
+
+/// Returns the name of a unit in findings: "imu_1" for index 0, or "imu" if there is only one unit.
+std::string unit_name(std::size_t unit, std::size_t units);
 
 /// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording.
 /// ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges

@@ -109,6 +109,9 @@ class ImuPlausibility {
   /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
+  /// Limits the memory to about a minute of evidence, so that a finding ends after its cause.
+  static void limit_memory(State& state);
+
   /// Returns the mean magnitude of a constant force as a fraction of gravity, or 1 while unknown.
   double force_ratio(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
