@@ -112,6 +112,9 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       wrong && !reported ? "  <- silently wrong" : (!wrong && reported && harm == "none" ? "  <- false alarm" : ""));
   for (const tumble::HealthFinding& finding : estimate.faults.findings)
     std::printf("  %s%s: %s\n", to_string(finding.kind), finding.ended ? " (ended)" : "", to_text(finding).c_str());
+  if (wrong && !reported) {
+    for (const auto& [name, value] : estimate.health) std::printf("  %s %.4g\n", name.c_str(), value);
+  }
   if (!estimate.status.ok()) std::printf("  %s\n", estimate.status.message().c_str());
   std::fflush(stdout);
 }

@@ -142,11 +142,11 @@ void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislab
   if (!lever_arm_agreement) return;
   constexpr const char* kQuantity =
       "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms";
-  const double share = *lever_arm_agreement, most = 1.0 + std::copysign(kArmShareOff, share - 1.0);
-  if (share < kArmShareMin)
-    health.add(Kind::axes_or_signs, {ErrorCode::out_of_range, kQuantity, share, kArmShareMin}, "imu", "", {}, 1.0);
-  else if (std::abs(share - 1.0) > kArmShareOff && !gyro_confirmed)
-    health.add(Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, most}, "imu", "", {}, 1.0);
+  const double share = *lever_arm_agreement;
+  const double off = gyro_confirmed ? 1.0 - kArmShareMin : kArmShareOff, bound = 1.0 + std::copysign(off, share - 1.0);
+  if (std::abs(share - 1.0) <= off) return;
+  health.add(share < 0.0 ? Kind::axes_or_signs : Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, bound},
+             "imu", "", {}, 1.0);
 }
 
 /// Detects IMUs that disagree with the other IMUs for a long time.
