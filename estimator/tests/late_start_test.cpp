@@ -90,7 +90,7 @@ std::array<EndError, 2> late_and_together(const ThrownBody& body, double lidar_f
   const Eigen::Matrix3d position_m2 = first.pose.covariance.topLeftCorner<3, 3>();
   EXPECT_LT(position_m2.trace(), 0.2 * 0.2);
   EXPECT_LE(rejected(run), rejected(together));
-  const Status health = odometry.health();
+  const SensorHealth health = odometry.health();
   if (vertical_known) {
     EXPECT_TRUE(health.ok()) << health.message();
   } else {
@@ -203,8 +203,9 @@ TEST(AccelerometerUnit, IsReportedByRollingOdometryWithinTwoSeconds) {
     params.units.front().sheet.rate_hz = 100.0;
     RollingOdometry odometry(params);
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) (void)odometry.add_imu(sample);
-    EXPECT_EQ(odometry.health().error_code, ErrorCode::out_of_range);
-    EXPECT_STREQ(odometry.health().field, kUnit);
+    const Status status = odometry.health();
+    EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
+    EXPECT_STREQ(status.field, kUnit);
   }
 }
 

@@ -39,6 +39,10 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   EXPECT_TRUE(seeing.health().ok()) << seeing.health().message();
   body.end_s = 9.0;
   run(body, 1.0, body.end_s, lost);
+  ASSERT_EQ(lost.health().findings.size(), 1u);
+  EXPECT_EQ(lost.health().findings.front().kind, HealthFinding::Kind::tracking_lost);
+  EXPECT_GT(lost.health().findings.front().since_ns, TimeNs{1'000'000'000});
+  EXPECT_TRUE(lost.health().invalidates_estimate());
   const Status health = lost.health();
   EXPECT_STREQ(health.field, "standard deviation in m of the position in the map");
   EXPECT_GT(health.value, health.bound);
@@ -47,7 +51,7 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   TumblingOdometry awake(params_of(body));
   const Status loaded = awake.load(lost.save());
   ASSERT_TRUE(loaded.ok()) << loaded.message();
-  EXPECT_EQ(awake.health().message(), health.message());
+  EXPECT_EQ(awake.health().message(), lost.health().message());
 }
 
 /// A mounting that is ten degrees off what was given, of one that stays within what was given.

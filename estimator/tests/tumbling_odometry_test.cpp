@@ -372,9 +372,13 @@ TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
     if (const auto& rate = odometry.smoothed_rate())
       widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));
   }
-  const Status health = odometry.health();
-  EXPECT_EQ(health.error_code, ErrorCode::out_of_range);
-  EXPECT_NE(health.message().find("gyro x"), std::string::npos) << health.message();
+  ASSERT_FALSE(odometry.health().ok());
+  const HealthFinding found = odometry.health().findings.front();
+  EXPECT_EQ(found.kind, HealthFinding::Kind::frozen_axis);
+  EXPECT_EQ(found.sensor, "imu");
+  EXPECT_STREQ(found.axis, "gyro_x");
+  EXPECT_EQ(found.since_ns, imu[from].time_ns);
+  EXPECT_NE(to_text(found).find("gyro x"), std::string::npos) << to_text(found);
   EXPECT_GT(widest_rad_s, 2.0);
   TumblingOdometry sound(params);  // negative control
   for (const ImuSample& sample : test::noisy(body.imu(), body.rail_rad_s)) {

@@ -66,7 +66,7 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   const RecordingEstimate* const whole = odometry.recording();
   ASSERT_NE(whole, nullptr);
   ASSERT_EQ(whole->rates.size(), imu.size());
-  EXPECT_TRUE(whole->findings.all.empty());
+  EXPECT_TRUE(whole->health.ok());
   EXPECT_TRUE(whole->suspect_rad2_s2.empty());
   EXPECT_GE(whole->mapped.passes, 2);  // the last pass starts from the calibration of the first
   EXPECT_TRUE(whole->mapped.calibration_converged);
@@ -211,11 +211,13 @@ TEST(TumblingRecording, ReportsAFrozenAxis) {
   record_all(imu, body.sweeps(), odometry);
   (void)odometry.finish();
   ASSERT_NE(odometry.recording(), nullptr);
-  const auto& all = odometry.recording()->findings.all;
-  const auto frozen = std::find_if(
-      all.begin(), all.end(), [](const ImuFinding& finding) { return finding.kind == ImuFinding::Kind::frozen_axis; });
+  const SensorHealth health = odometry.health();
+  const auto& all = health.findings;
+  const auto frozen = std::find_if(all.begin(), all.end(), [](const HealthFinding& finding) {
+    return finding.kind == HealthFinding::Kind::frozen_axis;
+  });
   ASSERT_NE(frozen, all.end());
-  EXPECT_EQ(frozen->axis.axis, 2);
+  EXPECT_STREQ(frozen->axis, "gyro_z");
   EXPECT_EQ(frozen->since_ns, imu[131].time_ns);
   EXPECT_FALSE(odometry.health().ok());
   EXPECT_EQ(odometry.recording()->suspect_rad2_s2.size(), odometry.recording()->rates.size());

@@ -259,10 +259,10 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
       .def(
           "health",
           [rate, rate_state](Object& self) {
-            return health_of(
-                self.run([&](Streaming<Stream>& at) { return rate(at.filter).health(rate_state(*at.state)); }));
+            return self.run(
+                [&](Streaming<Stream>& at) { return rate(at.filter).health(rate_state(*at.state)).findings; });
           },
-          nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth);
+          nb::sig("def health(self) -> list[HealthFinding]"), kHealth);
   bind_keeping<Stream>(bound);
   return bound;
 }

@@ -2,6 +2,8 @@
 #include "results.hpp"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstddef>
@@ -11,6 +13,7 @@
 #include "arrays.hpp"
 #include "saving.hpp"
 #include "trouble.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/odometry/detail/saved_map.hpp"
 
@@ -207,15 +210,39 @@ void bind_map(nb::module_& m) {
           nb::arg("position"), "Returns map points with fitted normals for positions (N, 3) [m].");
 }
 
-}  // namespace
-
 Poses joined(const std::vector<std::vector<PoseState>>& parts) {
   Poses out;
   for (const std::vector<PoseState>& part : parts) out.rows.insert(out.rows.end(), part.begin(), part.end());
   return out;
 }
 
+void bind_findings(nb::module_& m) {
+  nb::class_<HealthFinding>(m, "HealthFinding",
+                            "A suspected fault of a sensor or of the estimate. str() gives a sentence.")
+      .def_prop_ro(
+          "kind", [](const HealthFinding& self) { return to_string(self.kind); },
+          "kind of fault, for example 'frozen_axis'")
+      .def_ro("sensor", &HealthFinding::sensor,
+              "'imu', 'imu_2' for the second of several IMUs, 'lidar'; '': the estimate")
+      .def_ro("axis", &HealthFinding::axis, "'gyro_x' to 'accel_z', or '' unless one axis is suspect")
+      .def_ro("quantity", &HealthFinding::quantity, "the tested quantity, with its unit")
+      .def_ro("value", &HealthFinding::value, "value of the quantity")
+      .def_ro("bound", &HealthFinding::bound, "violated limit")
+      .def_ro("confidence", &HealthFinding::confidence,
+              "0 if the value is at the bound, to 1 if the value is far beyond; not a probability")
+      .def_ro("since_ns", &HealthFinding::since_ns, "start of the fault, or None if unknown")
+      .def_prop_ro("invalidates_estimate", &HealthFinding::invalidates_estimate,
+                   "True if the estimate should not be used")
+      .def_prop_ro(
+          "text", [](const HealthFinding& self) { return to_text(self); }, "one sentence for people")
+      .def("__str__", [](const HealthFinding& self) { return to_text(self); })
+      .def("__repr__", [](const HealthFinding& self) { return "HealthFinding: " + to_text(self); });
+}
+
+}  // namespace
+
 void bind_results(nb::module_& m) {
+  bind_findings(m);
   bind_rates_of_results(m);
   bind_attitudes_of_results(m);
   bind_poses(m);

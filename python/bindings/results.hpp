@@ -29,6 +29,10 @@ struct MapPoints {
   std::vector<MapPoint> rows;
 };
 
+inline constexpr const char* kHealth =
+    "Returns the suspected faults of sensors and estimate, the most important first. The list is empty without a\n"
+    "fault. The estimator continues after any fault, and a finding ends when its cause ends.";
+
 /// Concatenates the poses of several trajectories.
 Poses joined(const std::vector<std::vector<PoseState>>& parts);
 

@@ -279,9 +279,9 @@ void bind_rolling_odometry(nb::module_& m) {
       .def(
           "health",
           [](Object& self) {
-            return health_of(self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.health(); }));
+            return self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.health().findings; });
           },
-          nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
+          nb::sig("def health(self) -> list[HealthFinding]"), kHealth)
       .def(
           "finish",
           [](Object& self) {

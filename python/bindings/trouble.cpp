@@ -98,12 +98,6 @@ void require(const Status& status, std::span<const ImuSample> samples) {
   require(status);
 }
 
-nb::object health_of(const Status& status) {
-  if (status.ok()) return nb::none();
-  return error_class()(status.message().c_str(), to_string(status.error_code), status.field, status.value,
-                       status.bound);
-}
-
 void translate_invalid_params() {
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {

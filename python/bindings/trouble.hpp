@@ -37,12 +37,6 @@ void require(const Status& status, std::optional<std::size_t> index = std::nullo
 /// sample.
 void require(const Status& status, std::span<const ImuSample> samples);
 
-/// Returns None if all sensors and the pose are healthy, otherwise a TumbleError that is not raised.
-nb::object health_of(const Status& status);
-inline constexpr const char* kHealth =
-    "Returns None if all sensors and the pose are healthy. Else returns a TumbleError, which is not raised, with the\n"
-    "suspect sensor or pose: field, value, bound; str() gives the message. The estimator continues in both cases.";
-
 /// Registers the translation of InvalidParams, which constructors throw, to TumbleError.
 void translate_invalid_params();
 

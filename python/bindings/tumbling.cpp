@@ -166,9 +166,9 @@ void bind_accessors(Class& bound) {
       .def(
           "health",
           [](BoundTumblingOdometry& self) {
-            return health_of(self.run([](TumblingOdometry& odometry) { return odometry.health(); }));
+            return self.run([](TumblingOdometry& odometry) { return odometry.health().findings; });
           },
-          nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
+          nb::sig("def health(self) -> list[HealthFinding]"), kHealth)
       .def_prop_ro(
           "gaps",
           [](BoundTumblingOdometry& self) {

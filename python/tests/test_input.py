@@ -352,14 +352,14 @@ def test_doubt_names_what_cannot_be_believed(hill, slip):
     for make in (lambda: tumble.TumblingOdometry(**tumble.tumbling_options(hill)), STREAMS["rate"], STREAMS["regime"]):
         sound, harmed = make(), make()
         sound.add_imu(imu.time_ns, imu.gyro, imu.accel)
-        assert sound.health() is None
+        assert sound.health() == []
         harmed.add_imu(imu.time_ns, frozen, imu.accel)
-        health = harmed.health()
-        assert isinstance(health, tumble.TumbleError) and health.trouble == "out_of_range" and "gyro x" in str(health)
-        assert health.value > health.bound
+        finding = harmed.health()[0]
+        assert (finding.kind, finding.sensor, finding.axis) == ("frozen_axis", "imu", "gyro_x")
+        assert finding.value > finding.bound and finding.since_ns == imu.time_ns[from_on] and "gyro x" in finding.text
     sphere = tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)
     sphere.add_imu(unit.time_ns, unit.gyro, unit.accel)
-    assert sphere.health() is None
+    assert sphere.health() == []
 
 
 def test_mapper_alone(hill):

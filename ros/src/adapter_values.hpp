@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "tumble/common/sensor_health.hpp"
 #include "tumble_ros/publisher.hpp"
 #include "tumble_ros/schedule.hpp"
 
@@ -33,7 +34,16 @@ void add(Diagnostics& out, const char* key, const Value& value) {
   out.values.emplace_back(key, text.str());
 }
 
-/// Adds the message counts of a topic to the diagnostics.
+/// Adds each finding, with its kind, sensor and axis as key, for example "frozen_axis imu gyro_x".
+inline void add_findings(Diagnostics& out, const SensorHealth& health) {
+  for (const HealthFinding& finding : health.findings) {
+    std::string key = to_string(finding.kind);
+    for (const std::string& part : {finding.sensor, std::string(finding.axis)}) key += part.empty() ? "" : " " + part;
+    add(out, key.c_str(), to_text(finding));
+  }
+}
+
+/// Adds the counts of a topic.
 inline void add_input(Diagnostics& out, const std::string& topic, const Rejections& input) {
   add(out, (topic + " messages").c_str(), input.received);
   add(out, (topic + " messages rejected").c_str(), input.rejected);

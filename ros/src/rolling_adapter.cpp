@@ -44,12 +44,13 @@ void RollingAdapter::reset(const Eigen::Isometry3d& T_OB) {
 }
 
 void RollingAdapter::publish_diagnostics(TimeNs time_ns) {
-  const Status health = odometry_.health();
+  const SensorHealth health = odometry_.health();
   const std::optional<RollingOdometry::Pose> newest = odometry_.newest();
   Diagnostics out;
   out.ok = health.ok() && newest && !newest->uncertain;
   out.message = !health.ok() ? health.message() : newest && newest->uncertain ? "position is uncertain" : "ok";
   if (!newest) out.message = "no pose yet";
+  add_findings(out, health);
   add_input(out, "imu", imu_);
   add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());

@@ -156,10 +156,11 @@ const RateState& TumblingAdapter::rate_at(TimeNs time_ns) const {
 }
 
 void TumblingAdapter::publish_diagnostics() {
-  const Status health = odometry_.health();
+  const SensorHealth health = odometry_.health();
   Diagnostics out;
   out.ok = health.ok() && last_.has_value();
   out.message = !health.ok() ? health.message() : last_ ? "ok" : "no registered sweep yet";
+  add_findings(out, health);
   add_input(out, "imu", imu_);
   add_input(out, "clouds", clouds_);
   add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());

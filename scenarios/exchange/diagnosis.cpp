@@ -12,7 +12,7 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
-#include "tumble/mapping/calibration.hpp"
+#include "tumble/common/sensor_health.hpp"
 
 namespace tumble::scenarios {
 
@@ -206,14 +206,11 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
     out.push_back({"odometry",
                    fmt::format("only {} of {} sweeps are registered with the map ({}, minimum {})", registered, sweeps,
                                percent_text(share), percent_text(kRegisteredShareMin)),
-                   "check the option --T-body-lidar and the other findings"});
-  const double moved_sigmas = estimate.lidar_calibration_sigmas.value_or(0.0);
-  if (moved_sigmas > StatedCalibration::kDistanceMax_sigmas)
-    out.push_back({"odometry",
-                   fmt::format("the estimated pose or clock of the lidar differs by {} standard deviations from the "
-                               "stated pose or clock (limit {})",
-                               rounded(moved_sigmas), rounded(StatedCalibration::kDistanceMax_sigmas)),
-                   "measure the pose of the lidar and state it with --T-body-lidar"});
+                   "check --T-body-lidar and the other findings"});
+  for (const HealthFinding& finding : estimate.faults.findings) {
+    const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
+    out.push_back({"odometry", to_text(finding), mounting ? "--T-body-lidar with the measured pose of the lidar" : ""});
+  }
   return out;
 }
 

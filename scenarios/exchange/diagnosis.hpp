@@ -41,8 +41,7 @@ Saturation saturation_of(const sim::ImuRecord& imu);
 /// without times. O(N).
 std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors);
 
-/// Checks the result of a slam method: sweeps that were not registered, and a calibration of the lidar that contradicts
-/// the stated pose.
+/// Checks the result of a slam method: an error, sweeps that were not registered, and the findings of its health.
 std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std::size_t sweeps);
 
 }  // namespace tumble::scenarios

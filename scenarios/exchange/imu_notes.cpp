@@ -8,7 +8,7 @@
 #include "scenarios/exchange/lidar_rotation.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/recordings/number_text.hpp"
-#include "tumble/attitude/imu_plausibility.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 
 namespace tumble::scenarios {
 

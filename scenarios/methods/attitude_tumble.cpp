@@ -28,10 +28,12 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   estimate.frame = Frame::body;
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
-  for (const HealthFinding& fault : imus.faults) add_finding(fault, estimate);
+  add_findings(imus.merged.faults, imus.names, estimate);
   if (!estimate.status.ok()) return estimate;
-  (void)check_imus(sensors, imus, estimate);
-  if (imus.beyond_range > 0) add_finding({HealthFinding::About::beyond_range, double(imus.beyond_range)}, estimate);
+  const MergedFindings found{imus.merged, check_merged(checked_imu(sensors), imus.merged)};
+  report_merged(found, imus.names, estimate);
+  report_stamps(sensors, estimate);
+  report_beyond_range(imus.beyond_range, sensors, estimate);
   TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
   params.lever_arm_m = imus.merged.lever_arm_m;
@@ -57,9 +59,9 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   if (!estimate.status.ok()) return estimate;
   check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
   const CheckedImu imu = checked_imu(sensors);
-  report_findings(check_frozen(imu, samples), sensors, samples, estimate);
+  report_findings(check_frozen(imu, samples), sensors, estimate);
   const RecoveredRates recovered = recovered_readings(sensors, samples, ReplacedReadings::unreliable, estimate);
-  report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, samples, estimate);
+  report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, estimate);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
@@ -76,8 +78,8 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
     turned[k].source = recovered.sources[k];
   }
   report_unknown_attitude(estimate);
-  report_findings(check_rests(imu, samples, turned), sensors, samples, estimate);
-  report_findings(check_pivots(imu, samples, turned), sensors, samples, estimate);
+  report_findings(check_rests(imu, samples, turned), sensors, estimate);
+  report_findings(check_pivots(imu, samples, turned), sensors, estimate);
   return estimate;
 }
 
@@ -93,12 +95,21 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings() {
 void report_unknown_attitude(Estimate& estimate) {
   constexpr double kUnknown_rad = 0.5;
   double unknown_s = 0.0;
+  TimeNs since_ns = 0;
+  bool ended = true;
   for (std::size_t k = 1; k < estimate.attitudes.size(); ++k) {
     const AttitudeState &before = estimate.attitudes[k - 1], &here = estimate.attitudes[k];
     const double variance_rad2 = here.covariance_rad2.diagonal().head<2>().maxCoeff();
-    if (variance_rad2 > kUnknown_rad * kUnknown_rad) unknown_s += seconds(here.time_ns - before.time_ns);
+    ended = !(variance_rad2 > kUnknown_rad * kUnknown_rad);
+    if (ended) continue;
+    if (unknown_s == 0.0) since_ns = before.time_ns;
+    unknown_s += seconds(here.time_ns - before.time_ns);
   }
-  if (unknown_s > 0.0) add_finding({HealthFinding::About::attitude, unknown_s}, estimate);
+  SensorHealth health;
+  if (unknown_s > 0.0)
+    health.add({HealthFinding::Kind::attitude_unknown, "", "", "time in s with a standard deviation above 0.5 rad",
+                unknown_s, 0.0, 1.0, since_ns, ended});
+  add_findings(health, {}, estimate);
 }
 
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters) {

@@ -49,7 +49,7 @@ void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& s
     read[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
     read[k].source = recovered.sources[k];
   }
-  report_findings(check_rests(checked_imu(sensors), samples, read), sensors, samples, estimate);
+  report_findings(check_rests(checked_imu(sensors), samples, read), sensors, estimate);
 }
 
 Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -59,13 +59,13 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   if (!estimate.status.ok()) return estimate;
   check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
   const CheckedImu imu = checked_imu(sensors);
-  report_findings(check_frozen(imu, samples), sensors, samples, estimate);
+  report_findings(check_frozen(imu, samples), sensors, estimate);
   RecoveredRates recovered;
   recovered.samples = samples;
   if (sensors.sphere_radius_m <= 0.0)
     recovered = recovered_readings(sensors, samples, ReplacedReadings::clipped, estimate);
   if (sensors.sphere_radius_m <= 0.0)
-    report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, samples, estimate);
+    report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, estimate);
   std::vector<RateState> rates;
   if (recovered.estimated && recovered.report.hand_held_probability_max < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, rates, estimate);
@@ -75,7 +75,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
   check_at_rests(sensors, samples, recovered, estimate);
-  report_findings(check_pivots(imu, samples, rates), sensors, samples, estimate);
+  report_findings(check_pivots(imu, samples, rates), sensors, estimate);
   return estimate;
 }
 

@@ -11,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/covariance_file.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/json_members.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -275,8 +276,9 @@ void read_attitudes(const std::filesystem::path& folder, std::vector<AttitudeSta
 }
 
 json header_of(const std::string& method, Kind kind, const Estimate& estimate, const std::string& sensors_digest) {
-  json health = json::object();
+  json health = json::object(), findings = json::array();
   for (const auto& [name, value] : estimate.health) health[name] = value;
+  for (const HealthFinding& each : estimate.faults.findings) findings.push_back(json_of(each));
   return {{"format", kFormatVersion},
           {"method", method},
           {"kind", to_string(kind)},
@@ -286,6 +288,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
             {"field", estimate.status.field},
             {"message", estimate.status.message()}}},
           {"health", health},
+          {"findings", findings},
           {"parameters", json(estimate.parameters)},
           {"sensors_digest", sensors_digest}};
 }
@@ -307,7 +310,9 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
-  estimate.findings = findings_in(estimate.health);
+  // files of earlier versions have no findings
+  for (const json& each : header.value("findings", json::array()))
+    estimate.faults.findings.push_back(finding_in(path, each));
   if (!header.contains("parameters")) return;
   for (const auto& [name, value] : reader.object("parameters").items()) {
     if (!value.is_number()) JsonMembers(path, header.at("parameters")).complain(name.c_str(), "a number");

@@ -2,101 +2,164 @@
 #include "scenarios/methods/findings.hpp"
 
 #include <algorithm>
-#include <string_view>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "scenarios/methods/json_members.hpp"
 #include "scenarios/methods/method.hpp"
+#include "tumble/odometry/detail/merge_recordings.hpp"
 
 namespace tumble::scenarios {
 
-static_assert(kAllFindings.size() == static_cast<std::size_t>(HealthFinding::About::unit_silent) + 1);
-
 namespace {
 
-/// Returns the health key of a check. For a check of an IMU, the function returns the suffix of the key.
-const char* row_name(HealthFinding::About about) {
-  switch (about) {
-    case HealthFinding::About::readings:
-      return "imu_implausible";
-    case HealthFinding::About::rates:
-      return "imu_rates_doubted";
-    case HealthFinding::About::flights:
-      return "imu_flight_against_s";
-    case HealthFinding::About::stamps:
-      return "imu_stamps_rounded_s";
-    case HealthFinding::About::rate_unit:
-      return "rate_unit_suspect";
-    case HealthFinding::About::force_unit:
-      return "force_unit_suspect";
-    case HealthFinding::About::attitude:
-      return "attitude_unknown_s";
-    case HealthFinding::About::place:
-      return "localised";
-    case HealthFinding::About::lidar_scale:
-      return "lidar_scale_implausible";
-    case HealthFinding::About::beyond_range:
-      return "imu_readings_beyond_range";
-    case HealthFinding::About::digest:
-      return "recording_without_digest";
-    case HealthFinding::About::learnt_rig:
-      return "learnt_rig_contradicted";
-    case HealthFinding::About::unit_frozen:
-      return "_frozen_since_s";
-    case HealthFinding::About::unit_disagrees:
-      return "_disagrees_since_s";
-    case HealthFinding::About::unit_silent:
-      break;
+using About = HealthFinding::Kind;
+
+/// Returns the key of the start of a finding [s], for example "imu_2_gyro_z_frozen_since_s".
+std::string since_key(const HealthFinding& finding, const char* suffix) {
+  const std::string axis = finding.axis;
+  return finding.sensor + (axis.empty() ? "" : "_" + axis) + suffix;
+}
+
+bool is_about_readings(About kind) {
+  return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
+         kind == About::axes_or_signs || kind == About::flight_forces || kind == About::rotation ||
+         kind == About::gyro_scale;
+}
+
+bool is_about_place(About kind) {
+  return kind == About::tracking_lost || kind == About::lidar_scale || kind == About::lidar_calibration;
+}
+
+/// Adds the entry of one kind.
+void add_row(const HealthFinding& finding, std::map<std::string, double>& health) {
+  const double since_s = seconds(finding.since_ns.value_or(0));
+  switch (finding.kind) {
+    case About::frozen_axis:
+    case About::unit_frozen:
+      health[since_key(finding, "_frozen_since_s")] = since_s;
+      return;
+    case About::unit_silent:
+      health[since_key(finding, "_silent_since_s")] = since_s;
+      return;
+    case About::unit_disagrees:
+      health[since_key(finding, "_disagrees_since_s")] = since_s;
+      return;
+    case About::flight_forces:
+      health["imu_flight_against_s"] = finding.value;
+      return;
+    case About::rate_unit:
+      health["rate_unit_suspect"] = 1.0;
+      return;
+    case About::force_unit:
+      health["force_unit_suspect"] = 1.0;
+      return;
+    case About::beyond_range:
+      health["imu_readings_beyond_range"] = finding.value;
+      return;
+    case About::rounded_stamps:
+      health["imu_stamps_rounded_s"] = finding.value;
+      return;
+    case About::lidar_scale:
+      health["lidar_scale_implausible"] = 1.0;
+      return;
+    case About::rig_calibration:
+      health["learnt_rig_contradicted"] = finding.value;
+      return;
+    case About::attitude_unknown:
+      health["attitude_unknown_s"] = finding.value;
+      return;
+    case About::vertical_unknown:
+      health["vertical_sigma_rad"] = finding.value;
+      return;
+    default:  // the entries of several kinds, below
+      return;
   }
-  return "_silent_since_s";
 }
 
-/// Returns whether a health entry with this value reports a failed check. For a check of an IMU, 0 is a valid start
-/// time.
-bool is_said(HealthFinding::About about, double value) {
-  if (row_name(about)[0] == '_') return true;
-  return (value == 0.0) == (about == HealthFinding::About::place);
+bool any_of(const Estimate& estimate, bool (*about)(About)) {
+  const auto& all = estimate.faults.findings;
+  return std::any_of(all.begin(), all.end(), [&](const HealthFinding& finding) { return about(finding.kind); });
 }
 
-auto place_of(const std::string& row, std::vector<HealthFinding>& findings) {
-  return std::lower_bound(findings.begin(), findings.end(), row,
-                          [](const HealthFinding& finding, const std::string& name) { return row_of(finding) < name; });
+/// Returns a string with static lifetime, as a finding needs it.
+const char* kept(const std::string& text) {
+  static std::mutex lock;
+  static std::set<std::string> all;
+  const std::scoped_lock locked(lock);
+  return all.insert(text).first->c_str();
 }
 
 }  // namespace
 
-std::string row_of(const HealthFinding& finding) {
-  return finding.unit + row_name(finding.about);
-}
-
 void add_finding(const HealthFinding& finding, Estimate& estimate) {
-  const std::string row = row_of(finding);
-  const auto at = place_of(row, estimate.findings);
-  if (at != estimate.findings.end() && row_of(*at) == row) {
-    *at = finding;
-  } else {
-    estimate.findings.insert(at, finding);
-  }
-  estimate.health[row] = finding.value;
+  const std::size_t before = estimate.faults.findings.size();
+  estimate.faults.add(finding);
+  if (estimate.faults.findings.size() == before) return;
+  add_row(finding, estimate.health);
+  if (is_about_readings(finding.kind)) estimate.health["imu_implausible"] = 1.0;
 }
 
-bool has_finding(const HealthFinding& finding, const Estimate& estimate) {
-  return std::any_of(estimate.findings.begin(), estimate.findings.end(), [&](const HealthFinding& known) {
-    return known.about == finding.about && known.unit == finding.unit;
+void add_findings(const SensorHealth& health, std::span<const std::string> names, Estimate& estimate) {
+  for (HealthFinding finding : health.findings) {
+    std::size_t unit = 0;
+    while (unit < names.size() && finding.sensor != unit_name(unit, names.size())) ++unit;
+    if (unit < names.size()) finding.sensor = names[unit];
+    add_finding(finding, estimate);
+  }
+}
+
+bool has_finding(About kind, const Estimate& estimate, const std::string& sensor) {
+  const auto& all = estimate.faults.findings;
+  return std::any_of(all.begin(), all.end(), [&](const HealthFinding& finding) {
+    return finding.kind == kind && (sensor.empty() || finding.sensor == sensor);
   });
 }
 
-void report_no_findings(HealthFinding::About about, Estimate& estimate) {
-  estimate.health[row_name(about)] = about == HealthFinding::About::place ? 1.0 : 0.0;
+bool has_implausible_readings(const Estimate& estimate) {
+  return any_of(estimate, is_about_readings);
 }
 
-std::vector<HealthFinding> findings_in(const std::map<std::string, double>& health) {
-  std::vector<HealthFinding> out;
-  for (const auto& [row, value] : health) {
-    for (const HealthFinding::About about : kAllFindings) {
-      const std::string_view name = row_name(about);
-      const bool is_its = name.starts_with('_') ? row.ends_with(name) : row == name;
-      if (is_its && is_said(about, value)) out.push_back({about, value, row.substr(0, row.size() - name.size())});
-    }
-  }
+bool report_localised(Estimate& estimate) {
+  const bool localised = !any_of(estimate, is_about_place);
+  estimate.health["localised"] = localised ? 1.0 : 0.0;
+  return localised;
+}
+
+nlohmann::json json_of(const HealthFinding& finding) {
+  return {{"kind", to_string(finding.kind)},
+          {"sensor", finding.sensor},
+          {"axis", finding.axis},
+          {"quantity", finding.quantity},
+          {"value", finding.value},
+          {"bound", finding.bound},
+          {"confidence", finding.confidence},
+          {"since_ns", finding.since_ns ? nlohmann::json(*finding.since_ns) : nlohmann::json()},
+          {"ended", finding.ended},
+          {"text", to_text(finding)}};
+}
+
+HealthFinding finding_in(const std::filesystem::path& path, const nlohmann::json& object) {
+  const JsonMembers reader(path, object);
+  const auto number = [&](const char* key) {
+    const nlohmann::json& found = reader.member(key);
+    return found.is_number() ? found.get<double>() : std::nan("");
+  };
+  HealthFinding out;
+  out.kind = reader.named("kind", HealthFinding::kLast);
+  out.sensor = reader.text("sensor");
+  out.axis = kept(reader.text("axis"));
+  out.quantity = kept(reader.text("quantity"));
+  out.value = number("value");
+  out.bound = number("bound");
+  out.confidence = number("confidence");
+  if (const nlohmann::json& since = reader.member("since_ns"); since.is_number_integer())
+    out.since_ns = since.get<TimeNs>();
+  out.ended = reader.member("ended") == true;
   return out;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/imu_check.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,15 +10,6 @@
 namespace tumble::scenarios {
 
 namespace {
-
-using FindingKind = ImuFinding::Kind;
-
-constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: flipped sign
-// kArmShareOff is the largest accepted deviation of ImuMerge::lever_arm_agreement() from 1. A larger deviation
-// indicates a scale error of all IMUs. Centripetal force grows with the squared rate, so the limit corresponds to 3 %
-// of gyro scale, three times the data sheet's scale error. In runs of the scenario `slip` without faults,
-// lever_arm_agreement() was 0.999 to 1.002.
-constexpr double kArmShareOff = 0.06;
 
 void report_readings(const ImuFindings::Readings& readings, Estimate& estimate) {
   estimate.health["imu_rest_force_share"] = readings.rest_force_share;
@@ -62,62 +52,43 @@ CheckedImu checked_imu(const sim::Sensors& sensors) {
           .merged = sensors.sphere_radius_m > 0.0};
 }
 
-void report_findings(const ImuFindings& findings, const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                     Estimate& estimate) {
+void report_findings(const ImuFindings& findings, const sim::Sensors& sensors, Estimate& estimate) {
   report_quantities(findings, estimate);
-  for (const ImuFinding& finding : findings.all) {
-    if (finding.kind == FindingKind::rate_unit) {
-      add_finding({HealthFinding::About::rate_unit}, estimate);
-      continue;
-    }
-    add_finding({HealthFinding::About::readings}, estimate);
-    if (finding.kind == FindingKind::flight)
-      add_finding({HealthFinding::About::flights, finding.status.value}, estimate);
-    if (finding.kind != FindingKind::frozen_axis) continue;
-    const HealthFinding frozen{HealthFinding::About::unit_frozen, seconds(finding.since_ns - samples.front().time_ns),
-                               sensors.imus.front().name + "_" + to_string(finding.axis)};
-    if (!has_finding(frozen, estimate)) add_finding(frozen, estimate);  // keep the earliest time
-  }
+  add_findings(findings.health, {&sensors.imus.front().name, 1}, estimate);
+}
+
+void report_merged(const MergedFindings& merged, std::span<const std::string> names, Estimate& estimate) {
+  report_quantities(merged.findings, estimate);
+  if (merged.merged.mislabelled_axes) estimate.health["imu_other_axes_share"] = merged.merged.mislabelled_axes->share;
+  if (merged.merged.lever_arm_agreement) estimate.health["imu_arm_share"] = *merged.merged.lever_arm_agreement;
+  add_findings(merged.findings.health, names, estimate);
 }
 
 void report_stamps(const sim::Sensors& sensors, Estimate& estimate) {
-  if (are_rounded(sensors.imus.front().time_ns)) add_finding({HealthFinding::About::stamps, 1e-3}, estimate);
+  constexpr double kRounding_s = 1e-3;
+  const sim::ImuRecord& imu = sensors.imus.front();
+  if (!are_rounded(imu.time_ns)) return;
+  SensorHealth health;
+  health.add(HealthFinding::Kind::rounded_stamps,
+             {ErrorCode::out_of_range, "rounding of the time stamps in s", kRounding_s, seconds(imu.period_ns)},
+             imu.name);
+  add_finding(health.findings.front(), estimate);
 }
 
 void check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
-  report_findings(check_readings(checked_imu(sensors), samples), sensors, samples, estimate);
+  report_findings(check_readings(checked_imu(sensors), samples), sensors, estimate);
   report_stamps(sensors, estimate);
-}
-
-Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate) {
-  const MergedRecordings& merged = imus.merged;
-  const ImuFindings own = check_readings(checked_imu(sensors), merged.samples);
-  report_findings(own, sensors, merged.samples, estimate);
-  report_stamps(sensors, estimate);
-  if (merged.mislabelled_axes) {
-    estimate.health["imu_other_axes_share"] = merged.mislabelled_axes->share;
-    add_finding({HealthFinding::About::readings}, estimate);
-  }
-  const auto contradiction = std::find_if(own.all.begin(), own.all.end(),
-                                          [](const auto& each) { return each.kind != FindingKind::rate_unit; });
-  const Status status = contradiction == own.all.end() ? Status{} : contradiction->status;
-  if (!merged.lever_arm_agreement) return status;
-  estimate.health["imu_arm_share"] = *merged.lever_arm_agreement;
-  if (std::abs(*merged.lever_arm_agreement - 1.0) > kArmShareOff && !own.readings->confirms_gyro())
-    add_finding({HealthFinding::About::readings}, estimate);
-  if (!status.ok() || *merged.lever_arm_agreement >= kArmShareMin) return status;
-  add_finding({HealthFinding::About::readings}, estimate);
-  return {ErrorCode::out_of_range,
-          "difference between the specific forces of two IMUs, compared with the difference predicted from rotation "
-          "and lever arms",
-          *merged.lever_arm_agreement, kArmShareMin};
 }
 
 void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate) {
   estimate.suspect_rad2_s2 = suspect_covariance(findings, samples, estimate.rates);
   for (std::size_t k = 0; k < estimate.suspect_rad2_s2.size(); ++k)
     estimate.rates[k].covariance_rad2_s2 += estimate.suspect_rad2_s2[k];
-  if (findings.contradict()) add_finding({HealthFinding::About::rates}, estimate);
+  report_inflated(findings, estimate);
+}
+
+void report_inflated(const ImuFindings& findings, Estimate& estimate) {
+  if (findings.health.invalidates_estimate()) estimate.health["imu_rates_doubted"] = 1.0;
 }
 
 }  // namespace tumble::scenarios

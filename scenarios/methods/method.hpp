@@ -48,10 +48,7 @@ struct Estimate {
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam
-  /// Distance of the estimated pose and clock of the lidar from the stated ones, in standard deviations; empty if not
-  /// estimated.
-  std::optional<double> lidar_calibration_sigmas;
-  std::vector<HealthFinding> findings;  ///< failed health checks (add_finding)
+  SensorHealth faults;  ///< suspected faults of the sensors and of the estimate (add_finding)
   /// Covariance that failed health checks add to each of `rates`; empty if no check failed (imu_check.hpp).
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
-#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
@@ -20,6 +20,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kLagS = 1.0;
+constexpr TimeNs kHealthPeriodNs = 100'000'000;       // time between two calls of health()
 constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // excess speed at which a hop counts as slip
 
 Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
@@ -69,32 +70,28 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Reports what the whole recording reveals about the IMUs. Returns an error if the recording is unusable.
-Estimate check(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
-  Estimate estimate;
-  MergedImus imus;
-  estimate.status = merge_imus(sensors, imus);
-  for (const HealthFinding& fault : imus.faults) add_finding(fault, estimate);
-  if (!estimate.status.ok()) return estimate;
-  estimate.status = check_imus(sensors, imus, estimate);
-  if (imus.beyond_range > 0) add_finding({HealthFinding::About::beyond_range, double(imus.beyond_range)}, estimate);
-  estimate.health["imus"] = static_cast<double>(imus.merged.units.size());
-  estimate.health["imu_readings_left_out"] = static_cast<double>(imus.merged.excluded_readings);
-  if (imus.merged.units.size() < 2) return estimate;
-  for (const MergedRecordings::Unit& unit : imus.merged.units) {
-    const std::string& name = sensors.imus.at(unit.unit).name;
+/// Reports what the whole recording shows about the IMUs.
+void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
+  report_merged(whole, names, estimate);
+  estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);
+  if (whole.merged.units.size() < 2) return;
+  for (const MergedRecordings::Unit& unit : whole.merged.units) {
+    const std::string& name = names[unit.unit];
     estimate.health[name + "_time_offset_s"] = unit.time_offset_s;
     estimate.health[name + "_time_offset_sigma_s"] = unit.time_offset_sigma_s;
     estimate.health[name + "_rate_bias_rad_s"] = unit.rate_bias_rad_s;
   }
-  return estimate;
 }
 
 /// Adds the readings of all units in order of time and collects the poses.
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
-              Estimate& estimate) {
+              std::span<const std::string> names, Estimate& estimate) {
+  TimeNs checked_ns = 0;
   const auto collect = [&] {
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) append_pose(*pose, radius_m, estimate);
+    if (estimate.poses.empty() || estimate.poses.back().time_ns < checked_ns + kHealthPeriodNs) return;
+    checked_ns = estimate.poses.back().time_ns;
+    add_findings(odometry.health(), names, estimate);
   };
   std::vector<std::size_t> next(recordings.size(), 0);
   while (true) {
@@ -112,6 +109,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
   }
   const Status status = odometry.finish();
   collect();
+  add_findings(odometry.health(), names, estimate);
   return status;
 }
 
@@ -137,10 +135,8 @@ void report(const RollingOdometry& odometry, const RollingOdometry::Params& para
 
 Estimate run(const char* method, const Settings<RollingOdometry::Params>& settings, const sim::Sensors& sensors,
              const sim::Values& parameters) {
-  Estimate estimate = at_sample_times<check>(sensors, parameters, {});
+  Estimate estimate;
   estimate.frame = Frame::centre;
-  const bool whole = settings.defaults().lag_s >= RollingOdometry::kWholeRecording;
-  if (whole && !estimate.status.ok()) return estimate;
   require_sphere(method, sensors);
   SphereImus units;
   estimate.status = sphere_imus(sensors, units);
@@ -148,7 +144,11 @@ Estimate run(const char* method, const Settings<RollingOdometry::Params>& settin
   RollingOdometry::Params params = stated_params(sensors, units, settings.defaults());
   settings.apply(parameters, params);
   RollingOdometry odometry(params);
-  estimate.status = replay(units.recordings, odometry, params.radius_m, estimate);
+  estimate.status = replay(units.recordings, odometry, params.radius_m, units.names, estimate);
+  estimate.health["imus"] = static_cast<double>(params.units.size());
+  if (odometry.recording() != nullptr) report_whole(*odometry.recording(), units.names, estimate);
+  report_stamps(sensors, estimate);
+  report_beyond_range(units.beyond_range, sensors, estimate);
   report(odometry, params, estimate);
   return estimate;
 }

@@ -72,11 +72,15 @@ namespace {
 /// and adds a failed health check if the two calibrations belong to different rigs.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // see distance_of_rigs
-  report_no_findings(HealthFinding::About::learnt_rig, result);
   if (!fresh || fresh->rails_alone) return true;
   const double distance = distance_of_rigs(given.calibration, fresh->calibration);
   if (distance <= kDistanceMax) return true;
-  add_finding({HealthFinding::About::learnt_rig, distance}, result);
+  SensorHealth health;
+  health.add(HealthFinding::Kind::rig_calibration,
+             {ErrorCode::out_of_range, "distance of the --learnt file from this run, in standard deviations", distance,
+              kDistanceMax},
+             "imu");
+  add_finding(health.findings.front(), result);
   return false;
 }
 
@@ -141,7 +145,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
       report_rates(report, estimate);
       const ImuFindings findings =
           check_recording(checked_imu(sensors), samples, estimate.rates, carried_share(report));
-      report_findings(findings, sensors, samples, estimate);
+      report_findings(findings, sensors, estimate);
       report_stamps(sensors, estimate);
       inflate_rates(findings, samples, estimate);
       if (std::optional<CalibratedRig> rig = learnt(report.rate, given, params.model); rig && found != nullptr)

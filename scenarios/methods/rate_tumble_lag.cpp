@@ -108,7 +108,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   if (estimate.status.ok()) {
     // the findings are only reported, because the results are already final
     const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
-    report_findings(findings, sensors, samples, estimate);
+    report_findings(findings, sensors, estimate);
     report_stamps(sensors, estimate);
   }
   count_sources(estimate.rates, estimate.health);

@@ -13,11 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Reports whether the smoother's unit check failed or passed.
-void report_unit(HealthFinding::About unit, bool suspect, Estimate& result) {
-  suspect ? add_finding({unit}, result) : report_no_findings(unit, result);
-}
-
 void report_smoother(const RateReport& report, Estimate& result) {
   std::map<std::string, double>& health = result.health;
   health["iterations"] = report.iterations;
@@ -38,8 +33,6 @@ void report_smoother(const RateReport& report, Estimate& result) {
   health["gyro_update_s"] = report.gyro_update_s;
   health["accel_update_s"] = report.accel_update_s;
   health["rails_upright"] = report.clips_after_compensation ? 1.0 : 0.0;
-  report_unit(HealthFinding::About::rate_unit, report.rate_unit_suspect, result);
-  report_unit(HealthFinding::About::force_unit, report.force_unit_suspect, result);
   const char* const names[] = {"x", "y", "z"};
   for (int j = 0; j < 3; ++j) {
     const std::string axis = names[j];

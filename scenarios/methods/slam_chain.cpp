@@ -76,7 +76,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   if (estimate.status.ok()) estimate.status = rates(estimate);
   if (!estimate.status.ok()) return estimate;
   const ImuFindings frozen = check_frozen(checked_imu(sensors), samples);
-  report_findings(frozen, sensors, samples, estimate);
+  report_findings(frozen, sensors, estimate);
   inflate_rates(frozen, samples, estimate);
   flag_saturated_forces(stated_rails(sensors.imus.front()), samples);
   return estimate;
@@ -134,11 +134,16 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   for (std::size_t left = mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
   estimate.status = mapped.status;
   if (!append_sweeps(mapped.sweeps, estimate) || !estimate.status.ok()) return false;
-  if (!chain.calibration) return conclude(mapped.mapper, false, mapped.localisation, nullptr, estimate);
-  report_passes(mapped, estimate.health);
-  report_calibration(mapped.mapper, sensors, estimate.health);
-  const SweepScale scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
-  return conclude(mapped.mapper, mapped.calibration_is_off(), mapped.localisation, &scale, estimate);
+  SweepScale scale;
+  if (chain.calibration) {
+    report_passes(mapped, estimate.health);
+    report_calibration(mapped.mapper, sensors, estimate.health);
+    scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
+  }
+  SensorHealth health;
+  mapped.add_findings(scale, health);
+  add_findings(health, {}, estimate);
+  return conclude(mapped.mapper, mapped.localisation, chain.calibration ? &scale : nullptr, estimate);
 }
 
 }  // namespace tumble::scenarios

@@ -60,14 +60,6 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
   if (!std::isfinite(scale.sigma)) return;
   estimate.health["lidar_scale"] = scale.scale;
   estimate.health["lidar_scale_sigma"] = scale.sigma;
-  if (scale.is_inconsistent()) add_finding({HealthFinding::About::lidar_scale}, estimate);
-}
-
-/// Returns true if the run is localised in its map: tracking never failed, the calibration stayed within its
-/// uncertainty, and lidar ranges and motion have one scale. A wrong scale gives a map of the wrong size even if all
-/// sweeps agree.
-bool is_localised(bool calibration_is_off, const Localisation& localisation, const SweepScale* scale) {
-  return !calibration_is_off && localisation.verdict().ok() && !(scale && scale->is_inconsistent());
 }
 
 Status any_registered(std::span<const SweepReport> sweeps) {
@@ -84,17 +76,12 @@ void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep) {
   sweep.pose = sweep.trajectory.back();
 }
 
-bool conclude(const LidarInertialOdometry& odometry, bool calibration_is_off, const Localisation& localisation,
-              const SweepScale* scale, Estimate& estimate) {
+bool conclude(const LidarInertialOdometry& odometry, const Localisation& localisation, const SweepScale* scale,
+              Estimate& estimate) {
   for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
   report_innovations(estimate);
-  bool localised = false;
-  if (!estimate.sweeps.empty()) {
-    report_end(localisation, estimate);
-    localised = is_localised(calibration_is_off, localisation, scale);
-    localised ? report_no_findings(HealthFinding::About::place, estimate)
-              : add_finding({HealthFinding::About::place, 0.0}, estimate);
-  }
+  if (!estimate.sweeps.empty()) report_end(localisation, estimate);
+  const bool localised = !estimate.sweeps.empty() && report_localised(estimate);
   if (scale) report_scale(*scale, estimate);
   estimate.map = odometry.map();
   estimate.status = any_registered(estimate.sweeps);

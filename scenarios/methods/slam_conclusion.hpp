@@ -17,12 +17,12 @@ namespace tumble::scenarios {
 /// Replaces the trajectory of a sweep by the smoothed trajectory, unless `smoothed` is empty.
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
-/// Writes the final poses, map and status of a run; the estimate already contains the sweeps. All slam chains use this
-/// function to decide whether the run is localised. The status is `too_few` if no sweep was registered.
-/// `calibration_is_off` states that the lidar's calibration moved by more than its stated uncertainty allows. `scale`
-/// is null if the scale was not checked. Returns whether the run is localised and completed.
-bool conclude(const LidarInertialOdometry& odometry, bool calibration_is_off, const Localisation& localisation,
-              const SweepScale* scale, Estimate& estimate);
+/// Writes the final poses, map and status of a run; the estimate already contains the sweeps and the findings. All slam
+/// chains use this function. The run is localised unless a finding contradicts its pose in the map (report_localised).
+/// The status is `too_few` if no sweep was registered. `scale` is null if the scale was not checked. Returns true if
+/// the run is localised and completed.
+bool conclude(const LidarInertialOdometry& odometry, const Localisation& localisation, const SweepScale* scale,
+              Estimate& estimate);
 
 /// Reports how far the lidar's calibration moved from the calibration of the recording.
 void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,

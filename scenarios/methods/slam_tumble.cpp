@@ -78,11 +78,12 @@ using SweepProgress = TumblingOdometry::SweepProgress;
 /// Collector collects the output of TumblingOdometry in an estimate.
 class Collector {
  public:
-  Collector(Output output, const TumblingOdometry::Params& params, Estimate& estimate)
+  Collector(Output output, const TumblingOdometry::Params& params, std::string imu, Estimate& estimate)
       : output_(output),
         given_(params.stated_calibration()),
         localisation_(params.expert.mapping.expert.matching.distance_m),
-        estimate_(estimate) {}
+        estimate_(estimate),
+        names_{std::move(imu)} {}
 
   /// Stores the live pose after each processed sample.
   void observe(const TumblingOdometry& odometry) {
@@ -99,26 +100,30 @@ class Collector {
       }
       std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
+      observe(odometry.health());
       localisation_.add(sweep->report);
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       apply_next(std::move(smoothed));
     }
   }
-  /// Stores the remaining trajectories at the end of the run.
+  /// Stores the remaining trajectories and the findings at the end of the run.
   void conclude(const TumblingOdometry& odometry) {
     if (output_ != Output::whole) {
       for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
     }
     if (output_ == Output::live) replace_by_live();
-    const double moved = given_.deviations(odometry.mapper().calibration());
-    const RecordingEstimate* const whole = odometry.recording();
-    const bool off = whole ? whole->mapped.calibration_is_off() : moved > StatedCalibration::kDistanceMax_sigmas;
-    estimate_.lidar_calibration_sigmas = moved;
-    estimate_.health["lidar_calibration_mahalanobis"] = moved;
-    scenarios::conclude(odometry.mapper(), off, localisation_, &odometry.sweep_scale(), estimate_);
+    estimate_.health["lidar_calibration_mahalanobis"] = given_.deviations(odometry.mapper().calibration());
+    observe(odometry.health());
+    add_findings(found_, names_, estimate_);
+    scenarios::conclude(odometry.mapper(), localisation_, &odometry.sweep_scale(), estimate_);
   }
 
  private:
+  /// Collects the findings of a run. A finding that is not current has ended.
+  void observe(const SensorHealth& now) {
+    for (HealthFinding& known : found_.findings) known.ended = true;
+    for (const HealthFinding& finding : now.findings) found_.add(finding);
+  }
   void apply_next(std::vector<PoseState> smoothed) {
     if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
@@ -142,6 +147,8 @@ class Collector {
   StatedCalibration given_;
   Localisation localisation_;
   Estimate& estimate_;
+  std::vector<std::string> names_;
+  SensorHealth found_;
   std::size_t smoothed_ = 0;
   std::vector<PoseState> live_;
 };
@@ -179,15 +186,13 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
 }
 
 /// Reports what RecordingEstimate contains in addition to the sweeps.
-void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                  Estimate& estimate) {
+void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
   estimate.rates = whole.rates;
   estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) estimate.rates[k].time_ns = whole.stamps_ns[k];
   report_rates(whole.report, estimate);
-  report_findings(whole.findings, sensors, samples, estimate);
-  report_stamps(sensors, estimate);
-  if (whole.findings.contradict()) add_finding({HealthFinding::About::rates}, estimate);
+  report_findings(whole.findings, sensors, estimate);
+  report_inflated(whole.findings, estimate);
   count_sources(estimate.rates, estimate.health);
   if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
@@ -220,20 +225,15 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
     estimate.status = {ErrorCode::empty, missing, 0.0, 1.0};
     return estimate;
   }
-  if (output != Output::whole) {  // Only a warning, as for attitudes.
-    check_imu(sensors, samples, estimate);
-    const CheckedImu imu = checked_imu(sensors);
-    report_findings(check_flights(imu, samples, std::nullopt), sensors, samples, estimate);
-    report_findings(check_frozen(imu, samples), sensors, samples, estimate);
-  }
   TumblingOdometry::Params params = stated_params(sensors, settings.defaults());
   settings.apply(parameters, params);
   TumblingOdometry odometry(params);
   if (map != nullptr) estimate.status = odometry.use_map(*map);
   if (!estimate.status.ok()) return estimate;
-  Collector collector(output, params, estimate);
+  Collector collector(output, params, sensors.imus.front().name, estimate);
   estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
-  if (odometry.recording()) report_whole(*odometry.recording(), sensors, samples, estimate);
+  if (odometry.recording()) report_whole(*odometry.recording(), sensors, estimate);
+  report_stamps(sensors, estimate);
   if (!estimate.status.ok()) return estimate;
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();

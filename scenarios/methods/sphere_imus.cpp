@@ -32,25 +32,15 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
   return samples;
 }
 
-HealthFinding finding_of(const UnitFault& fault, const std::string& name, TimeNs start_ns) {
-  const double since_s = seconds(fault.since_ns - start_ns);
-  switch (fault.kind) {
-    case UnitFault::Kind::silent:
-      return {HealthFinding::About::unit_silent, since_s, name};
-    case UnitFault::Kind::frozen:
-      return {HealthFinding::About::unit_frozen, since_s, name};
-    case UnitFault::Kind::frozen_axis:
-      return {HealthFinding::About::unit_frozen, since_s, name + "_" + to_string(fault.axis)};
-    case UnitFault::Kind::disagrees:
-      break;
-  }
-  return {HealthFinding::About::unit_disagrees, since_s, name};
-}
-
 }  // namespace
 
-std::string to_string(const FrozenAxis& frozen) {
-  return std::string(frozen.triad == Triad::gyro ? "gyro_" : "accel_") + "xyz"[frozen.axis];
+void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate) {
+  if (readings == 0) return;
+  SensorHealth health;
+  health.add(HealthFinding::Kind::beyond_range,
+             {ErrorCode::out_of_range, "number of readings beyond the range", double(readings), 0.0},
+             sensors.imus.front().name);
+  add_finding(health.findings.front(), estimate);
 }
 
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out) {
@@ -77,18 +67,15 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   out = {};
   SphereImus units;
   if (Status status = sphere_imus(sensors, units); !status.ok()) return status;
+  out.names = units.names;
   out.beyond_range = units.beyond_range;
   ImuMerge::Params params;
   params.gap_max_s = bridge::kGapMaxS;
-  const TimeNs start_ns = units.recordings.front().samples.front().time_ns;
   for (const UnitRecording& unit : units.recordings) {
     params.gyro_range_rad_s = std::min(params.gyro_range_rad_s, unsaturated_range(unit.sheet.gyro_range_rad_s));
     params.accel_range_m_s2 = std::min(params.accel_range_m_s2, unsaturated_range(unit.sheet.accel_range_m_s2));
   }
-  const Status status = merge_recordings(units.recordings, params, out.merged);
-  for (const UnitFault& fault : out.merged.faults)
-    out.faults.push_back(finding_of(fault, units.names[fault.unit], start_ns));
-  return status;
+  return merge_recordings(units.recordings, params, out.merged);
 }
 
 }  // namespace tumble::scenarios

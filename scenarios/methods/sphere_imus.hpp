@@ -4,17 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
 /// sphere_imus.hpp prepares all IMUs of a sphere for the estimator.
 namespace tumble::scenarios {
 
-/// Returns the sensor and axis for a health key, for example "gyro_z".
-std::string to_string(const FrozenAxis& frozen);
-
-/// SphereImus contains the usable readings of the IMUs (units) of a sphere.
+/// Usable readings of the units of a sphere.
 struct SphereImus {
   std::vector<std::string> names;
   std::vector<UnitRecording> recordings;
@@ -28,9 +25,12 @@ Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 /// MergedImus contains the IMUs of a sphere, merged with knowledge of the whole recording.
 struct MergedImus {
   MergedRecordings merged;
-  std::vector<HealthFinding> faults;  ///< units not used, or not all the time: frozen, silent, or inconsistent
-  int beyond_range = 0;
+  std::vector<std::string> names;  ///< names of the units
+  int beyond_range = 0;            ///< see SphereImus
 };
+
+/// Reports readings that were left out because they exceed what the device can measure.
+void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate);
 
 /// Merges all IMUs by merge_recordings().
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);

@@ -38,7 +38,7 @@ std::vector<Metric> all_metrics() {
   for (const auto& family :
        {rate_metrics(), binned_rate_metrics(), reference_rate_metrics(), attitude_metrics(), position_metrics(),
         slip_metrics(), trajectory_metrics(Kind::position), end_pose_metrics(), trajectory_metrics(Kind::slam),
-        map_metrics(), sweep_border_metrics(), time_offset_metrics()}) {
+        map_metrics(), sweep_border_metrics(), time_offset_metrics(), health_metrics()}) {
     all.insert(all.end(), family.begin(), family.end());
   }
   return all;

@@ -122,10 +122,10 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
   return estimate;
 }
 
-void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
-            Outcome& outcome) {
-  outcome.estimate_digest = digest(estimate);
-  if (outcome.status != OutcomeStatus::ok || !draw.has_truth) return;
+namespace {
+
+void score_estimate(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface,
+                    const Estimate& estimate, Outcome& outcome) {
   try {
     const ScoredEstimate scored(estimate, {&draw.recording.sensors, &draw.recording.truth, surface});
     outcome.status = verdict(method.info.kind, scored);
@@ -139,6 +139,26 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
     outcome.status = OutcomeStatus::failed;
     outcome.message = one_line(std::string("scoring failed: ") + error.what());
   }
+}
+
+/// A run whose own health states that the estimate should not be used counts as diverged.
+void judge_by_health(const Estimate& estimate, Outcome& outcome) {
+  for (const HealthFinding& finding : estimate.faults.findings) {
+    if (!finding.invalidates_estimate()) continue;
+    outcome.status = OutcomeStatus::diverged;
+    outcome.message = one_line("health: " + to_text(finding));
+    return;
+  }
+}
+
+}  // namespace
+
+void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
+            Outcome& outcome) {
+  outcome.estimate_digest = digest(estimate);
+  if (outcome.status != OutcomeStatus::ok) return;
+  if (draw.has_truth) score_estimate(method, draw, surface, estimate, outcome);
+  if (outcome.status == OutcomeStatus::ok && method.info.ours) judge_by_health(estimate, outcome);
 }
 
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given) {

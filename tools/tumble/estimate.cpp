@@ -20,7 +20,6 @@
 #include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/prior_map_options.hpp"
 #include "tools/tumble/verbs.hpp"
-#include "tools/tumble/verdict_lines.hpp"
 
 namespace tumble::tools {
 
@@ -90,7 +89,8 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   learnt.require_place();
   note_time_limits(session, std::span(&options.method, 1));
   scenarios::Estimate estimate = run_method(methods.front(), sensors);
-  if (!scenarios::states_digest(options.recording)) add_finding({scenarios::HealthFinding::About::digest}, estimate);
+  const bool with_digest = scenarios::states_digest(options.recording);
+  if (!with_digest) estimate.health["recording_without_digest"] = 1.0;
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   if (!estimate.map.empty()) scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);
@@ -108,8 +108,10 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
-  // the health is printed also after a failure, because a sensor fault may be the cause
-  for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
+  if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
+  // printed also after a failure, because a sensor fault may be the cause
+  for (const HealthFinding& each : estimate.faults.findings)
+    session.note(full_name(method.info) + ": " + to_text(each));
   if (estimate.status.ok()) return kDone;
   // the estimate is kept for inspection, because the cause of the error is in the recording
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +

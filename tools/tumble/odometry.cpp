@@ -24,7 +24,6 @@
 #include "tools/tumble/prior_map_options.hpp"
 #include "tools/tumble/progress.hpp"
 #include "tools/tumble/verbs.hpp"
-#include "tools/tumble/verdict_lines.hpp"
 
 namespace tumble::tools {
 
@@ -120,8 +119,8 @@ double imu_duration_s(const sim::ImuRecord& imu) {
 std::string health_text(const Estimate& estimate) {
   if (!estimate.status.ok()) return "failed";
   std::string text;
-  for (const scenarios::HealthFinding& finding : estimate.findings)
-    text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", row_of(finding), finding.value);
+  for (const HealthFinding& finding : estimate.faults.findings)
+    text += (text.empty() ? "" : ", ") + std::string(to_string(finding.kind));
   return text.empty() ? "ok" : text;
 }
 
@@ -167,7 +166,7 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
     session.note(fmt::format("the option {} {} was set: {}", repair.option.name, repair.option.value, repair.cause));
   for (const scenarios::RecordingFinding& each : scenarios::findings_in_notes(recording.content.notes))
     session.note(each.where + ": " + each.evidence);
-  for (const std::string& line : verdict_lines(estimate)) session.note(line);
+  for (const HealthFinding& each : estimate.faults.findings) session.note(to_text(each));
 }
 
 int run_odometry(const Session& session, const OdometryOptions& options) {

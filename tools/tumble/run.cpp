@@ -22,7 +22,6 @@
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
-#include "tools/tumble/verdict_lines.hpp"
 
 namespace tumble::tools {
 
@@ -163,7 +162,7 @@ void say_troubles(const Session& session, const scenarios::RunResult& result) {
     if (outcome.status != scenarios::OutcomeStatus::ok)
       session.note(fmt::format("{}{}: {}", name, to_string(outcome.status), outcome.message));
     if (outcome.status == scenarios::OutcomeStatus::failed) continue;
-    for (const std::string& line : verdict_lines(result.estimates[i])) session.note(name + line);
+    for (const HealthFinding& each : result.estimates[i].faults.findings) session.note(name + to_text(each));
   }
 }
 

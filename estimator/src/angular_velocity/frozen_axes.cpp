@@ -9,6 +9,12 @@ namespace tumble {
 
 namespace {
 
+constexpr std::array<const char*, 6> kNames = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+constexpr std::array<const char*, 6> kQuantities = {
+    "time in s for which gyro x repeats one reading",  "time in s for which gyro y repeats one reading",
+    "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
+    "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
+
 constexpr double kLonger = 10.0;         // minimum ratio of a repetition to the longest earlier repetition
 constexpr double kRailShare = 0.9;       // fraction of the stated range above which a reading may be saturated
 constexpr double kExtremeShare = 0.5;    // fraction of the stated range for a reading that is an extreme of the axis
@@ -150,15 +156,26 @@ const FrozenAxes::Axis& FrozenAxes::axis(Triad triad, int axis, const State& sta
   return state.axes.at((triad == Triad::gyro ? 0U : 3U) + static_cast<std::size_t>(axis));
 }
 
-Status FrozenAxes::verdict(const State& state) const {
-  constexpr std::array<const char*, 6> kFields = {
-      "time in s for which gyro x repeats one reading",  "time in s for which gyro y repeats one reading",
-      "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
-      "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
-  for (std::size_t c = 0; c < kFields.size(); ++c) {
-    if (state.axes[c].frozen) return {ErrorCode::out_of_range, kFields[c], state.axes[c].repeated_s, params_.frozen_s};
+bool FrozenAxes::any_frozen(const State& state) {
+  return std::any_of(state.axes.begin(), state.axes.end(), [](const Axis& axis) { return axis.frozen; });
+}
+
+void FrozenAxes::add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
+                              SensorHealth& health) const {
+  for (std::size_t c = 0; c < kQuantities.size(); ++c) {
+    const Axis& axis = state.axes[c];
+    if (!axis.frozen) continue;
+    const Status status{ErrorCode::out_of_range, kQuantities[c], axis.repeated_s, params_.frozen_s};
+    health.add(kind, status, sensor, kNames[c], axis.since_ns);
   }
-  return {};
+}
+
+void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval,
+                 SensorHealth& health) {
+  const auto channel = static_cast<std::size_t>(interval.axis + (interval.triad == Triad::gyro ? 0 : 3));
+  const Status status{ErrorCode::out_of_range, kQuantities.at(channel), seconds(interval.to_ns - interval.from_ns),
+                      FrozenAxes::Params{}.frozen_s};
+  health.add(kind, status, sensor, kNames.at(channel), interval.from_ns);
 }
 
 Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& state) const {

@@ -14,6 +14,12 @@ constexpr int kBlaming = 3;  // minimum number of IMUs for identifying the fault
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparable = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
+constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: inverted sign
+// Largest deviation of lever_arm_agreement() from 1. A larger deviation indicates a scale error of all IMUs.
+// Centripetal force grows with the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data
+// sheet's scale error. In runs of `slip` without faults, lever_arm_agreement() was 0.999 to 1.002.
+constexpr double kArmShareOff = 0.06;
+
 constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
 /// Returns the rotation perpendicular to the direction of the repeated force, which is mostly gravity.
@@ -107,6 +113,40 @@ Status ImuMerge::verdict(const State& state) const {
   }
   return {ErrorCode::out_of_range, "time in s for which every IMU repeats one reading while the body rotates",
           repeated_s, params_.expert.frozen.after_s};
+}
+
+void ImuMerge::add_finding(const Unit& unit, const std::string& name, SensorHealth& health) const {
+  using Kind = HealthFinding::Kind;
+  const double repeated_s = std::max(unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s);
+  if (unit.frozen)
+    health.add(Kind::unit_frozen,
+               {ErrorCode::out_of_range, "time in s for which the IMU repeats one reading while the others change",
+                repeated_s, params_.expert.frozen.after_s},
+               name, "", unit.frozen_since_ns);
+  if (unit.disagrees)
+    health.add(Kind::unit_disagrees,
+               {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the others", unit.disagreement_s,
+                params_.expert.disagreeing.after_s},
+               name, "", unit.disagrees_since_ns);
+}
+
+void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
+                            const std::optional<double>& lever_arm_agreement, bool gyro_confirmed,
+                            SensorHealth& health) {
+  using Kind = HealthFinding::Kind;
+  if (mislabelled_axes)
+    health.add(Kind::axes_or_signs,
+               {ErrorCode::out_of_range, "differences of the IMUs' forces that other axes or signs explain (share)",
+                mislabelled_axes->share, UnitSignCheck::kExplainedRatioMin},
+               "imu");
+  if (!lever_arm_agreement) return;
+  constexpr const char* kQuantity =
+      "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms";
+  const double share = *lever_arm_agreement;
+  const double off = gyro_confirmed ? 1.0 - kArmShareMin : kArmShareOff, bound = 1.0 + std::copysign(off, share - 1.0);
+  if (std::abs(share - 1.0) <= off) return;
+  health.add(share < 0.0 ? Kind::axes_or_signs : Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, bound},
+             "imu", "", {}, 1.0);
 }
 
 /// Detects IMUs that disagree with the other IMUs for a long time.

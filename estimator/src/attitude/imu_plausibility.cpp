@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/imu_plausibility.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -133,6 +133,23 @@ void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State
     const Eigen::Vector3d expected = (labels.gyro_flipped ? forth : back) * relabelled;
     state.unexplained_rad2[k] += (labels.relabelled(to) - expected).squaredNorm();
   }
+}
+
+void ImuPlausibility::limit_memory(State& state) {
+  constexpr double kWindowsMax = 300.0;  // a minute of windows of 0.2 s
+  for (Repetition* hold : {&state.gyro, &state.accel}) {
+    if (hold->repeated_s == 0.0) hold->frozen_s = 0.0;
+  }
+  if (state.windows > kWindowsMax) {
+    state.force_sum_m_s2 *= kWindowsMax / state.windows;
+    state.windows = kWindowsMax;
+  }
+  if (state.rotated_windows <= kWindowsMax) return;
+  const double share = kWindowsMax / state.rotated_windows;
+  for (double& residual : state.unexplained_rad2) residual *= share;
+  for (double* sum : {&state.force_rotation_rad2, &state.gyro_rotation_rad2, &state.all_force_rad2,
+                      &state.all_gyro_rad2, &state.rotated_windows})
+    *sum *= share;
 }
 
 double ImuPlausibility::force_ratio(const State& state) const {

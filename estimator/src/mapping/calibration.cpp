@@ -32,11 +32,14 @@ double StatedCalibration::deviations(const SweepCalibration& estimated) const {
 }
 
 Status StatedCalibration::verdict(const SweepCalibration& estimated) const {
-  const double by = deviations(estimated);
-  if (by <= kDistanceMax_sigmas) return {};
+  return verdict_on(deviations(estimated));
+}
+
+Status verdict_on(double deviations) {
+  constexpr double kMost = StatedCalibration::kDistanceMax_sigmas;
+  if (deviations <= kMost) return {};
   return {ErrorCode::out_of_range,
-          "change of the lidar-IMU calibration in standard deviations of the stated calibration", by,
-          kDistanceMax_sigmas};
+          "change of the lidar-IMU calibration in standard deviations of the stated calibration", deviations, kMost};
 }
 
 }  // namespace tumble

@@ -26,6 +26,10 @@ void Localisation::add(const SweepReport& sweep) {
   largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
   sigma_m_ = sweep.map_sigma_m;
   newest_ns_ = sweep.pose.time_ns;
+  if (!(sigma_m_ > matched_m_))
+    lost_since_ns_.reset();
+  else if (!lost_since_ns_)
+    lost_since_ns_ = newest_ns_;
   if (!(sweep.innovation > innovation_max())) return;
   previous_contradicted_ns_ = last_contradicted_ns_;
   last_contradicted_ns_ = newest_ns_;

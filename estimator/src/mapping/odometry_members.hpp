@@ -106,6 +106,7 @@ void Localisation::members(Self& s, Visitor& visit) {
   visit("localisation.second_innovation", s.second_largest_innovation_);
   visit("localisation.sigma_m", s.sigma_m_);
   visit("localisation.newest_ns", s.newest_ns_);
+  visit("localisation.lost_since_ns", s.lost_since_ns_);
   visit("localisation.contradicted_ns", s.last_contradicted_ns_);
   visit("localisation.before_ns", s.previous_contradicted_ns_);
 }

@@ -3,27 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "tumble/angular_velocity/detail/flight_sign_check.hpp"
 #include "tumble/angular_velocity/rate_model_params.hpp"
-#include "tumble/attitude/imu_plausibility.hpp"
+#include "tumble/attitude/imu_merge.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble {
 
 namespace {
 
-using Kind = ImuFinding::Kind;
+using Kind = HealthFinding::Kind;
 
+constexpr const char* kImu = "imu";
 constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
 // A recording counts as hand-held if a larger fraction of its samples is classified as hand-held. For hand-held motion,
 // the measured fraction is at least 0.91. For thrown bodies, the measured fraction is at most 0.25 with correct axes,
 // and mostly below 0.6 with wrong axes.
 constexpr double kHeldShare = 0.8;
-
-void add_finding(Kind kind, const Status& status, std::span<const ImuSample> samples, ImuFindings& out) {
-  if (!status.ok()) out.all.push_back({kind, status, samples.empty() ? 0 : samples.front().time_ns, {}});
-}
 
 double largest_rate_rad_s(std::span<const ImuSample> samples) {
   double largest = 0.0;
@@ -45,7 +43,26 @@ RestGravity rest_gravity(const CheckedImu& imu) {
   return RestGravity(params);
 }
 
-/// Returns an error if the gyro readings are in degrees per second, by the criterion of RateReport::rate_unit_suspect.
+/// Returns the error of a specific force in g, by the criterion of RateReport::force_unit_suspect.
+Status force_unit(std::span<const ImuSample> samples) {
+  constexpr double kLeast_m_s2 = 0.5, kMost_m_s2 = 2.0;
+  std::vector<double> forces;
+  for (const ImuSample& sample : samples) forces.push_back(sample.specific_force_m_s2.norm());
+  if (forces.empty()) return {};
+  const auto middle = forces.begin() + static_cast<std::ptrdiff_t>(forces.size() / 2);
+  std::nth_element(forces.begin(), middle, forces.end());
+  if (!(*middle > kLeast_m_s2 && *middle < kMost_m_s2)) return {};
+  return {ErrorCode::out_of_range, "median of the specific force in m/s^2", *middle, kMost_m_s2};
+}
+
+/// Returns the kind of the finding of ImuPlausibility::verdict(), in the order in which verdict() tests.
+Kind kind_of(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const Status& verdict) {
+  if (verdict.value == plausibility.force_ratio(state)) return Kind::force_at_rest;
+  if (plausibility.frozen_s(state) > 0.0) return Kind::frozen_sensor;
+  return plausibility.better_axis_labels(state) ? Kind::axes_or_signs : Kind::rotation;
+}
+
+/// Returns the error of a rate in degrees per second, by the criterion of RateReport::rate_unit_suspect.
 Status rate_unit(std::span<const ImuSample> samples) {
   const double largest = largest_rate_rad_s(samples), most = RateModelParams{}.rate_max_rad_s;
   return largest > most ? Status{ErrorCode::out_of_range, "angular_velocity_rad_s", largest, most} : Status{};
@@ -53,18 +70,28 @@ Status rate_unit(std::span<const ImuSample> samples) {
 
 }  // namespace
 
-bool ImuFindings::Readings::confirms_gyro() const {
-  return std::abs(rotation_slope - 1.0) < kSlopeRight && rotation_agreement > kSlopeAgreed;
+ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s) {
+  ImuPlausibility::Params params;
+  params.gravity_m_s2 = std::max(gravity_m_s2, 1e-3);
+  if (gyro_range_rad_s > 0.0) params.gyro_range_rad_s = unsaturated_range(gyro_range_rad_s);
+  return params;
 }
 
-bool ImuFindings::contradict() const {
-  return std::any_of(all.begin(), all.end(), [](const ImuFinding& finding) {
-    return finding.kind != Kind::rate_unit && finding.kind != Kind::frozen_axis;
-  });
+void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
+                  SensorHealth& health) {
+  const Status verdict = plausibility.verdict(state);
+  const Kind kind = kind_of(plausibility, state, verdict);
+  health.add(kind, verdict, sensor, "", {}, kind == Kind::force_at_rest ? 1.0 : 0.0);
+}
+
+bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {
+  return std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeRight &&
+         plausibility.rotation_agreement(state) > kSlopeAgreed;
 }
 
 void ImuFindings::add(const ImuFindings& other) {
-  all.insert(all.end(), other.all.begin(), other.all.end());
+  health.add(other.health);
+  frozen_axes.insert(frozen_axes.end(), other.frozen_axes.begin(), other.frozen_axes.end());
   if (other.readings) readings = other.readings;
   if (other.rests) rests = other.rests;
   if (other.pivots) pivots = other.pivots;
@@ -73,10 +100,7 @@ void ImuFindings::add(const ImuFindings& other) {
 ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> samples) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::State at_rest;
-  ImuPlausibility::Params params;
-  params.gravity_m_s2 = imu.gravity_m_s2;
-  if (!imu.merged && imu.gyro_range_rad_s > 0.0) params.gyro_range_rad_s = unsaturated_range(imu.gyro_range_rad_s);
-  const ImuPlausibility plausibility(params);
+  const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) {
     gravity.step(sample, {}, at_rest);
@@ -86,10 +110,11 @@ ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> sam
   out.readings = {gravity.magnitude_error_ratio(at_rest),         plausibility.force_ratio(state),
                   plausibility.unexplained_rotation_ratio(state), plausibility.rotation_slope(state),
                   plausibility.rotation_agreement(state),         plausibility.frozen_s(state),
-                  plausibility.better_axis_labels(state)};
-  add_finding(Kind::rate_unit, rate_unit(samples), samples, out);
-  add_finding(Kind::gravity_turn, plausibility.verdict(state), samples, out);
-  add_finding(Kind::rest_force, gravity.magnitude_verdict(at_rest), samples, out);
+                  plausibility.better_axis_labels(state),         confirms_gyro(plausibility, state)};
+  out.health.add(Kind::rate_unit, rate_unit(samples), kImu);
+  out.health.add(Kind::force_unit, force_unit(samples), kImu);
+  add_findings(plausibility, state, kImu, out.health);
+  out.health.add(Kind::force_at_rest, gravity.magnitude_verdict(at_rest), kImu, "", {}, 1.0);
   return out;
 }
 
@@ -104,7 +129,7 @@ ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samp
   FlightSignCheck::State state;
   for (const ImuSample& sample : samples) sense.step(sample, state);
   ImuFindings out;
-  add_finding(Kind::flight, sense.verdict(state), samples, out);
+  out.health.add(Kind::flight_forces, sense.verdict(state), kImu);
   return out;
 }
 
@@ -113,7 +138,9 @@ ImuFindings check_rests(const CheckedImu& imu, std::span<const ImuSample> sample
   ImuFindings out;
   RestGravity::State& state = out.rests.emplace();
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  add_finding(Kind::turn_at_rests, gravity.verdict(state), samples, out);
+  const Status magnitude = gravity.magnitude_verdict(state);
+  out.health.add(magnitude.ok() ? Kind::rotation : Kind::force_at_rest, gravity.verdict(state), kImu, "", {},
+                 magnitude.ok() ? 0.0 : 1.0);
   return out;
 }
 
@@ -124,7 +151,7 @@ ImuFindings check_pivots(const CheckedImu& imu, std::span<const ImuSample> sampl
   const PivotCheck pivots(params);
   ImuFindings out;
   out.pivots = pivots.find(samples, rates);
-  add_finding(Kind::turn_at_pivots, pivots.verdict(*out.pivots), samples, out);
+  out.health.add(Kind::rotation, pivots.verdict(*out.pivots), kImu);
   return out;
 }
 
@@ -133,11 +160,16 @@ ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> sampl
   params.gyro_range_rad_s = imu.gyro_range_rad_s;
   params.accel_range_m_s2 = imu.accel_range_m_s2;
   ImuFindings out;
-  for (const FrozenAxis& axis : find_frozen_axes(FrozenAxes(params), samples)) {
-    const Status status{ErrorCode::out_of_range, "seconds for which an axis repeats one reading",
-                        seconds(axis.to_ns - axis.from_ns), params.frozen_s};
-    out.all.push_back({Kind::frozen_axis, status, axis.from_ns, axis});
-  }
+  out.frozen_axes = find_frozen_axes(FrozenAxes(params), samples);
+  for (const FrozenAxis& axis : out.frozen_axes) add_finding(Kind::frozen_axis, kImu, axis, out.health);
+  return out;
+}
+
+ImuFindings check_merged(const CheckedImu& imu, const MergedRecordings& merged) {
+  ImuFindings out;
+  out.health.add(merged.faults);
+  out.add(check_readings(imu, merged.samples));
+  ImuMerge::add_findings(merged.mislabelled_axes, merged.lever_arm_agreement, out.readings->gyro_confirmed, out.health);
   return out;
 }
 
@@ -154,13 +186,12 @@ ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> sa
 std::vector<Eigen::Matrix3d> suspect_covariance(const ImuFindings& findings, std::span<const ImuSample> samples,
                                                 std::span<const RateState> rates) {
   std::vector<Eigen::Matrix3d> out;
-  if (findings.contradict()) {
+  if (findings.health.invalidates_estimate()) {
     for (const RateState& rate : rates) out.emplace_back(rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity());
   }
   const double sigma_rad_s = rate_max_so_far_rad_s(samples);
-  for (const ImuFinding& finding : findings.all) {
-    const FrozenAxis& axis = finding.axis;
-    if (finding.kind != Kind::frozen_axis || axis.triad != Triad::gyro) continue;
+  for (const FrozenAxis& axis : findings.frozen_axes) {
+    if (axis.triad != Triad::gyro) continue;
     out.resize(rates.size(), Eigen::Matrix3d::Zero());
     for (std::size_t k = 0; k < rates.size(); ++k) {
       if (rates[k].time_ns >= axis.from_ns && rates[k].time_ns <= axis.to_ns)

@@ -146,6 +146,14 @@ bool MappedRecording::calibration_is_off() const {
   return !calibration_converged && calibration_deviations > StatedCalibration::kDistanceMax_sigmas;
 }
 
+void MappedRecording::add_findings(const SweepScale& scale, SensorHealth& health) const {
+  using Kind = HealthFinding::Kind;
+  health.add(Kind::lidar_scale, scale.verdict(), "lidar", "", {}, 1.0);
+  health.add(Kind::vertical_unknown, mapper.check_vertical(), "");
+  health.add(Kind::tracking_lost, localisation.verdict(), "");
+  if (calibration_is_off()) health.add(Kind::lidar_calibration, verdict_on(calibration_deviations), "lidar");
+}
+
 MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params) {
   return Pass(input, params).run();
 }

@@ -8,11 +8,14 @@
 #include <utility>
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/odometry/detail/unit_alignment.hpp"
 
 namespace tumble {
 
 namespace {
+
+using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
 // An element without an observed saturation plane is assumed to be exactly aligned with its axis. If the cross-axis
@@ -21,6 +24,7 @@ constexpr double kUnknownSlope = 0.0;
 
 /// Units contains the IMUs that provide samples, resampled to common times.
 struct Units {
+  std::size_t count = 0;  ///< number of all IMUs
   std::vector<std::size_t> index;
   std::vector<Eigen::Isometry3d> T_BI;
   std::vector<std::vector<ImuSample>> samples;
@@ -74,6 +78,7 @@ Status align(std::vector<std::vector<ImuSample>>& samples) {
 }
 
 Status prepare(std::span<const UnitRecording> recordings, Units& units) {
+  units.count = recordings.size();
   for (std::size_t k = 0; k < recordings.size() && units.index.size() < ImuMerge::kImus; ++k) {
     const UnitRecording& recording = recordings[k];
     if (recording.samples.empty()) continue;
@@ -110,6 +115,10 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
   return {};
 }
 
+std::string name(const Units& units, std::size_t k) {
+  return unit_name(units.index[k], units.count);
+}
+
 /// Marks the readings of an IMU between `from_ns` and `to_ns` as absent.
 void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
@@ -118,52 +127,48 @@ void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::n
   }
 }
 
-/// Returns the start of the first interval without readings that is long or lasts until the end of the recording.
-std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
+struct Interval {
+  TimeNs from_ns = 0, to_ns = 0;
+};
+
+/// Returns the first interval without readings that is long.
+std::optional<Interval> silent_interval(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
     const bool missing_samples = k < unit.size() && !is_finite(unit[k]);
     if (missing_samples && from == unit.size()) from = k;
     if (missing_samples || from == unit.size()) continue;
-    if (seconds(unit[k - 1].time_ns - unit[from].time_ns) >= kSilentReported_s) return unit[from].time_ns;
+    if (seconds(unit[k - 1].time_ns - unit[from].time_ns) >= kSilentReported_s)
+      return Interval{unit[from].time_ns, unit[k - 1].time_ns};
     from = unit.size();
   }
   return std::nullopt;
 }
 
-void report_silent(const Units& units, std::vector<UnitFault>& faults) {
+void report_silent(const Units& units, SensorHealth& faults) {
   for (std::size_t k = 0; k < units.index.size(); ++k) {
-    const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
-    if (since_ns) faults.push_back({UnitFault::Kind::silent, units.index[k], *since_ns, {}});
+    if (const auto silent = silent_interval(units.samples[k]))
+      faults.add(Kind::unit_silent,
+                 {ErrorCode::out_of_range, "time in s without readings", seconds(silent->to_ns - silent->from_ns),
+                  kSilentReported_s},
+                 name(units, k), "", silent->from_ns);
   }
 }
 
-Status frozen_in_all(const FrozenAxis& axis) {
-  constexpr const char* kFields[2][3] = {{"time in s for which gyro x repeats one reading (no other healthy IMU)",
-                                          "time in s for which gyro y repeats one reading (no other healthy IMU)",
-                                          "time in s for which gyro z repeats one reading (no other healthy IMU)"},
-                                         {"time in s for which accel x repeats one reading (no other healthy IMU)",
-                                          "time in s for which accel y repeats one reading (no other healthy IMU)",
-                                          "time in s for which accel z repeats one reading (no other healthy IMU)"}};
-  const char* field = kFields[axis.triad == Triad::gyro ? 0 : 1][axis.axis];
-  return {ErrorCode::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
-}
-
-/// Excludes the readings of an IMU while one of its axes is frozen. Returns an error if no IMU remains.
-Status exclude_frozen(Units& units, std::vector<UnitFault>& faults) {
-  std::optional<FrozenAxis> any;
+/// Excludes the readings of an IMU while one of its axes is frozen. If no IMU remains, returns an error.
+Status exclude_frozen(Units& units, SensorHealth& faults) {
+  const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {
     for (const FrozenAxis& axis : units.frozen[unit]) {
       exclude(units.samples[unit], axis.from_ns, axis.to_ns);
-      faults.push_back({UnitFault::Kind::frozen_axis, units.index[unit], axis.from_ns, axis});
-      any = axis;
+      add_finding(Kind::unit_frozen, name(units, unit), axis, faults);
     }
   }
-  if (!any) return {};
+  if (faults.findings.size() == before) return {};
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     const bool any_reading = std::any_of(units.samples.begin(), units.samples.end(),
                                          [&](const std::vector<ImuSample>& unit) { return is_finite(unit[k]); });
-    if (!any_reading) return frozen_in_all(*any);
+    if (!any_reading) return faults.findings.back().status();
   }
   return {};
 }
@@ -177,18 +182,18 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the IMUs that ImuMerge has classified as faulty. Returns whether ImuMerge found faulty IMUs.
-bool exclude_found(const ImuMerge::State& state, Units& units, std::vector<UnitFault>& faults) {
+/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether there are faulty IMUs.
+bool exclude_found(const ImuMerge& merge, const ImuMerge::State& state, Units& units, SensorHealth& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {
     const ImuMerge::Unit& unit = state.units[k];
     if (unit.frozen) {
       any = true;
       exclude(units.samples[k], unit.frozen_since_ns);
-      faults.push_back({UnitFault::Kind::frozen, units.index[k], unit.frozen_since_ns, {}});
+      merge.add_finding(unit, name(units, k), faults);
     } else if (unit.disagrees) {
       any = true;
-      faults.push_back({UnitFault::Kind::disagrees, units.index[k], unit.disagrees_since_ns, {}});
+      merge.add_finding(unit, name(units, k), faults);
       erase_unit(units, k);
     }
   }
@@ -211,6 +216,10 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
 
 }  // namespace
 
+std::string unit_name(std::size_t unit, std::size_t units) {
+  return units > 1 ? "imu_" + std::to_string(unit + 1) : "imu";
+}
+
 Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Params params, MergedRecordings& out) {
   out = {};
   Units units;
@@ -219,8 +228,9 @@ Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Par
   if (Status status = exclude_frozen(units, out.faults); !status.ok()) return status;
   set_units(units, params);
   auto state = std::make_unique<ImuMerge::State>();
-  if (Status status = run(ImuMerge(params), units, *state, out.samples); !status.ok()) return status;
-  const bool faulty = exclude_found(*state, units, out.faults);
+  const ImuMerge first(params);
+  if (Status status = run(first, units, *state, out.samples); !status.ok()) return status;
+  const bool faulty = exclude_found(first, *state, units, out.faults);
   set_units(units, params);
   const ImuMerge merge(params);
   if (faulty) {

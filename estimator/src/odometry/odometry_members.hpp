@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "../attitude/imu_plausibility_members.hpp"
 #include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
@@ -90,6 +91,8 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("outliers", s.outlier_filter_state_);
   visit.scratch(s.sample_clock_);
   visit("stamps", s.sample_clock_state_);
+  visit.scratch(s.plausibility_);  // derived from the parameters
+  visit("plausibility", s.plausibility_state_);
   visit("pass", s.pass_);
   visit("second_pass", s.second_pass_);
   visit("newest_ns", s.newest_ns_);

@@ -8,38 +8,13 @@
 
 #include "rolling_odometry_params.hpp"
 #include "tumble/common/so3.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble {
 
 using odometry::filters_of, odometry::merge_params, odometry::rolling_params, odometry::sheets_of, odometry::watches_of;
 
 namespace {
-
-constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
-    {{{"time in s for which gyro x of IMU 1 repeats one reading",
-       "time in s for which gyro y of IMU 1 repeats one reading",
-       "time in s for which gyro z of IMU 1 repeats one reading",
-       "time in s for which accel x of IMU 1 repeats one reading",
-       "time in s for which accel y of IMU 1 repeats one reading",
-       "time in s for which accel z of IMU 1 repeats one reading"}},
-     {{"time in s for which gyro x of IMU 2 repeats one reading",
-       "time in s for which gyro y of IMU 2 repeats one reading",
-       "time in s for which gyro z of IMU 2 repeats one reading",
-       "time in s for which accel x of IMU 2 repeats one reading",
-       "time in s for which accel y of IMU 2 repeats one reading",
-       "time in s for which accel z of IMU 2 repeats one reading"}},
-     {{"time in s for which gyro x of IMU 3 repeats one reading",
-       "time in s for which gyro y of IMU 3 repeats one reading",
-       "time in s for which gyro z of IMU 3 repeats one reading",
-       "time in s for which accel x of IMU 3 repeats one reading",
-       "time in s for which accel y of IMU 3 repeats one reading",
-       "time in s for which accel z of IMU 3 repeats one reading"}},
-     {{"time in s for which gyro x of IMU 4 repeats one reading",
-       "time in s for which gyro y of IMU 4 repeats one reading",
-       "time in s for which gyro z of IMU 4 repeats one reading",
-       "time in s for which accel x of IMU 4 repeats one reading",
-       "time in s for which accel y of IMU 4 repeats one reading",
-       "time in s for which accel z of IMU 4 repeats one reading"}}}};
 
 ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   sample.time_ns = time_ns;
@@ -84,6 +59,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       outlier_filters_(filters_of(params)),
       frozen_axis_detectors_(watches_of(params)),
       rest_gravity_({.gravity_m_s2 = params.gravity_m_s2}),
+      plausibility_(plausibility_params(params.gravity_m_s2, 0.0)),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -109,6 +85,9 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       frozen_(other.frozen_),
       rest_gravity_(other.rest_gravity_),
       rest_gravity_state_(other.rest_gravity_state_),
+      plausibility_(other.plausibility_),
+      plausibility_state_(other.plausibility_state_),
+      whole_(other.whole_),
       results_(other.results_),
       returned_count_(other.returned_count_),
       start_(other.start_),
@@ -244,35 +223,19 @@ Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
-    const bool frozen = finite && !frozen_axis_detectors_[k].verdict(states[k]).ok();
+    const bool frozen = finite && FrozenAxes::any_frozen(states[k]);
     if (frozen) leave_out(samples[k]);
     any = any || frozen;
     received = received || (finite && !frozen);
   }
-  return any && !received ? frozen_axis(states) : Status{};
+  if (!any || received) return {};
+  SensorHealth health;
+  add_frozen(states, health);
+  return health.worst();
 }
 
 std::optional<double> RollingOdometry::estimated_jitter_s() const {
   return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
-}
-
-Status RollingOdometry::health() const {
-  Status status = frozen_axis(frozen_);
-  for (std::size_t unit = 0; unit < frozen_axis_detectors_.size() && status.ok(); ++unit)
-    status = rest_gravity_.magnitude_verdict(rest_gravity_state_[unit]);
-  return status;
-}
-
-Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
-  for (std::size_t unit = 0; unit < frozen_axis_detectors_.size(); ++unit) {
-    Status status = frozen_axis_detectors_[unit].verdict(frozen[unit]);
-    if (status.ok()) continue;
-    const auto axes = frozen[unit].axes;
-    const auto first = std::find_if(axes.begin(), axes.end(), [](const FrozenAxes::Axis& axis) { return axis.frozen; });
-    status.field = kFrozenFields.at(unit).at(static_cast<std::size_t>(first - axes.begin()));
-    return status;
-  }
-  return {};
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
@@ -346,6 +309,8 @@ void RollingOdometry::start_run() {
   }
   delayed_samples_.reset();
   rest_gravity_state_ = {};
+  plausibility_state_ = {};
+  whole_.reset();
   stamp_order_state_ = {};
   start_ = T_W_run_ = std::nullopt;
   restarted_ = false;
@@ -394,7 +359,10 @@ Status RollingOdometry::process_accepted_sample(const ImuSample& merged) {
   }
   initialise_pose();
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
-  return status;
+  if (!status.ok()) return status;
+  plausibility_.step(merged, plausibility_state_);
+  ImuPlausibility::limit_memory(plausibility_state_);
+  return {};
 }
 
 }  // namespace tumble

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rolling_recording.cpp implements RollingOdometry for a whole recording.
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "rolling_odometry_params.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 
 namespace tumble {
@@ -38,9 +40,13 @@ Status RollingOdometry::finish_whole_recording() {
     for (std::size_t j = 0; j < samples.size(); ++j) samples[j].time_ns = stamps[j];
     recordings.push_back({params_.units[k].sheet, params_.units[k].T_BI, std::move(samples)});
   }
-  MergedRecordings merged;
-  if (Status status = merge_recordings(recordings, odometry::merge_params(params_), merged); !status.ok())
-    return status;
+  const auto whole = std::make_shared<MergedFindings>();
+  MergedRecordings& merged = whole->merged;
+  const Status merge_status = merge_recordings(recordings, odometry::merge_params(params_), merged);
+  whole->findings.health = merged.faults;
+  whole_ = whole;
+  if (!merge_status.ok()) return merge_status;
+  whole->findings = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
     if (Status status = smoother_.step(sample, *state_, results_); !status.ok()) return status;

@@ -2,6 +2,7 @@
 // Serialisation of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
+#include "../attitude/imu_plausibility_members.hpp"
 #include "../attitude/rest_gravity_members.hpp"
 #include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
@@ -64,6 +65,9 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit("frozen", s.frozen_);
   visit.scratch(s.rest_gravity_);  // derived from the parameters
   visit("gravity", s.rest_gravity_state_);
+  visit.scratch(s.plausibility_);  // derived from the parameters
+  visit("plausibility", s.plausibility_state_);
+  visit.scratch(s.whole_);  // finish() computes the results again
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.results_.begin() + static_cast<std::ptrdiff_t>(s.returned_count_),
                                                s.results_.end());

@@ -8,6 +8,7 @@
 
 #include "tumble/common/detail/sample_check.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumbling_odometry_params.hpp"
 
 namespace tumble {
@@ -49,6 +50,7 @@ TumblingOdometry::TumblingOdometry(const Params& params)
       stamp_order_(params.expert.rate.rate.gap_max_s),
       outlier_filter_(outlier_params(params)),
       sample_clock_(params.expert.stamps),
+      plausibility_(plausibility_params(params.expert.gravity_m_s2, params.imu.gyro_range_rad_s)),
       pass_(rate_params(params), mapper_params(params)),
       second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)) {}
 
@@ -81,6 +83,8 @@ Status TumblingOdometry::process_accepted_sample(const ImuSample& sample) {
   OutlierFilter::pass(sample, outlier_filter_state_);
   StampOrder::accept(sample.time_ns, stamp_order_state_);
   second_pass_.store(timed);
+  plausibility_.step(timed, plausibility_state_);
+  ImuPlausibility::limit_memory(plausibility_state_);
   newest_ns_ = timed.time_ns;
   if (!last_registered_ns_) {
     last_registered_ns_ = timed.time_ns;
@@ -149,17 +153,19 @@ std::optional<double> TumblingOdometry::estimated_jitter_s() const {
   return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
 }
 
-Status TumblingOdometry::health() const {
-  if (is_whole()) return health_of_recording();
-  const Status of_imu = pass_.rates().rate().health(pass_.rate_state().rate);
-  if (!of_imu.ok()) return of_imu;
-  if (const Status of_force = pass_.check_force_at_rest(); !of_force.ok()) return of_force;
-  const Status of_ranges = pass_.sweep_scale().verdict();
-  if (!of_ranges.ok()) return of_ranges;
-  if (const Status of_vertical = mapper().check_vertical(); !of_vertical.ok()) return of_vertical;
-  if (const Status of_map = mapper().localised(); !of_map.ok()) return of_map;
-  const Status of_localisation = pass_.localisation().current_verdict();
-  return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
+SensorHealth TumblingOdometry::health() const {
+  if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
+  using Kind = HealthFinding::Kind;
+  SensorHealth out = pass_.rates().rate().health(pass_.rate_state().rate);
+  out.add(Kind::force_at_rest, pass_.check_force_at_rest(), "imu", "", {}, 1.0);
+  add_findings(plausibility_, plausibility_state_, "imu", out);
+  out.add(Kind::lidar_scale, pass_.sweep_scale().verdict(), "lidar", "", {}, 1.0);
+  out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
+  out.add(Kind::not_localised, mapper().localised(), "");
+  const Localisation& localisation = pass_.localisation();
+  out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
+  out.add(Kind::lidar_calibration, params_.stated_calibration().verdict(mapper().calibration()), "lidar");
+  return out;
 }
 
 Status TumblingOdometry::finish(const SweepProgress& on_sweep) {

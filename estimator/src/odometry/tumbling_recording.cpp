@@ -50,15 +50,6 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
   return {};
 }
 
-/// Returns the finding about the whole recording that has the highest priority.
-Status verdict(const RecordingEstimate& whole, const StatedCalibration& stated) {
-  if (!whole.findings.all.empty()) return whole.findings.all.front().status;
-  if (const Status of_ranges = whole.scale.verdict(); !of_ranges.ok()) return of_ranges;
-  if (const Status of_vertical = whole.mapped.mapper.check_vertical(); !of_vertical.ok()) return of_vertical;
-  if (const Status of_tracking = whole.mapped.localisation.verdict(); !of_tracking.ok()) return of_tracking;
-  return whole.mapped.calibration_is_off() ? stated.verdict(whole.mapped.mapper.calibration()) : Status{};
-}
-
 }  // namespace
 
 /// Stores a sample until finish().
@@ -112,6 +103,8 @@ Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
   }
   for (MappedSweep& sweep : whole->mapped.sweeps) results_.push_back({sweep.status, std::move(sweep.report)});
   whole->mapped.sweeps.clear();
+  whole->health = whole->findings.health;
+  if (!waiting_.empty()) whole->mapped.add_findings(whole->scale, whole->health);
   whole_ = whole;
   return whole->mapped.status;
 }
@@ -130,10 +123,6 @@ RigCalibration TumblingOdometry::rig() const {
 
 const SaturationLevels& TumblingOdometry::rails() const {
   return whole_ ? whole_->rails : pass_.rate_state().rate.rails.known;
-}
-
-Status TumblingOdometry::health_of_recording() const {
-  return whole_ ? verdict(*whole_, params_.stated_calibration()) : Status{};
 }
 
 }  // namespace tumble

@@ -22,6 +22,7 @@ from ._tumble import (
     HandHeldReport,
     HandHeldSmoother,
     HandHeldStream,
+    HealthFinding,
     ImuSheet,
     LidarInertialOdometry,
     LidarSheet,
@@ -71,7 +72,7 @@ from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
 __version__ = importlib.metadata.version("tumble")
 __all__ = [
-    "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
+    "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldStream", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",

@@ -56,9 +56,11 @@ Found watch_axes(const std::vector<ImuSample>& samples, const FrozenAxes::Params
   Found out;
   for (const ImuSample& sample : samples) {
     detector.step(sample, out.state);
-    const Status status = detector.verdict(out.state);
-    if (status.ok() || !out.first.empty()) continue;
-    out.first = status.message();
+    SensorHealth health;
+    detector.add_findings(HealthFinding::Kind::frozen_axis, "imu", out.state, health);
+    EXPECT_EQ(health.ok(), !FrozenAxes::any_frozen(out.state));
+    if (health.ok() || !out.first.empty()) continue;
+    out.first = health.worst().message();
     out.told_ns = sample.time_ns;
   }
   return out;

@@ -15,7 +15,7 @@
 #include "scenarios/baselines/attitude/mahony.hpp"
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
-#include "tumble/attitude/imu_plausibility.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 #include "tumble/attitude/vqf.hpp"
 #include "tumble/common/so3.hpp"

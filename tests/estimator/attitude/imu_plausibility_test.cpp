@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/imu_plausibility.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,49 +3,88 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-// The names are those in files and databases.
-TEST(Doubts, RowsAreNamedAsInFiles) {
-  std::set<std::string> rows;
-  for (const HealthFinding::About about : kAllFindings) rows.insert(row_of({about, 1.0, ""}));
-  EXPECT_EQ(rows, (std::set<std::string>{
-                      "imu_implausible", "imu_rates_doubted", "imu_flight_against_s", "imu_stamps_rounded_s",
-                      "rate_unit_suspect", "force_unit_suspect", "attitude_unknown_s", "localised",
-                      "lidar_scale_implausible", "imu_readings_beyond_range", "recording_without_digest",
-                      "learnt_rig_contradicted", "_frozen_since_s", "_disagrees_since_s", "_silent_since_s"}));
+using About = HealthFinding::Kind;
+
+HealthFinding finding(About kind, const char* sensor = "", const char* axis = "") {
+  return {kind, sensor, axis, "time in s", 4.0, 1.0, 0.75, TimeNs{2'000'000'000}};
 }
 
-TEST(Doubts, StayInOrderOnceEachAndAreRowsOfTheHealth) {
+Estimate estimate_with(const HealthFinding& finding) {
+  Estimate out;
+  add_finding(finding, out);
+  return out;
+}
+
+TEST(Findings, HaveTheEntriesOfFilesAndTables) {
+  using Rows = std::map<std::string, double>;
+  EXPECT_EQ(estimate_with(finding(About::frozen_axis, "imu", "gyro_z")).health,
+            (Rows{{"imu_gyro_z_frozen_since_s", 2.0}, {"imu_implausible", 1.0}}));
+  EXPECT_EQ(estimate_with(finding(About::unit_frozen, "imu_2", "gyro_z")).health,
+            (Rows{{"imu_2_gyro_z_frozen_since_s", 2.0}}));
+  EXPECT_EQ(estimate_with(finding(About::unit_silent, "imu_3")).health, (Rows{{"imu_3_silent_since_s", 2.0}}));
+  EXPECT_EQ(estimate_with(finding(About::flight_forces, "imu")).health,
+            (Rows{{"imu_flight_against_s", 4.0}, {"imu_implausible", 1.0}}));
+  EXPECT_EQ(estimate_with(finding(About::lidar_scale, "lidar")).health, (Rows{{"lidar_scale_implausible", 1.0}}));
+  Estimate lost = estimate_with(finding(About::tracking_lost)), fine;
+  EXPECT_FALSE(report_localised(lost));
+  EXPECT_EQ(lost.health, (Rows{{"localised", 0.0}}));
+  EXPECT_TRUE(report_localised(fine));
+  EXPECT_EQ(fine.health, (Rows{{"localised", 1.0}}));
+}
+
+TEST(Findings, AreAddedOnceWithTheNamesOfTheRecording) {
+  SensorHealth health;
+  health.add(finding(About::unit_frozen, "imu_1"));
+  health.add(finding(About::unit_frozen, "imu_2"));
+  health.add(finding(About::unit_frozen, "imu_2"));
   Estimate estimate;
-  add_finding({HealthFinding::About::place, 0.0}, estimate);
-  add_finding({HealthFinding::About::readings}, estimate);
-  add_finding({HealthFinding::About::unit_frozen, 1.0, "imu_gyro_z"}, estimate);
-  add_finding({HealthFinding::About::unit_frozen, 2.0, "imu_gyro_z"}, estimate);
-  add_finding({HealthFinding::About::readings}, estimate);
-  const std::vector<HealthFinding> expected = {{HealthFinding::About::unit_frozen, 2.0, "imu_gyro_z"},
-                                               {HealthFinding::About::readings},
-                                               {HealthFinding::About::place, 0.0}};
-  EXPECT_EQ(estimate.findings, expected);
-  EXPECT_EQ(estimate.health, (std::map<std::string, double>{
-                                 {"imu_gyro_z_frozen_since_s", 2.0}, {"imu_implausible", 1.0}, {"localised", 0.0}}));
-  EXPECT_TRUE(has_finding({HealthFinding::About::unit_frozen, 0.0, "imu_gyro_z"}, estimate));
-  EXPECT_FALSE(has_finding({HealthFinding::About::unit_frozen, 0.0, "imu_gyro_y"}, estimate));
+  add_findings(health, std::vector<std::string>{"left", "right"}, estimate);
+  add_findings(health, std::vector<std::string>{"left", "right"}, estimate);
+  ASSERT_EQ(estimate.faults.findings.size(), 2u);
+  EXPECT_TRUE(has_finding(About::unit_frozen, estimate, "left"));
+  EXPECT_TRUE(has_finding(About::unit_frozen, estimate, "right"));
+  EXPECT_FALSE(has_finding(About::unit_frozen, estimate, "imu_2"));
+  EXPECT_FALSE(has_finding(About::unit_silent, estimate));
+  EXPECT_FALSE(estimate.faults.invalidates_estimate()) << "the other IMUs are used";
 }
 
-TEST(Doubts, ReadBackAreThoseThatTheHealthSays) {
-  const std::map<std::string, double> sound = {{"imu_force_share", 1.0},   {"localised", 1.0},
-                                               {"rate_unit_suspect", 0.0}, {"samples_slip", 12.0},
-                                               {"imu_implausible", 0.0},   {"imu_2_time_offset_s", 0.003}};
-  EXPECT_TRUE(findings_in(sound).empty());
-  EXPECT_EQ(findings_in({{"localised", 0.0}, {"imu_2_silent_since_s", 0.0}}),
-            (std::vector<HealthFinding>{{HealthFinding::About::unit_silent, 0.0, "imu_2"},
-                                        {HealthFinding::About::place, 0.0}}));
+TEST(Findings, OfEveryKindAreReadBackFromTheirFile) {
+  std::set<std::string> names;
+  for (int k = 0; k <= static_cast<int>(HealthFinding::kLast); ++k) {
+    const HealthFinding written = finding(static_cast<About>(k), "imu_2", k % 2 == 0 ? "accel_x" : "");
+    const HealthFinding read = finding_in("estimate.json", json_of(written));
+    EXPECT_EQ(to_text(read), to_text(written));
+    EXPECT_EQ(read.kind, written.kind);
+    EXPECT_EQ(read.since_ns, written.since_ns);
+    EXPECT_EQ(read.confidence, written.confidence);
+    EXPECT_EQ(read.ended, written.ended);
+    names.insert(to_string(written.kind));
+  }
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(HealthFinding::kLast) + 1);
+  nlohmann::json unknown = json_of(finding(About::frozen_axis));
+  unknown["kind"] = "tired";
+  EXPECT_THROW(finding_in("estimate.json", unknown), BadInput);
+}
+
+TEST(SensorHealthOfALiveRun, AFindingThatEndsNoLongerInvalidatesTheEstimateUnlessPosesWereLost) {
+  HealthFinding lost = finding(About::tracking_lost), vertical = finding(About::vertical_unknown);
+  EXPECT_TRUE(lost.invalidates_estimate());
+  EXPECT_TRUE(vertical.invalidates_estimate());
+  lost.ended = vertical.ended = true;
+  EXPECT_TRUE(lost.invalidates_estimate());
+  EXPECT_FALSE(vertical.invalidates_estimate());
 }
 
 }  // namespace

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "scenarios/methods/findings.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
@@ -43,6 +45,13 @@ sim::Sensors three(const sim::ImuRecord& second, const sim::ImuRecord& third) {
   sensors.sphere_radius_m = 0.145;
   sensors.imus = {unit("imu", 0, 0.0), second, third};
   return sensors;
+}
+
+/// Returns the entries of the health about the faults.
+std::map<std::string, double> rows_of(const MergedImus& merged) {
+  Estimate estimate;
+  add_findings(merged.merged.faults, merged.names, estimate);
+  return estimate.health;
 }
 
 double worst_rate_error(const MergedImus& merged) {
@@ -92,9 +101,8 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
   EXPECT_EQ(merged.merged.units.size(), 3U);
-  ASSERT_EQ(merged.faults.size(), 1U);
-  EXPECT_EQ(row_of(merged.faults[0]), "imu_2_silent_since_s");
-  EXPECT_NEAR(merged.faults[0].value, 5.0, 0.06);
+  ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
+  EXPECT_NEAR(rows_of(merged).at("imu_2_silent_since_s"), 5.0, 0.06);
   EXPECT_LT(worst_rate_error(merged), 1e-3);
 }
 
@@ -104,8 +112,8 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
-  ASSERT_EQ(merged.faults.size(), 1U);
-  EXPECT_EQ(row_of(merged.faults[0]), "imu_silent_since_s");
+  ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
+  EXPECT_TRUE(rows_of(merged).contains("imu_silent_since_s"));
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
@@ -120,8 +128,8 @@ TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
     MergedImus merged;
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
     ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
-    ASSERT_EQ(merged.faults.size(), 1U);
-    EXPECT_EQ(row_of(merged.faults[0]), "imu_silent_since_s");
+    ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
+    EXPECT_TRUE(rows_of(merged).contains("imu_silent_since_s"));
     EXPECT_LT(worst_rate_error(merged), 1e-4);
   }
 }
@@ -131,16 +139,16 @@ TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
     sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
     MergedImus merged;
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
-    EXPECT_TRUE(merged.faults.empty());
+    EXPECT_TRUE(merged.merged.faults.ok());
     sim::ImuRecord& record = sensors.imus[frozen];
     for (std::size_t k = kSamples / 3; k < kSamples; ++k) {
       record.gyro_rad_s[k] = record.gyro_rad_s[kSamples / 3];
       record.accel_m_s2[k] = record.accel_m_s2[kSamples / 3];
     }
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
-    ASSERT_EQ(merged.faults.size(), 1U) << frozen;
-    EXPECT_EQ(row_of(merged.faults[0]), record.name + "_frozen_since_s");
-    EXPECT_NEAR(merged.faults[0].value, 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
+    ASSERT_EQ(merged.merged.faults.findings.size(), 1U) << frozen;
+    EXPECT_NEAR(rows_of(merged).at(record.name + "_frozen_since_s"),
+                1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
     EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // nothing was learnt from it
   }
 }
@@ -150,8 +158,8 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   for (Eigen::Vector3d& force : sensors.imus[1].accel_m_s2) force /= 9.80665;
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.faults.size(), 1U);
-  EXPECT_EQ(row_of(merged.faults[0]), "imu_2_disagrees_since_s");
+  ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
+  EXPECT_TRUE(rows_of(merged).contains("imu_2_disagrees_since_s"));
   EXPECT_EQ(merged.merged.units.size(), 2U);
   EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
@@ -167,9 +175,9 @@ TEST(SphereImus, AUnitOfWhichOneAxisFreezesIsLeftOutAndTheAxisNamed) {
   const sim::Sensors sensors = three(frozen_z(unit("imu_2", 0, 0.0)), unit("imu_3", 0, 0.0));
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.faults.size(), 1U);
-  EXPECT_EQ(row_of(merged.faults[0]), "imu_2_gyro_z_frozen_since_s");
-  EXPECT_NEAR(merged.faults[0].value, 1e-9 * static_cast<double>(sensors.imus[0].time_ns[kSamples / 3]), 1e-9);
+  ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
+  EXPECT_NEAR(rows_of(merged).at("imu_2_gyro_z_frozen_since_s"),
+              1e-9 * static_cast<double>(sensors.imus[0].time_ns[kSamples / 3]), 1e-9);
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
@@ -180,7 +188,7 @@ TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
   const Status status = merge_imus(sensors, merged);
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_NE(std::string(status.field).find("gyro z"), std::string::npos) << status.message();
-  EXPECT_EQ(merged.faults.size(), 3U);
+  EXPECT_EQ(merged.merged.faults.findings.size(), 3U);
 }
 
 TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
@@ -190,8 +198,7 @@ TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
   for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(clips, slow), merged).ok());
-  for (const HealthFinding& doubt : merged.faults)
-    EXPECT_EQ(doubt.unit.find_first_of("xyz"), std::string::npos) << doubt.unit;
+  for (const HealthFinding& finding : merged.merged.faults.findings) EXPECT_STREQ(finding.axis, "") << finding.sensor;
 }
 
 TEST(SphereImus, ReadingsOfOneUnitBeyondItsRangeAreLeftOutAndCounted) {

@@ -108,10 +108,10 @@ TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
-  EXPECT_TRUE(good.findings.empty());
+  EXPECT_TRUE(good.faults.ok()) << good.faults.message();
   EXPECT_FALSE(good.health.contains("imu_other_axes_share"));
   const Estimate flipped = run_wrong(draw, "position/tumble", "gyro_x_flipped");
-  EXPECT_TRUE(has_finding({HealthFinding::About::readings}, flipped));
+  EXPECT_TRUE(has_implausible_readings(flipped));
   EXPECT_NEAR(flipped.health.at("imu_other_axes_share"), 1.0, 0.3);
   EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.error_code, ErrorCode::out_of_range);
 }
@@ -123,9 +123,8 @@ TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
   EXPECT_GT(std::abs(good.health.at("imu_arm_share") - 1.0), 0.06);
-  EXPECT_TRUE(good.findings.empty());
-  EXPECT_TRUE(
-      has_finding({HealthFinding::About::readings}, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
+  EXPECT_TRUE(good.faults.ok()) << good.faults.message();
+  EXPECT_TRUE(has_finding(HealthFinding::Kind::gyro_scale, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
 }
 
 TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
@@ -224,9 +223,9 @@ TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
-  EXPECT_FALSE(has_finding({HealthFinding::About::attitude}, run_wrong(draw, "attitude/tumble", "none")));
+  EXPECT_FALSE(has_finding(HealthFinding::Kind::attitude_unknown, run_wrong(draw, "attitude/tumble", "none")));
   const Estimate estimate = run_wrong(draw, "attitude/tumble", "imus_silent_300_ms");
-  EXPECT_TRUE(has_finding({HealthFinding::About::attitude}, estimate));
+  EXPECT_TRUE(has_finding(HealthFinding::Kind::attitude_unknown, estimate));
   const TruthTrack truth(draw.recording.truth, estimate.frame);
   double beyond = 0.0;
   for (const AttitudeState& attitude : estimate.attitudes) {
@@ -276,8 +275,7 @@ TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
     for (const RateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();
     for (const RateState& rate : before) least = std::min(least, rate.covariance_rad2_s2.diagonal().minCoeff());
     EXPECT_GT(least, 0.0);
-    return std::pair((trace(estimate.rates) - trace(before)) / squares,
-                     has_finding({HealthFinding::About::rates}, estimate));
+    return std::pair((trace(estimate.rates) - trace(before)) / squares, estimate.health.contains("imu_rates_doubted"));
   };
   EXPECT_EQ(of("none"), std::pair(0.0, false));
   const auto [share, doubted] = of("gyro_flipped");

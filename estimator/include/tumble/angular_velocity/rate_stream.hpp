@@ -18,6 +18,7 @@
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -70,10 +71,10 @@ class RateStream {
   /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Returns whether the IMU's readings are currently plausible. The error `out_of_range` names a frozen axis, or an
-  /// accelerometer with inverted sign. While a gyro axis is frozen, the standard deviation of its rate is the largest
-  /// rate measured so far.
-  Status health(const State& state) const;
+  /// Reports current faults of the IMU: frozen axes (FrozenAxes), forces in flight that fit another sign or scale
+  /// (FlightSignCheck), and rates beyond RateModelParams::rate_max_rad_s, which are possibly not in rad/s. While a gyro
+  /// axis is frozen, the standard deviation of its rate is the largest rate read so far.
+  SensorHealth health(const State& state) const;
 
   /// Returns the estimated rig constants and their covariance.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }

@@ -6,14 +6,17 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "tumble/angular_velocity/rail_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/imu_merge_expert_params.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
+#include "tumble/attitude/detail/unit_sign_check.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -107,6 +110,12 @@ class ImuMerge {
   /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are
   /// frozen, step() merges their readings unchanged.
   Status verdict(const State& state) const;
+  /// Adds a finding about a unit that is frozen or disagrees with the other units.
+  void add_finding(const Unit& unit, const std::string& name, SensorHealth& health) const;
+  /// Adds findings about all units together: axes that UnitSignCheck found exchanged or inverted, and
+  /// lever_arm_agreement(). `gyro_confirmed` states that another check confirms the scale of the gyros.
+  static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
+                           const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
 
   /// Returns the position of the merged IMU in the common axes C [m].
   Eigen::Vector3d p_C_m() const { return p_C_m_; }

@@ -26,8 +26,11 @@ struct SweepCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
-/// StatedCalibration is the calibration that the user provides, with standard deviations per axis for rotation,
-/// translation and time offset. A standard deviation of 0 marks an exact value.
+/// Returns `out_of_range` if a calibration is more than StatedCalibration::kDistanceMax_sigmas from the stated one.
+Status verdict_on(double deviations);
+
+/// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
+/// (rotation, translation, time offset). A standard deviation of 0 marks an exact part of the calibration.
 struct StatedCalibration {
   static constexpr double kDistanceMax_sigmas = 5.0;  ///< plausible error in standard deviations
 

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/unit_alignment.hpp"
@@ -25,10 +27,12 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. RollingOdometry
-/// reports live poses, or poses smoothed with the data of the following `lag_s` or of the whole recording.
-/// RollingOdometry flags saturated readings, merges the IMUs to one (ImuMerge), and estimates the motion of the sphere
-/// (RollingFilter, RollingSmoother).
+struct MergedFindings;
+
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
+/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
+/// flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with
+/// its RollingFilter) estimates the motion. With the whole recording, merge_recordings() flags and fuses.
 ///
 /// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
 /// is the sphere's centre. The sphere should be at rest for one second at the start.
@@ -156,10 +160,16 @@ class RollingOdometry {
   /// gravity at rest determines the tilt. Covariances are relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
-  /// Returns whether the readings of the IMUs are currently plausible. The error `out_of_range` names a frozen axis
-  /// with its IMU and duration, or a force at rest that differs from gravity. RollingOdometry ignores the readings of a
-  /// frozen IMU. If all IMUs with readings are frozen, add_imus() rejects the sample.
-  Status health() const;
+  /// Reports the suspected faults of the IMUs: frozen axes (FrozenAxes), units that are silent, frozen or disagree
+  /// (ImuMerge), a force at rest that differs from gravity (RestGravity), and readings that contradict each other
+  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends. The readings
+  /// of a frozen unit are ignored. If all units with readings are frozen, add_imus() rejects the sample. With
+  /// kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
+  SensorHealth health() const;
+
+  /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
+  /// finish() and without kWholeRecording.
+  const MergedFindings* recording() const { return whole_.get(); }
 
   /// Returns the estimated centre and radius of the sphere. If `lag_s` is above 0, the centre and radius are the
   /// estimates at the newest smoothed pose.
@@ -214,7 +224,8 @@ class RollingOdometry {
   Status finish_whole_recording();
   bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  Status frozen_axis(const Frozen& frozen) const;
+  void add_frozen(const Frozen& frozen, SensorHealth& health) const;
+  void add_forces_at_rest(SensorHealth& health) const;
 
   Params params_;
   StampOrder stamp_order_;
@@ -238,6 +249,9 @@ class RollingOdometry {
   Frozen frozen_{};
   RestGravity rest_gravity_;
   std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state_{};
+  ImuPlausibility plausibility_;  ///< of the merged readings
+  ImuPlausibility::State plausibility_state_;
+  std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
   std::vector<RollingEstimate> results_;
   std::size_t returned_count_ = 0;
   std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample

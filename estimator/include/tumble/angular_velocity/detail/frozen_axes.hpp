@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/sensor_health.hpp"
 
 namespace tumble {
 
@@ -93,9 +95,10 @@ class FrozenAxes {
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
-  /// Returns `out_of_range` with the name of a currently frozen axis, the duration and the limit. Returns `ok` if all
-  /// axes work.
-  Status verdict(const State& state) const;
+  static bool any_frozen(const State& state);
+  /// Adds a finding of this kind (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
+  void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
+                    SensorHealth& health) const;
 
   /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The standard deviation of a frozen
   /// gyro axis is the largest rate measured so far. The variance is zero for axes that work.
@@ -117,7 +120,10 @@ struct FrozenAxis {
   TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
 };
 
-/// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. Cost: O(N).
+/// Adds a finding about an interval in which an axis is frozen, with FrozenAxes::Params::frozen_s as bound.
+void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval, SensorHealth& health);
+
+/// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. O(N).
 std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -39,6 +39,8 @@ class Localisation {
   Status verdict() const;
   /// Returns `out_of_range` with the current finding and the violated limit, or `ok` without a finding.
   Status current_verdict() const;
+  /// Returns the sweep since which current_verdict() reports a finding.
+  std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
   /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
   template <class Self, class Visitor>
@@ -50,6 +52,7 @@ class Localisation {
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
   double sigma_m_ = 0.0;  ///< standard deviation of the newest position, relative to the map
   TimeNs newest_ns_ = 0;
+  std::optional<TimeNs> lost_since_ns_;  ///< first of the latest sweeps without a certain position
   std::optional<TimeNs> last_contradicted_ns_,
       previous_contradicted_ns_;  ///< last two sweeps that surfaces corrected beyond the prior
 };

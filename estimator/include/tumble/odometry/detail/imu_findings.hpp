@@ -2,18 +2,20 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/attitude/detail/axis_labels.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/status.hpp"
+#include "tumble/common/sensor_health.hpp"
+#include "tumble/odometry/detail/merge_recordings.hpp"
 
 /// The functions in imu_findings.hpp check whether the readings of an IMU over a whole recording are plausible.
 namespace tumble {
@@ -28,24 +30,7 @@ struct CheckedImu {
   bool merged = false;
 };
 
-/// ImuFinding is one implausible property of the readings.
-struct ImuFinding {
-  enum class Kind : std::uint8_t {
-    rate_unit,       ///< rates are possibly not in rad/s
-    rest_force,      ///< the force at rest differs from gravity (RestGravity)
-    gravity_turn,    ///< gravity does not rotate as the gyro measures, or a sensor is frozen (ImuPlausibility)
-    flight,          ///< forces in flight contradict lever arm, axes or signs (FlightSignCheck)
-    turn_at_rests,   ///< the rates do not rotate gravity correctly between rests (RestGravity)
-    turn_at_pivots,  ///< the rates do not rotate the body correctly about pivots (PivotCheck)
-    frozen_axis,     ///< `axis` repeats one reading (FrozenAxes)
-  };
-  Kind kind = Kind::rate_unit;
-  Status status;        ///< implausible quantity, its value and the violated limit
-  TimeNs since_ns = 0;  ///< frozen_axis: first sample of the repetition; otherwise the first sample of the recording
-  FrozenAxis axis = {};
-};
-
-/// ImuFindings contains findings about an IMU, and the measured quantities of the checks that ran.
+/// Findings about an IMU, and the measured quantities of the checks that ran.
 struct ImuFindings {
   struct Readings {
     double rest_force_share = 1.0;  ///< RestGravity::magnitude_error_ratio
@@ -54,22 +39,29 @@ struct ImuFindings {
     double rotation_slope = 1.0, rotation_agreement = 1.0;
     double frozen_s = 0.0;
     std::optional<AxisLabels> better_axis_labels;
-    /// Returns whether the rotation of gravity confirms the gyro's scale. If forces still contradict each other, the
-    /// mounting or the accelerometer is wrong.
-    bool confirms_gyro() const;
+    bool gyro_confirmed = false;  ///< confirms_gyro()
   };
-  std::vector<ImuFinding> all;
+  SensorHealth health;
+  std::vector<FrozenAxis> frozen_axes;  ///< intervals of the findings `frozen_axis`
   std::optional<Readings> readings;
   std::optional<RestGravity::State> rests;
   std::optional<PivotCheck::Found> pivots;
 
-  /// Returns whether the readings contradict each other or gravity. Findings of the kinds `rate_unit` and `frozen_axis`
-  /// do not count.
-  bool contradict() const;
   void add(const ImuFindings& other);
 };
 
-/// Checks units, signs and axes of the readings with the magnitude and rotation of gravity. Cost: O(N).
+/// Returns the parameters of ImuPlausibility for an IMU. `gyro_range_rad_s` is stated by the device; 0: not stated.
+ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s);
+
+/// Returns whether the rotation of gravity confirms the gyro's scale. If forces still contradict each other, the cause
+/// is a mounting or an accelerometer.
+bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state);
+
+/// Adds the finding of ImuPlausibility::verdict().
+void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
+                  SensorHealth& health);
+
+/// Checks units, signs and axes of the readings: magnitude and rotation of gravity. O(N).
 ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
 
 /// Checks the forces in flights. The argument `carried_share` is the fraction of hand-held samples. If the body was
@@ -86,6 +78,16 @@ ImuFindings check_pivots(const CheckedImu& imu, std::span<const ImuSample> sampl
 
 /// Finds frozen axes, sorted by axis and time. Cost: O(N).
 ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples);
+
+/// Several IMUs merged into one, with the findings about them.
+struct MergedFindings {
+  MergedRecordings merged;
+  ImuFindings findings;
+};
+
+/// Checks merged IMUs: the faults of units, the merged readings, and the differences between the units, which also
+/// reveal an inverted sign and exchanged axes. O(N).
+ImuFindings check_merged(const CheckedImu& imu, const MergedRecordings& merged);
 
 /// Runs all checks for a recording with its estimated rates.
 ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,

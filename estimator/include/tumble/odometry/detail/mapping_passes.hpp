@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
@@ -55,6 +56,8 @@ struct MappedRecording {
 
   /// Returns whether the estimated calibration contradicts its stated uncertainty.
   bool calibration_is_off() const;
+  /// Adds findings about the scale of the lidar's ranges, the vertical, tracking, and the calibration of the lidar.
+  void add_findings(const SweepScale& scale, SensorHealth& health) const;
 };
 
 /// Processes a recording in one pass. If the IMU covers most of the last sweep, the sweep is cut at the last sample.

@@ -8,6 +8,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/time.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
@@ -26,6 +27,7 @@ struct RecordingEstimate {
   RegimeSmoother::Report report;                 ///< report of the rate estimation, with the calibration of the IMU
   SaturationLevels rails;
   ImuFindings findings;
+  SensorHealth health;              ///< findings about IMU, lidar and estimate
   MappedRecording mapped;           ///< mapper and passes; TumblingOdometry::take() returns the sweeps
   SweepScale scale;                 ///< scale of the lidar's ranges
   double corrected_jitter_s = 0.0;  ///< largest correction of a time stamp

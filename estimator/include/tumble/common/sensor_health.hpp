@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tumble/common/status.hpp"
+#include "tumble/common/time.hpp"
+
+/// sensor_health.hpp defines the findings that TumblingOdometry, RollingOdometry and the checks of recordings report.
+namespace tumble {
+
+/// HealthFinding is one suspected fault of a sensor or of the estimate.
+struct HealthFinding {
+  enum class Kind : std::uint8_t {
+    frozen_axis,        ///< one axis of a gyro or an accelerometer repeats one reading
+    frozen_sensor,      ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
+    unit_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes; the others are used
+    unit_silent,        ///< one of several IMUs delivers no readings
+    unit_disagrees,     ///< one of several IMUs differs from the others, which are used
+    rate_unit,          ///< the rates are possibly not in rad/s
+    force_unit,         ///< the specific forces are possibly not in m/s^2
+    force_at_rest,      ///< the specific force at rest has another magnitude than gravity
+    axes_or_signs,      ///< axes are exchanged or inverted
+    flight_forces,      ///< forces in free flight fit exchanged axes, another sign or another gyro scale
+    rotation,           ///< the direction of gravity, or a body on a pivot, does not rotate as the gyro measures
+    gyro_scale,         ///< the forces of several IMUs contradict the scale of the gyros
+    beyond_range,       ///< readings exceed the range of the device; value: their number
+    rounded_stamps,     ///< time stamps are rounded more coarsely than the IMU's period
+    lidar_scale,        ///< the lidar's ranges have another scale than the motion
+    lidar_calibration,  ///< mounting or clock of the lidar differ from the stated ones
+    rig_calibration,    ///< a stored calibration belongs to another rig
+    attitude_unknown,   ///< the direction of gravity is unknown; value: duration [s]
+    vertical_unknown,   ///< the vertical of the map is uncertain after a start in motion
+    tracking_lost,      ///< the pose in the map is uncertain, or sweeps contradict their predicted poses
+    not_localised,      ///< the run is not localised in its prior map
+  };
+  static constexpr Kind kLast = Kind::not_localised;
+
+  Kind kind = Kind::frozen_axis;
+  std::string sensor;         ///< "imu": all IMUs; "imu_2": second of several IMUs; "lidar"; "": the estimate
+  const char* axis = "";      ///< "gyro_x" to "accel_z", if one axis is suspect
+  const char* quantity = "";  ///< static string: the tested quantity, with its unit
+  double value = 0.0;         ///< value of the quantity
+  double bound = 0.0;         ///< violated limit
+  double confidence = 0.0;    ///< from 0 (value at the bound) to 1 (value far beyond); a margin, not a probability
+  std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if the check does not determine the start
+  /// True if the fault is over. health() of a live run only reports findings that have not ended.
+  bool ended = false;
+
+  Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
+  /// Returns whether the estimate should not be used: its readings contradict each other, or its pose or map is wrong.
+  bool invalidates_estimate() const;
+};
+
+/// Returns the name of a kind as used in files and tables ("frozen_axis").
+const char* to_string(HealthFinding::Kind kind);
+/// Returns one sentence for people: sensor, meaning, and the tested quantity with value and limit.
+std::string to_text(const HealthFinding& finding);
+
+/// SensorHealth lists the suspected faults, the most important fault first. Without a finding, a SensorHealth allocates
+/// no memory.
+struct SensorHealth {
+  std::vector<HealthFinding> findings;
+
+  bool ok() const { return findings.empty(); }
+  /// Returns the first finding as a Status, or `ok`.
+  Status worst() const { return ok() ? Status{} : findings.front().status(); }
+  operator Status() const { return worst(); }
+  /// Returns the text of the first finding, or "ok".
+  std::string message() const { return ok() ? "ok" : to_text(findings.front()); }
+  /// Returns whether a finding invalidates the estimate.
+  bool invalidates_estimate() const;
+
+  /// Adds the finding of a check unless `status` is ok. `normal` is the value of the quantity without a fault. A second
+  /// finding of the same kind, sensor and axis only states that the fault has not ended.
+  void add(HealthFinding::Kind kind, const Status& status, std::string sensor, const char* axis = "",
+           std::optional<TimeNs> since_ns = {}, double normal = 0.0);
+  void add(HealthFinding finding);
+  void add(const SensorHealth& other);
+};
+
+}  // namespace tumble

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/sensor_health.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string_view>
+#include <utility>
+
+namespace tumble {
+
+namespace {
+
+using Kind = HealthFinding::Kind;
+
+struct Meaning {
+  const char* name;
+  bool invalidates;  ///< see HealthFinding::invalidates_estimate()
+  const char* text;
+};
+
+constexpr std::array kMeanings = {
+    Meaning{"frozen_axis", false, "the axis repeats one reading; check the sensor"},
+    Meaning{"frozen_sensor", true, "the sensor repeats one reading; do not use the estimate"},
+    Meaning{"unit_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
+    Meaning{"unit_silent", false, "the IMU delivers no readings"},
+    Meaning{"unit_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
+    Meaning{"rate_unit", false, "the gyro's readings seem to be in another unit than rad/s; check the unit"},
+    Meaning{"force_unit", false, "the accelerometer's readings seem to be in another unit than m/s^2; check the unit"},
+    Meaning{"force_at_rest", true, "the accelerometer contradicts gravity; do not use the estimate"},
+    Meaning{"axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
+    Meaning{
+        "flight_forces", true,
+        "the specific force in free flight contradicts the rotation; axes may be inverted or exchanged, or the gyro "
+        "may have a wrong scale; do not use the estimate"},
+    Meaning{"rotation", true, "the gyro contradicts the rotation of the body; do not use the estimate"},
+    Meaning{"gyro_scale", true, "the forces of the IMUs contradict the gyros; do not use the estimate"},
+    Meaning{"beyond_range", false, "readings beyond the range of the device are left out"},
+    Meaning{"rounded_stamps", false,
+            "the time stamps are rounded more coarsely than the IMU's period; import the recording again to smooth the "
+            "time stamps"},
+    Meaning{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
+    Meaning{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
+    Meaning{"rig_calibration", false,
+            "the stored calibration differs from the estimate of this run, so the file may belong to another rig; "
+            "estimated rates beyond saturation depend on the calibration; the program left the file unchanged"},
+    Meaning{"attitude_unknown", true,
+            "the direction of gravity is uncertain, for example after a gap of the IMU; the covariance includes this "
+            "uncertainty"},
+    Meaning{"vertical_unknown", true, "the vertical of the map is uncertain after a start in motion"},
+    Meaning{"tracking_lost", true, "the position in the map is unknown; do not use the estimate"},
+    Meaning{"not_localised", true, "the run is not localised in its prior map; the poses are in a local frame"}};
+
+static_assert(kMeanings.size() == static_cast<std::size_t>(HealthFinding::kLast) + 1);
+
+const Meaning& meaning(Kind kind) {
+  return kMeanings.at(static_cast<std::size_t>(kind));
+}
+
+std::string six_digits(double value) {
+  std::array<char, 32> text{};
+  const int length = std::snprintf(text.data(), text.size(), "%.6g", value);
+  return std::string(text.data(), static_cast<std::size_t>(length));
+}
+
+/// Returns the margin of a value beyond its bound, see HealthFinding::confidence.
+double margin(const Status& status, double normal) {
+  const double value = std::abs(status.value - normal), bound = std::abs(status.bound - normal);
+  const double larger = std::max(value, bound);
+  return larger > 0.0 && std::isfinite(larger) ? 1.0 - std::min(value, bound) / larger : 1.0;
+}
+
+}  // namespace
+
+const char* to_string(Kind kind) {
+  return meaning(kind).name;
+}
+
+/// After a failure of attitude, vertical or localisation, the estimate is correct again, and its covariance or frame
+/// marks the earlier states. Poses after lost tracking remain wrong.
+bool HealthFinding::invalidates_estimate() const {
+  const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown || kind == Kind::not_localised;
+  return meaning(kind).invalidates && !(ended && recovers);
+}
+
+std::string to_text(const HealthFinding& finding) {
+  std::string out = finding.sensor;
+  if (finding.axis[0] != '\0') out += (out.empty() ? "" : " ") + std::string(finding.axis);
+  if (!out.empty()) out += ": ";
+  out += meaning(finding.kind).text;
+  if (finding.quantity[0] == '\0') return out;
+  return out + " (" + finding.quantity + " is " + six_digits(finding.value) + ", bound " + six_digits(finding.bound) +
+         ")";
+}
+
+bool SensorHealth::invalidates_estimate() const {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const HealthFinding& finding) { return finding.invalidates_estimate(); });
+}
+
+void SensorHealth::add(Kind kind, const Status& status, std::string sensor, const char* axis,
+                       std::optional<TimeNs> since_ns, double normal) {
+  if (status.ok()) return;
+  add(HealthFinding{kind, std::move(sensor), axis, status.field, status.value, status.bound, margin(status, normal),
+                    since_ns});
+}
+
+void SensorHealth::add(HealthFinding finding) {
+  const auto known = std::find_if(findings.begin(), findings.end(), [&](const HealthFinding& each) {
+    return each.kind == finding.kind && each.sensor == finding.sensor && std::string_view(each.axis) == finding.axis;
+  });
+  if (known == findings.end())
+    findings.push_back(std::move(finding));
+  else
+    known->ended = known->ended && finding.ended;
+}
+
+void SensorHealth::add(const SensorHealth& other) {
+  for (const HealthFinding& finding : other.findings) add(finding);
+}
+
+}  // namespace tumble

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Health of RollingOdometry.
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+#include "tumble/odometry/detail/imu_findings.hpp"
+#include "tumble/odometry/rolling_odometry.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Kind = HealthFinding::Kind;
+
+constexpr double kUnitSilent_s = 0.5;  // time without readings after which a unit is reported
+
+}  // namespace
+
+SensorHealth RollingOdometry::health() const {
+  if (is_whole()) return whole_ ? whole_->findings.health : SensorHealth{};
+  SensorHealth out;
+  add_frozen(frozen_, out);
+  const std::size_t count = params_.units.size();
+  TimeNs newest_ns = 0;
+  for (std::size_t unit = 0; unit < count; ++unit) newest_ns = std::max(newest_ns, frozen_[unit].last_time_ns);
+  for (std::size_t unit = 0; unit < count; ++unit) {
+    const std::string name = unit_name(unit, count);
+    const TimeNs last_ns = frozen_[unit].last_time_ns;
+    const double silent_s = frozen_[unit].started ? seconds(newest_ns - last_ns) : 0.0;
+    if (silent_s >= kUnitSilent_s)
+      out.add(Kind::unit_silent, {ErrorCode::out_of_range, "time in s without readings", silent_s, kUnitSilent_s}, name,
+              "", last_ns);
+    imu_merge_.add_finding(imu_merge_state_->units[unit], name, out);
+  }
+  add_forces_at_rest(out);
+  add_findings(plausibility_, plausibility_state_, "imu", out);
+  const ImuPlausibility::State& state = plausibility_state_;
+  ImuMerge::add_findings(imu_merge_state_->senses.detected(), ImuMerge::lever_arm_agreement(*imu_merge_state_),
+                         confirms_gyro(plausibility_, state), out);
+  return out;
+}
+
+/// If the forces of all units contradict gravity, so does the merged force. A single such unit disagrees with the
+/// others.
+void RollingOdometry::add_forces_at_rest(SensorHealth& health) const {
+  const std::size_t count = params_.units.size();
+  const auto verdict = [&](std::size_t unit) { return rest_gravity_.magnitude_verdict(rest_gravity_state_[unit]); };
+  bool all = true;
+  for (std::size_t unit = 0; unit < count; ++unit) all = all && !verdict(unit).ok();
+  if (all) health.add(Kind::force_at_rest, verdict(0), "imu", "", {}, 1.0);
+  for (std::size_t unit = 0; unit < count && !all; ++unit)
+    health.add(Kind::unit_disagrees, verdict(unit), unit_name(unit, count), "", {}, 1.0);
+}
+
+/// Adds the frozen axes. A unit whose readings are replaced by those of the other units is `unit_frozen`.
+void RollingOdometry::add_frozen(const Frozen& frozen, SensorHealth& health) const {
+  const std::size_t count = params_.units.size();
+  const auto end = frozen.begin() + static_cast<std::ptrdiff_t>(count);
+  const bool replaced = !std::all_of(frozen.begin(), end, FrozenAxes::any_frozen);
+  for (std::size_t unit = 0; unit < count; ++unit)
+    frozen_axis_detectors_[unit].add_findings(replaced ? Kind::unit_frozen : Kind::frozen_axis, unit_name(unit, count),
+                                              frozen[unit], health);
+}
+
+}  // namespace tumble

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scores the health of an estimate as a classifier: is the estimate wrong, and does its health report this?
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "scenarios/methods/findings.hpp"
+#include "scenarios/scoring/beside_truth.hpp"
+#include "scenarios/scoring/families.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kWrongDeviations = 5.0;
+// Errors that no covariance excuses: half of the moving samples exceed a fifth of the rate, or this tilt.
+constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
+constexpr double kMoves_rad_s = 1.0;  // smallest true rate of a sample that counts
+
+/// Errors of the moving samples, in standard deviations and as a number that no covariance excuses.
+struct Errors {
+  std::vector<double> deviations, gross;
+};
+
+double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+  return std::sqrt(error.dot(covariance.ldlt().solve(error)));
+}
+
+/// Returns the quantile of the values, or 0 without values. NaN counts as the largest value.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// The covariances are those before findings increased them. Otherwise a reported error would not count as wrong.
+Errors rate_errors(const ScoredEstimate& scored) {
+  const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
+  const std::vector<PairedRate>& pairs = paired_rates(scored);
+  Errors out;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (!pairs[k].truth || !(pairs[k].truth->rate_rad_s.norm() > kMoves_rad_s)) continue;
+    Eigen::Matrix3d covariance = pairs[k].estimate->covariance_rad2_s2;
+    if (k < suspect.size()) covariance -= suspect[k];
+    const Eigen::Vector3d error = pairs[k].error_rad_s();
+    out.deviations.push_back(deviations_of(error, covariance));
+    out.gross.push_back(error.norm() / pairs[k].truth->rate_rad_s.norm());
+  }
+  return out;
+}
+
+Errors attitude_errors(const ScoredEstimate& scored) {
+  const TruthTrack& truth = truth_track(scored);
+  Errors out;
+  for (const AttitudeState& attitude : scored.estimate().attitudes) {
+    if (!truth.covers_attitude(attitude.time_ns) || truth.at_rest(attitude.time_ns)) continue;
+    const Eigen::Vector2d error = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
+    out.deviations.push_back(deviations_of(error, attitude.covariance_rad2.topLeftCorner<2, 2>()));
+    out.gross.push_back(error.norm());
+  }
+  return out;
+}
+
+/// Returns whether a tenth of the errors exceed five deviations, or half exceed the limit that no covariance excuses.
+bool are_wrong(const Errors& errors, double gross_limit) {
+  return quantile(errors.deviations, 0.9) > kWrongDeviations || quantile(errors.gross, 0.5) > gross_limit;
+}
+
+/// Returns whether the last pose is more than five deviations off, by the normalised error of its covariance, or by the
+/// standard deviation of the position. Returns nothing for an estimate without covariances, to which no bound applies.
+std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
+  double nees = 0.0;
+  for (const Metric& metric : metrics()) {
+    if (metric.kind == kind && metric.info.name == "pose_nees" && metric.compute(scored, nees))
+      return !(nees <= kWrongDeviations * kWrongDeviations);
+  }
+  const std::vector<PairedPose>& poses = paired_track(scored).poses;
+  if (poses.empty() || scored.estimate().poses.back().covariance.isZero(0.0)) return std::nullopt;
+  const double error_m = (poses.back().estimate.p_WA_m - poses.back().truth.p_WA_m).norm();
+  const double sigma_m = std::sqrt(scored.estimate().poses.back().covariance.topLeftCorner<3, 3>().trace());
+  return !(error_m <= kWrongDeviations * sigma_m);
+}
+
+template <Kind kind>
+std::optional<bool> is_wrong(const ScoredEstimate& scored) {
+  if constexpr (kind == Kind::rate) return are_wrong(rate_errors(scored), kWrongRateShare);
+  if constexpr (kind == Kind::attitude) {
+    const bool reported = has_finding(HealthFinding::Kind::attitude_unknown, scored.estimate());
+    return are_wrong(attitude_errors(scored), reported ? HUGE_VAL : kWrongTilt_rad);
+  }
+  return pose_is_wrong(scored, kind);
+}
+
+template <Kind kind>
+bool wrong(const ScoredEstimate& scored, double& value) {
+  const std::optional<bool>& found = scored.once(is_wrong<kind>);
+  value = found.value_or(false) ? 1.0 : 0.0;
+  return found.has_value();
+}
+
+bool is_reported(const Estimate& estimate) {
+  return estimate.faults.invalidates_estimate() || has_implausible_readings(estimate);
+}
+
+bool reported(const ScoredEstimate& scored, double& value) {
+  value = is_reported(scored.estimate()) ? 1.0 : 0.0;
+  return true;
+}
+
+template <Kind kind>
+bool silently_wrong(const ScoredEstimate& scored, double& value) {
+  if (!wrong<kind>(scored, value)) return false;
+  if (is_reported(scored.estimate())) value = 0.0;
+  return true;
+}
+
+template <Kind kind>
+void add(std::vector<Metric>& out) {
+  out.push_back({{"health_wrong", Unit::verdict,
+                  "1 if the estimate is wrong: a tenth of the moving samples (poses: the last pose) is more than five "
+                  "reported standard deviations off, or half of them by a fifth of the rate or 0.5 rad of tilt",
+                  Sense::none},
+                 kind,
+                 wrong<kind>});
+  out.push_back({{"health_reported", Unit::verdict,
+                  "1 if a finding of the health states that readings or estimate should not be used", Sense::none},
+                 kind,
+                 reported});
+  out.push_back({{"health_silently_wrong", Unit::verdict,
+                  "1 if the estimate is wrong and its health does not report it", Sense::lower},
+                 kind,
+                 silently_wrong<kind>});
+}
+
+}  // namespace
+
+std::vector<Metric> health_metrics() {
+  std::vector<Metric> out;
+  add<Kind::rate>(out);
+  add<Kind::attitude>(out);
+  add<Kind::position>(out);
+  add<Kind::slam>(out);
+  return out;
+}
+
+}  // namespace tumble::scenarios
