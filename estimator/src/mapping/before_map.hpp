@@ -19,6 +19,9 @@ void widen_to_motion(MotionState& levelled);
 MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
 StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
+/// Returns the estimate with a corrected tilt, whose errors are independent of the other errors.
+StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
+
 /// Returns the reckoned state, `step_s` after the last call, with the origin and yaw of the frame moved to the IMU.
 /// Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity
 /// over minutes of motion.

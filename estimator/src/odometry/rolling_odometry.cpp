@@ -41,6 +41,17 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "time in s for which accel y of IMU 4 repeats one reading",
        "time in s for which accel z of IMU 4 repeats one reading"}}}};
 
+// Standard deviations of the motion in a gap without data: horizontal speed in addition to the last speed, and rotation
+// about the vertical, up to an unknown heading (uniform over a turn).
+constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
+
+/// Returns the covariance without the tilt, which a restart levels again.
+Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
+  covariance.middleRows<2>(3).setZero();
+  covariance.middleCols<2>(3).setZero();
+  return covariance;
+}
+
 ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   sample.time_ns = time_ns;
   return sample;
@@ -114,7 +125,7 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       start_(other.start_),
       T_W_run_(other.T_W_run_),
       restart_count_(other.restart_count_),
-      restarted_(other.restarted_),
+      restart_(other.restart_),
       live_(other.live_),
       finished_(other.finished_) {}
 
@@ -138,7 +149,9 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (const Status status = stamp_order_.classify_stamp(samples.front().time_ns, stamp_order_state_, verdict);
       !status.ok())
     return status;
-  if (verdict != StampOrder::Verdict::continues) restart_at_newest();
+  if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest(StampOrder::kStepBack_s);
+  if (verdict == StampOrder::Verdict::restarts_after_gap)
+    restart_at_newest(seconds(samples.front().time_ns - *stamp_order_state_.newest_ns));
   if (const Status status = add_delayed_samples(samples); !status.ok()) return status;
   UnitRails::Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
@@ -307,23 +320,30 @@ void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
   const std::size_t before = results_.size();
-  if (!live_ && !is_whole()) smoother_.finish(*state_, results_);
+  if (!live_) smoother_.finish(*state_, results_);
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
 }
 
-/// Restarts the run at the newest pose.
-void RollingOdometry::restart_at_newest() {
-  const std::optional<Pose> pose = newest();
+/// Restarts the run at the newest pose, after `gap_s` without data.
+void RollingOdometry::restart_at_newest(double gap_s) {
+  const std::size_t before = results_.size();
   end_run();
+  const std::optional<Pose> pose = results_.size() > before ? as_pose(results_.back()) : newest();
   Eigen::Isometry3d T_WG = start_.value_or(Eigen::Isometry3d::Identity());
+  std::optional<Restart> restart;
   if (pose) {
     T_WG.linear() = pose->pose.q_WA.toRotationMatrix();
     T_WG.translation() = pose->pose.p_WA_m;
+    restart = Restart{T_WG.translation(), position_and_heading(pose->pose.covariance)};
+    const double moved_m = gap_s * std::hypot(pose->pose.v_WA_m_s.norm(), kGapSpeed_m_s);
+    const double turned_rad = std::min(gap_s * kGapTurn_rad_s, kUnknownHeading_rad);
+    restart->covariance.diagonal().head<2>().array() += moved_m * moved_m;
+    restart->covariance(5, 5) += turned_rad * turned_rad;
   }
   start_run();
   start_ = T_WG;
   ++restart_count_;
-  restarted_ = true;
+  restart_ = restart.value_or(Restart{});
 }
 
 void RollingOdometry::reset() {
@@ -347,7 +367,7 @@ void RollingOdometry::start_run() {
   rest_gravity_state_ = {};
   stamp_order_state_ = {};
   start_ = T_W_run_ = std::nullopt;
-  restarted_ = false;
+  restart_.reset();
   finished_ = false;
 }
 
@@ -370,7 +390,7 @@ void RollingOdometry::initialise_pose() {
 
 /// Converts an estimate of the filter or the smoother to the world.
 RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
-  estimate.uncertain = estimate.uncertain || restarted_;
+  estimate.uncertain = estimate.uncertain || restart_.has_value();
   if (!T_W_run_) return estimate;
   const Eigen::Matrix3d R = T_W_run_->linear();
   Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();
@@ -379,6 +399,10 @@ RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) co
   estimate.q_WI = (Eigen::Quaterniond(R) * estimate.q_WI).normalized();
   estimate.v_WG_m_s = R * estimate.v_WG_m_s;
   estimate.covariance = both * estimate.covariance * both.transpose();
+  if (!restart_) return estimate;
+  Eigen::Matrix<double, 6, 6> moved = Eigen::Matrix<double, 6, 6>::Identity();
+  moved.topRightCorner<3, 3>() = -so3::hat(estimate.p_WG_m - restart_->p_WG_m);
+  estimate.covariance += moved * restart_->covariance * moved.transpose();
   return estimate;
 }
 

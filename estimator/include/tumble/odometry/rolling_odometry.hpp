@@ -126,7 +126,7 @@ class RollingOdometry {
   /// A single wrong stamp costs one sample (StampOrder). After a gap of more than a second, the second sample restarts
   /// the run. If the clock steps back, samples are rejected with `time_order` for 0.2 s, and then the run restarts. A
   /// restart finishes the poses so far and continues as by reset(pose), at the newest pose. Later poses are
-  /// `uncertain`.
+  /// `uncertain`, and their covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -200,7 +200,7 @@ class RollingOdometry {
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
-  void restart_at_newest();
+  void restart_at_newest(double gap_s);
   void end_run();
   void start_run();
   void initialise_pose();
@@ -242,7 +242,14 @@ class RollingOdometry {
   std::optional<Eigen::Isometry3d> start_;    ///< pose given to reset(), until the first sample
   std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; nothing: the world's origin
   std::size_t restart_count_ = 0;
-  bool restarted_ = false;  ///< the run continues after a gap or a step of the clock, so its position is uncertain
+  /// Restart after a gap or a step of the clock: position, and covariance of position and heading in the world.
+  struct Restart {
+    Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
+  };
+  std::optional<Restart> restart_;  ///< later poses are uncertain
   bool live_ = true, finished_ = false;
 };
 

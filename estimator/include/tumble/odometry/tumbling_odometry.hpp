@@ -45,8 +45,8 @@ struct RecordingEstimate;
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates everything from the
 /// whole recording: rates with RegimeSmoother, checks of the IMU, and passes of the mapper until the lidar's
-/// calibration has converged. There are then no live poses, and take() returns all sweeps after finish(). A gap of more
-/// than a second or a step of the clock ends the recording. finish() needs more stack and memory than other calls.
+/// calibration has converged. There are then no live poses, and take() returns all sweeps after finish(). A step
+/// of the clock ends the recording; a gap does not. finish() needs more stack and memory than other calls.
 ///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, a sample
 /// that ends no sweep allocates no memory. While SecondPass runs, a sweep costs up to four registrations. The end of

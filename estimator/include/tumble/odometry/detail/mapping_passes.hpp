@@ -31,6 +31,8 @@ struct MappingInput {
   /// empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
+  /// See LidarInertialOdometry::set_start_tilt().
+  std::optional<LidarInertialOdometry::StartTilt> start_tilt = std::nullopt;
 };
 
 /// Result of one sweep.
