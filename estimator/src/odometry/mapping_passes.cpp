@@ -193,7 +193,7 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
     started.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
     started.time_offset_sigma_s = sigma[6];
     again();
-  } else if (out.status.ok() && !levelled.start_tilt && out.mapper.start_tilt()) {
+  } else if (determines_calibration(out) && !levelled.start_tilt && out.mapper.start_tilt()) {
     again();
   }
   out.passes = passes;
