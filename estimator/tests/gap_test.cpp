@@ -11,6 +11,7 @@
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
@@ -19,17 +20,17 @@ namespace {
 
 using test::ThrownBody;
 
-constexpr double kWhole = TumblingOdometry::kWholeRecording;
+constexpr double kWholeRun = TumblingOdometry::kWholeRecording;
 
 /// Time without data, during the rest before the throw.
-struct Gap {
+struct DataGap {
   double imu_s = 0.0, lidar_s = 0.0;
   bool covers(double length_s, TimeNs time_ns) const {
     return time_ns > 1'500'000'000 && seconds(time_ns) < 1.5 + length_s;
   }
 };
 
-struct Run {
+struct ThrownWithGap {
   std::size_t poses = 0, restarts = 0;
   PoseState last;
   double error_m = 0.0, sigma_m = 0.0;
@@ -37,7 +38,7 @@ struct Run {
 };
 
 /// Processes the body's data in real time.
-Run run(const ThrownBody& body, const Gap& gap, double lag_s) {
+ThrownWithGap throw_body(const ThrownBody& body, const DataGap& gap, double lag_s) {
   TumblingOdometry::Params params = test::params_of(body);
   params.lag_s = lag_s;
   TumblingOdometry odometry(params);
@@ -49,7 +50,7 @@ Run run(const ThrownBody& body, const Gap& gap, double lag_s) {
         (void)odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points);
     }
   };
-  Run out;
+  ThrownWithGap out;
   const auto take = [&] {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
       if (sweep->report.trajectory.empty()) continue;
@@ -71,30 +72,30 @@ Run run(const ThrownBody& body, const Gap& gap, double lag_s) {
 }
 
 TEST(Gaps, LiveLagAndWholeRecordingContinue) {
-  for (const Gap& gap : {Gap{0.3, 0.0}, Gap{2.0, 0.0}, Gap{20.0, 0.0}, Gap{0.0, 0.3}, Gap{0.0, 2.0}, Gap{0.0, 20.0},
-                         Gap{0.3, 0.3}, Gap{2.0, 2.0}, Gap{20.0, 20.0}}) {
+  for (const DataGap& gap :
+       {DataGap{0.3, 0.0}, DataGap{2.0, 0.0}, DataGap{20.0, 0.0}, DataGap{0.0, 0.3}, DataGap{0.0, 2.0},
+        DataGap{0.0, 20.0}, DataGap{0.3, 0.3}, DataGap{2.0, 2.0}, DataGap{20.0, 20.0}}) {
     ThrownBody body;
     body.rest_s = 4.2 + std::max(gap.imu_s, gap.lidar_s);
     body.end_s = body.rest_s + 2.3;
-    const Run live = run(body, gap, 0.0), lag = run(body, gap, 0.2), whole = run(body, gap, kWhole);
-    for (const Run* each : {&live, &lag, &whole}) {
+    const ThrownWithGap live = throw_body(body, gap, 0.0), lag = throw_body(body, gap, 0.2),
+                        whole = throw_body(body, gap, kWholeRun);
+    for (const ThrownWithGap* each : {&live, &lag, &whole}) {
       EXPECT_TRUE(each->finished);
       EXPECT_NEAR(seconds(each->last.time_ns), body.end_s, 0.11) << gap.imu_s << " " << gap.lidar_s;
       EXPECT_EQ(each->restarts, gap.imu_s > 1.0 ? 1u : 0u);
-      EXPECT_LT(each->error_m, 0.1) << gap.imu_s << " " << gap.lidar_s;  // as TumblingOdometry after such a gap
+      const double bound_m = each == &live ? 0.2 : 0.1;  // without a lag, the throw alone costs 0.09 m
+      EXPECT_LT(each->error_m, bound_m) << gap.imu_s << " " << gap.lidar_s;  // as TumblingOdometry after such a gap
       EXPECT_LT(each->error_m, 4.0 * each->sigma_m + 0.01) << gap.imu_s << " " << gap.lidar_s;
     }
     EXPECT_EQ(whole.poses, lag.poses) << gap.imu_s << " " << gap.lidar_s;
-    std::printf("%4.1f %4.1f  live %zu %.4f %.4f  lag %zu %.4f %.4f  whole %zu %.4f %.4f\n", gap.imu_s, gap.lidar_s,
-                live.poses, live.error_m, live.sigma_m, lag.poses, lag.error_m, lag.sigma_m, whole.poses, whole.error_m,
-                whole.sigma_m);
   }
 }
 
 TEST(Gaps, RatesOfTheWholeRecordingContinueWithOneCalibration) {
   ThrownBody body;
   TumblingOdometry::Params params = test::params_of(body);
-  params.lag_s = kWhole;
+  params.lag_s = kWholeRun;
   TumblingOdometry odometry(params), reference(params);
   std::vector<ImuSample> imu = body.imu();
   for (const ImuSample& sample : imu) ASSERT_TRUE(reference.add_imu(sample).ok());
@@ -113,20 +114,20 @@ TEST(Gaps, RatesOfTheWholeRecordingContinueWithOneCalibration) {
   EXPECT_LT(apart_rad_s, 0.05);  // a rest of 0.2 s less determines the gyro's bias
 }
 
-struct Rolled {
+struct RolledWithGap {
   std::size_t poses = 0, restarts = 0;
   RollingOdometry::Pose last;
   double error_m = 0.0, sigma_m = 0.0, yaw_sigma_rad = 0.0;
 };
 
 /// A sphere whose units are silent between `from_s` and `to_s` of the data, and for `more_s` longer.
-Rolled roll(double from_s, double to_s, double more_s, double lag_s) {
+RolledWithGap roll_with_gap(double from_s, double to_s, double more_s, double lag_s) {
   RollingOdometry::Params params = test::params_of(test::kPositions);
   params.lag_s = lag_s;
   RollingOdometry odometry(params);
   std::vector<std::vector<ImuSample>> units;
   for (const Eigen::Vector3d& position_m : test::kPositions) units.push_back(test::noisy(test::unit_at(position_m)));
-  Rolled out;
+  RolledWithGap out;
   const auto take = [&] {
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) {
       out.last = *pose;
@@ -156,18 +157,18 @@ TEST(Gaps, ASphereContinuesAndItsCovarianceKnowsTheGap) {
   for (const double lag_s : {0.0, 0.5, RollingOdometry::kWholeRecording}) {
     // at rest, and while it rolls: half of the path is not measured
     for (const double gap_s : {0.3, 2.0, 20.0}) {
-      const Rolled rest = roll(1.2, 1.3, gap_s - 0.1, lag_s);
+      const RolledWithGap rest = roll_with_gap(1.2, 1.3, gap_s - 0.1, lag_s);
       EXPECT_EQ(rest.restarts, gap_s > 1.0 ? 1u : 0u) << lag_s << " " << gap_s;
       EXPECT_LT(rest.error_m, 0.01 * test::kPathLength_m) << lag_s << " " << gap_s;
       EXPECT_EQ(rest.last.uncertain, gap_s > 1.0);
     }
-    const Rolled moving = roll(2.0, 3.2, 0.0, lag_s);
+    const RolledWithGap moving = roll_with_gap(2.0, 3.2, 0.0, lag_s);
     EXPECT_EQ(moving.restarts, 1u) << lag_s;
-    EXPECT_GT(moving.error_m, 0.2) << lag_s;  // the gap hides motion
+    EXPECT_GT(moving.error_m, 0.2) << lag_s;                  // the gap hides motion
+    EXPECT_LT(moving.error_m, test::kPathLength_m) << lag_s;  // and nothing else is lost
     EXPECT_LT(moving.error_m, 3.0 * moving.sigma_m) << lag_s;
     EXPECT_GT(moving.yaw_sigma_rad, 0.5) << lag_s;
     EXPECT_TRUE(moving.last.uncertain);
-    std::printf("lag %g: %zu poses, error %.3f m, sigma %.3f m\n", lag_s, moving.poses, moving.error_m, moving.sigma_m);
   }
 }
 

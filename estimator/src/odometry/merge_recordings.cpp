@@ -102,16 +102,19 @@ class TimeWithoutGaps {
  public:
   explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Returns the time of the next sample. A gap becomes as short as the step before the gap.
-  TimeNs next(TimeNs time_ns) {
-    if (last_ns_ && seconds(time_ns - *last_ns_) > gap_max_s_) {
-      const TimeNs removed_ns = time_ns - *last_ns_ - step_ns_;
+  /// Returns the time of the next sample, and whether the sample follows a gap. A gap becomes as short as the step
+  /// before the gap.
+  std::pair<TimeNs, bool> next(TimeNs time_ns) {
+    const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
+    if (after_gap) {
+      const TimeNs removed_ns = time_ns - last_ns_ - step_ns_;
       gaps_.push_back({time_ns - removed_ns - removed(), removed_ns + removed()});
-    } else if (last_ns_) {
-      step_ns_ = time_ns - *last_ns_;
+    } else if (started_) {
+      step_ns_ = time_ns - last_ns_;
     }
+    started_ = true;
     last_ns_ = time_ns;
-    return time_ns - removed();
+    return {time_ns - removed(), after_gap};
   }
   /// Returns the time in the recording.
   TimeNs in_recording(TimeNs time_ns) const {
@@ -130,9 +133,17 @@ class TimeWithoutGaps {
 
   double gap_max_s_;
   std::vector<Gap> gaps_;
-  std::optional<TimeNs> last_ns_;
-  TimeNs step_ns_ = 1;
+  bool started_ = false;
+  TimeNs last_ns_ = 0, step_ns_ = 1;
 };
+
+/// Deletes the windows and the predicted motion, which end at a gap. The calibration of the units remains.
+void delete_motion(ImuMerge::State& state) {
+  for (ImuMerge::Unit& unit : state.units) unit.window = {};
+  state.recovery.running = false;
+  state.window_s = 0.0;
+  state.windows = 0;
+}
 
 Status run(const ImuMerge& merge, double gap_max_s, const Units& units, ImuMerge::State& state,
            std::vector<ImuSample>& out) {
@@ -143,7 +154,11 @@ Status run(const ImuMerge& merge, double gap_max_s, const Units& units, ImuMerge
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
     const bool received = std::any_of(now.begin(), now.end(), [](const ImuSample& s) { return is_finite(s); });
-    if (received) now[0].time_ns = time.next(now[0].time_ns);
+    if (received) {
+      const auto [time_ns, after_gap] = time.next(now[0].time_ns);
+      now[0].time_ns = time_ns;
+      if (after_gap) delete_motion(state);
+    }
     if (Status status = merge.step(now, state, merged); !status.ok()) return status;
     if (Status status = merge.verdict(state); !status.ok()) return status;
     if (merged) out.push_back(*merged);
