@@ -176,17 +176,6 @@ TEST(TumblingRecording, FindsTheOdometerReadingThatALiveRunTakes) {
   EXPECT_GT(taken.spanning_two_sweeps(), 0u);
 }
 
-TEST(TumblingRecording, AGapEndsTheRecording) {
-  const ThrownBody body;
-  TumblingOdometry odometry(whole_params(body));
-  std::vector<ImuSample> imu = body.imu();
-  for (std::size_t k = 200; k < imu.size(); ++k) imu[k].time_ns += 2'000'000'000;
-  for (std::size_t k = 0; k < imu.size(); ++k)
-    EXPECT_EQ(odometry.add_imu(imu[k]).error_code, k < 200 ? ErrorCode::none : ErrorCode::gap) << k;
-  ASSERT_TRUE(odometry.finish().ok());
-  EXPECT_EQ(odometry.recording()->rates.size(), 200u);
-}
-
 TEST(TumblingRecording, SavesTheRecordedData) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body)), loaded(whole_params(body));

@@ -93,10 +93,10 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
 }
 
 // Checks the assumptions of every method: readings are finite and within the device's range, stamps increase at the
-// stated period, and there are no gaps.
-Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
+// stated period, and there are no gaps longer than `gap_max_s`.
+Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples, double gap_max_s) {
   if (samples.empty()) return {ErrorCode::empty, "time_ns", 0.0, 1.0};
-  if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
+  if (const Status status = check_samples(samples, gap_max_s); !status.ok()) return status;
   for (const ImuSample& sample : samples) {
     const Status status = check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2);
     if (!status.ok()) return status;
@@ -151,7 +151,7 @@ std::vector<bool> find_inliers(const sim::ImuRecord& record) {
   return kept;
 }
 
-Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
+Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s) {
   out.clear();
   const std::size_t count = record.time_ns.size();
   const std::string place = "imu '" + record.name + "'";
@@ -160,15 +160,15 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   if (!record.clip_flags.empty()) require_length(place, "clip_flags", record.clip_flags.size(), count);
   std::vector<ImuSample> samples = samples_of(record);
   leave_out_faulty(record, samples);
-  const Status status = check_stream(record, samples);
+  const Status status = check_stream(record, samples, gap_max_s);
   if (status.ok()) out = std::move(samples);
   return status;
 }
 
-Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out) {
+Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s) {
   out.clear();
   if (sensors.imus.empty()) return {ErrorCode::empty, "imus", 0.0, 1.0};
-  return imu_samples(sensors.imus.front(), out);
+  return imu_samples(sensors.imus.front(), out, gap_max_s);
 }
 
 Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out) {

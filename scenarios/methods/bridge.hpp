@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,9 @@
 /// - Lidar point: both libraries use metres in L and the offset from the sweep's start [ns].
 namespace tumble::scenarios::bridge {
 
-/// kGapMaxS is the longest accepted time between two IMU samples [s].
-inline constexpr double kGapMaxS = 1.0;
+/// Longest time between two IMU samples [s] that methods without a restart accept, and the limit of methods that
+/// continue after any gap.
+inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
 /// Readings up to kStatedRangesMax times the stated range are accepted as measurements. Real saturation levels exceed
 /// the stated range (MTi-30: 1.4 times the range). A tilted saturation plane allows even larger readings. Larger
@@ -54,13 +56,13 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
 /// Converts the samples of an IMU, in order, and drops the single faulty readings that find_inliers rejects. Returns
-/// `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS) or `out_of_range`. The error `out_of_range` comes
+/// `empty`, `non_finite`, `time_order`, `gap` (more than `gap_max_s`) or `out_of_range`. The error `out_of_range` comes
 /// from check_range, or from a median time step that differs 20-fold from the stated period. On error, `out` is empty.
 /// Throws BadInput if the record's arrays differ in length. O(N).
-Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
+Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 /// Converts the primary IMU's samples. Returns `empty` if the recording has no IMU.
-Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out);
+Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 /// Converts the samples of the IMU with the true, unsaturated readings of `truth`. Throws BadInput if `truth` does not
 /// belong to the record.

@@ -41,7 +41,7 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
     const sim::ImuRecord& record = sensors.imus[i];
     if (record.name == "imu_reference") continue;  // reference IMU, for comparisons only
     AuxiliaryRecording& added = out.emplace_back();
-    if (Status status = bridge::imu_samples(record, added.samples); !status.ok()) return status;
+    if (Status status = bridge::imu_samples(record, added.samples, bridge::kAnyGapS); !status.ok()) return status;
     added.imu.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
     if (record.gyro_noise_rad_s_sqrt_hz > 0.0) added.imu.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
     if (record.accel_noise_m_s2_sqrt_hz > 0.0) added.imu.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
@@ -131,7 +131,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
                         std::optional<CalibratedRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
     if (given != nullptr) start_from_calibration(*given, params);

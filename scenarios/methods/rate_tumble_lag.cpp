@@ -51,11 +51,23 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   return params;
 }
 
+/// Restarts the stream after a gap with its current calibration, as TumblingOdometry does.
+void restart_after_gap(RegimeStream::Params& params, RegimeStream& joined, RegimeStream::State& all) {
+  const RigCalibration calibration = joined.rate().calibration(all.rate);
+  if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;
+  joined = RegimeStream(params);
+  const FrozenAxes::State frozen = all.rate.frozen;  // a frozen axis may remain frozen
+  const FlightSignCheck::State sense = all.rate.sense;
+  all = joined.start();
+  all.rate.frozen = frozen;
+  all.rate.sense = sense;
+}
+
 Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
                          std::optional<CalibratedRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (!estimate.status.ok()) return estimate;
   RegimeStream::Params params = stream_params(sensors, parameters, given);
   std::vector<AuxiliaryRecording> recordings;
@@ -67,19 +79,26 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   // Auxiliary IMUs determine the rate even if the body is hand-held, but the hand-held smoother does not use auxiliary
   // IMUs.
   if (!auxiliary_imus.empty() && !parameters.has("carried_min")) params.carried_min = 1.0;
-  const RegimeStream joined(params);
+  RegimeStream joined(params);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();
+  std::size_t gaps = 0;
   estimate.rates.reserve(samples.size());
   std::optional<RateState> out;
   std::vector<AuxiliaryReading> beside(auxiliary_imus.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = auxiliary_imus[i][k];
+    if (k > 0 && seconds(samples[k].time_ns - samples[k - 1].time_ns) > params.rate.gap_max_s) {
+      joined.flush(all, estimate.rates);
+      restart_after_gap(params, joined, all);
+      ++gaps;
+    }
     estimate.status = joined.push(samples[k], beside, all, out);
     if (!estimate.status.ok()) break;
     if (out) estimate.rates.push_back(*out);
   }
   joined.flush(all, estimate.rates);
+  if (gaps > 0) estimate.health["gaps"] = static_cast<double>(gaps);
   const RateStream::State& state = all.rate;
   estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);

@@ -161,13 +161,26 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::optional<bridge::Sweep> present;
   std::size_t next = 0;
+  const auto add_sweep = [&](const bridge::Sweep& sweep) {
+    return odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points);
+  };
+  std::optional<TimeNs> last_ns;
   for (const ImuSample& sample : samples) {
-    if (Status status = odometry.add_imu(sample); !status.ok()) return status;
+    const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
+    last_ns = sample.time_ns;
+    // in real time, sweeps arrive during a gap of the IMU; the IMU does not cover most of them
+    while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
+      if (!present) present = bridge::sweep(lidar, next++);
+      if (present->end_ns > sample.time_ns) break;
+      if (!add_sweep(*present).ok()) estimate.health["sweeps_without_imu"] += 1.0;
+      present.reset();
+    }
+    // the first sample after a gap is rejected, and the second sample confirms its time stamp
+    if (Status status = odometry.add_imu(sample); !status.ok() && status.error_code != ErrorCode::gap) return status;
     while (present || next < sweeps) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;
-      if (Status status = odometry.add_sweep(present->start_ns, present->end_ns, present->points); !status.ok())
-        return status;
+      if (Status status = add_sweep(*present); !status.ok()) return status;
       present.reset();
       if (!whole && on_sweep) on_sweep(next, sweeps);
     }
@@ -176,8 +189,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   }
   while (present || next < sweeps) {
     if (!present) present = bridge::sweep(lidar, next++);
-    if (!whole || !odometry.add_sweep(present->start_ns, present->end_ns, present->points).ok())
-      leave_out_unfinished(estimate);
+    if (!whole || !add_sweep(*present).ok()) leave_out_unfinished(estimate);
     present.reset();
   }
   const Status status = odometry.finish(on_sweep);
@@ -202,7 +214,6 @@ void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, E
 
 void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
   report_rails(odometry.rails(), estimate.health);
-  estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
 }
 
@@ -218,7 +229,7 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   Estimate estimate;
   estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (!estimate.status.ok()) return estimate;
   if (sensors.lidars.empty() || bridge::sweep_count(sensors.lidars.front()) == 0) {
     const char* const missing = sensors.lidars.empty() ? "lidars" : "lidar.sweep_start_ns";
@@ -239,6 +250,8 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   const std::size_t rejected = left_out + odometry.rejected_readings();
   if (output != Output::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
   if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
+  if (output != Output::whole || odometry.restart_count() > 0)
+    estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (output != Output::whole) report_stream(odometry, estimate);
   collector.conclude(odometry);
   if (map != nullptr) report_prior_map(estimate);

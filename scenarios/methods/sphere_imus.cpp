@@ -14,7 +14,7 @@ namespace {
 /// record's arrays differ in length.
 std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
-  status = bridge::imu_samples(record, samples);
+  status = bridge::imu_samples(record, samples, bridge::kAnyGapS);
   if (status.ok()) {
     beyond_range += static_cast<int>(record.time_ns.size() - samples.size());
     return samples;

@@ -44,11 +44,21 @@ std::vector<Metric> all_metrics() {
   return all;
 }
 
-// Returns true if the states cover the recording without a long gap.
+// Returns the time from which an estimate is possible: the start of the primary IMU and, for a map, of the lidar.
+std::int64_t sensors_start_ns(const sim::Sensors& sensors, Kind kind) {
+  std::int64_t start_ns = 0;
+  if (!sensors.imus.empty() && !sensors.imus.front().time_ns.empty())
+    start_ns = std::max(start_ns, sensors.imus.front().time_ns.front());
+  if (kind == Kind::slam && !sensors.lidars.empty() && !sensors.lidars.front().sweep_start_ns.empty())
+    start_ns = std::max(start_ns, sensors.lidars.front().sweep_start_ns.front());
+  return start_ns;
+}
+
+// Returns true if the states cover the recording from `start_ns` on without a long gap.
 template <typename State>
-bool reaches(const std::vector<State>& states, std::int64_t end_ns) {
+bool reaches(const std::vector<State>& states, std::int64_t start_ns, std::int64_t end_ns) {
   const double hole_max = kHoleMaxShare * static_cast<double>(end_ns);
-  std::int64_t previous = 0;
+  std::int64_t previous = start_ns;
   for (const State& state : states) {
     if (static_cast<double>(state.time_ns - previous) > hole_max) return false;
     previous = state.time_ns;
@@ -71,7 +81,7 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!attitude.q_WA.coeffs().allFinite()) return false;
   }
-  return reaches(scored.estimate().attitudes, truth.last_ns());
+  return reaches(scored.estimate().attitudes, sensors_start_ns(scored.sensors(), Kind::attitude), truth.last_ns());
 }
 
 /// kFarthest_m is the largest plausible distance from the origin. No rolling or tumbling robot travels this far, so a
@@ -90,8 +100,9 @@ bool poses_hold(const ScoredEstimate& scored) {
   return (end.estimate.p_WA_m - end.truth.p_WA_m).norm() <= std::max(path_m, kEndErrorFloorM);
 }
 
-bool poses_reach_and_hold(const ScoredEstimate& scored) {
-  return reaches(scored.estimate().poses, truth_track(scored).last_ns()) && poses_hold(scored);
+bool poses_reach_and_hold(Kind kind, const ScoredEstimate& scored) {
+  return reaches(scored.estimate().poses, sensors_start_ns(scored.sensors(), kind), truth_track(scored).last_ns()) &&
+         poses_hold(scored);
 }
 
 // Returns false if a run that is long enough for the end error has too few registered sweeps. The function returns true
@@ -113,9 +124,9 @@ bool holds(Kind kind, const ScoredEstimate& scored) {
     case Kind::attitude:
       return attitudes_hold(scored);
     case Kind::position:
-      return poses_reach_and_hold(scored);
+      return poses_reach_and_hold(kind, scored);
     case Kind::slam:
-      return poses_reach_and_hold(scored) && sweeps_hold(scored);
+      return poses_reach_and_hold(kind, scored) && sweeps_hold(scored);
   }
   return false;
 }

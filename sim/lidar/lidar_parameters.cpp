@@ -54,6 +54,33 @@ constexpr Parameter kEchoLength{"echo_length_m",
                                 "with beam_rays above 1: echoes whose ranges differ by less than this value merge into "
                                 "one mixed return; 0.75 m corresponds to a pulse of 5 ns (assumed)"};
 
+// Lidars that rotate by whole turns.
+constexpr Parameter kSpinRate{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "rotations per second; one rotation is one sweep"};
+constexpr Parameter kClockwise{"clockwise", 1.0, 0.0,
+                               1.0,         "1", "1: the lidar rotates from x towards -y; 0: from x towards +y"};
+
+constexpr Parameter range_min(double value_m) {
+  return {"range_min_m", value_m, 0.0, 100.0, "m", "minimum range; nearer returns are lost"};
+}
+
+constexpr Parameter range_max(double value_m) {
+  return {"range_max_m", value_m, 0.1, 10000.0, "m", "maximum range; farther returns are lost"};
+}
+
+constexpr Parameter range_quantum(double value_m) {
+  return {"range_quantum_m", value_m, 0.0, 1.0, "m", "resolution of the reported range; 0: off"};
+}
+
+constexpr Parameter detection_range(double value_m) {
+  return {"detection_range_m",
+          value_m,
+          0.0,
+          10000.0,
+          "m",
+          "range at which half of the returns from a surface of detection_reflectivity at normal incidence are lost; "
+          "0: no loss by range"};
+}
+
 constexpr Parameter divergence(std::string_view name, double value_rad) {
   return {name, value_rad, 0.0, 0.1, "rad", "full opening angle of the beam in this direction of the lidar axes"};
 }
@@ -63,8 +90,8 @@ constexpr Parameter kCage{
 
 // The elevations [rad] are the calibrated elevations of the published rig.
 constexpr std::array kSpinning = {
-    Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "rotations per second; one rotation is one sweep"},
-    Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the lidar rotates from x towards -y; 0: from x towards +y"},
+    kSpinRate,
+    kClockwise,
     Parameter{"firing_period_s", 3e-6, 1e-7, 1e-3, "s", "time between the firings of two channels of a sequence"},
     Parameter{"sequence_period_s", 50e-6, 2e-6, 1e-2, "s", "time between two sequences of all channels"},
     Parameter{"current_driver_timing", 0.0, 0.0, 1.0, "1",
@@ -89,13 +116,11 @@ constexpr std::array kSpinning = {
     Parameter{"mirror_radius_m", 0.04638, 0.0, 1.0, "m", "R1: distance of the beams' origin from the rotation axis"},
     Parameter{"mirror_drop_m", 0.010875, -1.0, 1.0, "m",
               "R2: distance of the beams' origin below the origin of the lidar axes"},
-    Parameter{"range_min_m", 0.2, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
-    Parameter{"range_max_m", 150.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
+    range_min(0.2),
+    range_max(150.0),
     kRangeNoise,
-    Parameter{"range_quantum_m", 0.005, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
-    Parameter{"detection_range_m", 150.0, 0.0, 10000.0, "m",
-              "range at which half of the returns from a surface of detection_reflectivity at normal incidence are "
-              "lost; 0: no loss by range"},
+    range_quantum(0.005),
+    detection_range(150.0),
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -114,8 +139,8 @@ constexpr std::array kSpinning = {
 
 // The default values are from the Ouster OS1 with 64 rings.
 constexpr std::array kColumn = {
-    Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "turns per second; one turn is one sweep"},
-    Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},
+    kSpinRate,
+    kClockwise,
     Parameter{"rings", 64.0, 16.0, 128.0, "1", "number of rings, a multiple of 16"},
     Parameter{"elevation_low_rad", -22.5 * kDegree_rad, -kRightAngle_rad, kRightAngle_rad, "rad",
               "elevation of the lowest ring"},
@@ -126,13 +151,11 @@ constexpr std::array kColumn = {
     Parameter{"column_period_s", 97.65625e-6, 2e-6, 1e-2, "s",
               "time between two columns; banks of 16 rings are distributed evenly over the period"},
     Parameter{"firing_period_s", 0.0, 0.0, 1e-3, "s", "time between two rings of a bank"},
-    Parameter{"range_min_m", 0.5, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
-    Parameter{"range_max_m", 120.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
+    range_min(0.5),
+    range_max(120.0),
     kRangeNoise,
-    Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
-    Parameter{"detection_range_m", 90.0, 0.0, 10000.0, "m",
-              "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
-              "loss by range"},
+    range_quantum(0.001),
+    detection_range(90.0),
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -158,13 +181,11 @@ constexpr std::array kRosette = {
     Parameter{"mixed_amplitude", 0.0022, 0.0, 1.0, "1",
               "tangent of the additional deflection at twice the rate of the first prism minus the rate of the second; "
               "0: off"},
-    Parameter{"range_min_m", 1.0, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
-    Parameter{"range_max_m", 260.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
+    range_min(1.0),
+    range_max(260.0),
     kRangeNoise,
-    Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
-    Parameter{"detection_range_m", 130.0, 0.0, 10000.0, "m",
-              "range at which half of the returns from a surface of detection_reflectivity at normal incidence are "
-              "lost; 0: no loss by range"},
+    range_quantum(0.001),
+    detection_range(130.0),
     kReferenceReflectivity,
     kSteepness,
     kDropout,

@@ -35,7 +35,10 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
   std::vector<WnojSmoother::Measurement> readings(observations.size());
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const RateObservation& o = observations[k];
-    (void)saave.step(o.sample, state, recovered);  // step() cannot fail, because the samples were checked
+    if (!saave.step(o.sample, state, recovered).ok()) {  // the samples were checked, so the error is a gap
+      state = {};
+      (void)saave.step(o.sample, state, recovered);
+    }
     readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
     for (int j = 0; j < 3; ++j) {
       if ((o.clipping.unusable_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "rate_readings.hpp"
@@ -50,7 +51,7 @@ RateSmoother::RateSmoother(const Params& params)
 Status RateSmoother::estimate(std::span<const ImuSample> samples,
                               std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                               std::vector<RateState>& out, RateReport& report) const {
-  if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
+  if (Status status = check_recording(samples, 2, std::numeric_limits<double>::infinity()); !status.ok()) return status;
   if (Status status = check_auxiliary_imus(params_.model, auxiliary_imus, samples.size()); !status.ok()) return status;
 
   RateReport health;

@@ -185,8 +185,8 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
 }
 
 // Estimates the delay from flight. If there is too little flight, returns 0.
-double flight_duration_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
-                         double period_s) {
+double delay_from_flight_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
+                           double period_s) {
   const std::vector<Instant> turning = instants_of(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
   const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
@@ -221,7 +221,7 @@ TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const
   const double period_s = median_period_s(samples);
   const TriadDelay of_strokes = struck(gyro, accel, period_s);
   if (of_strokes.sigma_s > 0.0) return of_strokes;
-  return {flight_duration_s(gyro, accel, lever_arm_m, period_s), 0.0};
+  return {delay_from_flight_s(gyro, accel, lever_arm_m, period_s), 0.0};
 }
 
 }  // namespace tumble

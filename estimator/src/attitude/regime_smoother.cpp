@@ -64,9 +64,8 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   finding.axis_aligned_rails = params_.rate.rails;
   ClippedReadings known = to_clipped_readings(samples, ClippingFinder(finding).find(samples));
   known.mark_suspect(samples, report.rate.suspect_axes);
-  std::vector<RateState> other;
-  std::vector<AttitudeState> attitudes;
-  if (!hand_held_.estimate(samples, known.clipped(), other, attitudes, report.hand_held).ok()) return;
+  std::vector<RateState> other = rates;
+  if (!estimate_hand_held(samples, known, other, report.hand_held)) return;
   known.mark_partly_saturated(other);
   report.hand_held_smoother_ran = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -76,6 +75,29 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     // the sample stays unclipped because no motion type has clipping at this sample
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
+}
+
+/// Replaces the rates of each part between two gaps by the rates of HandHeldSmoother, as far as HandHeldSmoother
+/// succeeds. The report is that of the last such part. Returns whether there is one.
+bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
+                                        std::vector<RateState>& rates, HandHeldSmoother::Report& report) const {
+  bool any = false;
+  std::vector<RateState> part;
+  std::vector<AttitudeState> attitudes;
+  for (std::size_t first = 0, end = 0; first < samples.size(); first = end) {
+    const auto follows = [&](std::size_t k) {
+      return check_stamp_order(samples[k].time_ns, samples[k - 1].time_ns, params_.hand_held.expert.gap_max_s).ok();
+    };
+    for (end = first + 1; end < samples.size() && follows(end);) ++end;
+    ClippedElements clipped = known.clipped();
+    clipped.signs = clipped.signs.subspan(first, end - first);
+    HandHeldSmoother::Report of_part;
+    if (!hand_held_.estimate(samples.subspan(first, end - first), clipped, part, attitudes, of_part).ok()) continue;
+    std::copy(part.begin(), part.end(), rates.begin() + static_cast<std::ptrdiff_t>(first));
+    report = of_part;
+    any = true;
+  }
+  return any;
 }
 
 /// Returns the probability of hand-held motion for samples within segments of clipped or suspect readings: carried.md

@@ -101,6 +101,22 @@ StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estim
   return of_motion(state, estimate.mean.calibration, state.covariance, moved_to(T_WI, error).covariance);
 }
 
+StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate) {
+  const Eigen::Matrix3d R = tilt.rotation.toRotationMatrix();
+  MotionState state = estimate.mean.state;
+  state.q_WI = (tilt.rotation * state.q_WI).normalized();
+  state.v_WI_m_s = R * state.v_WI_m_s;
+  Motion T = Motion::Identity();
+  T.block<2, 9>(3, 0).setZero();
+  T.block<3, 3>(6, 6) = R;
+  const auto corrected = [&](const Registration::Matrix& P) {
+    Motion out = T * u::block(P, u::motion) * T.transpose();
+    u::variances(out, u::tilt).setConstant(tilt.sigma_rad * tilt.sigma_rad);
+    return out;
+  };
+  return of_motion(state, estimate.mean.calibration, corrected(estimate.weight), corrected(estimate.error));
+}
+
 StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   MotionState state = reckoned.mean.state;
   Motion C = u::block(reckoned.weight, u::motion), E = u::block(reckoned.error, u::motion);

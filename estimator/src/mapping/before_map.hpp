@@ -19,9 +19,12 @@ void widen_to_motion(MotionState& levelled);
 MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
 StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
-/// Returns the dead-reckoned state `step_s` after the last call, in a frame with origin and yaw at the IMU. Without a
-/// map, position and yaw are unobservable. A weak prior on the speed limits the errors of tilt and velocity during
-/// minutes of motion.
+/// Returns the estimate with a corrected tilt, whose errors are independent of the other errors.
+StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
+
+/// Returns the reckoned state, `step_s` after the last call, with the origin and yaw of the frame moved to the IMU.
+/// Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity
+/// over minutes of motion.
 StateEstimate without_place(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the first sweep

@@ -55,6 +55,25 @@ const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start() const {
   return impl_->start_pose;
 }
 
+std::optional<LidarInertialOdometry::StartTilt> LidarInertialOdometry::start_tilt() const {
+  constexpr double kBetter = 0.5;  // maximum standard deviation, relative to that of the start
+  namespace u = mapping::unknowns;
+  const Eigen::Vector3d& gravity = impl_->boundary.state_estimate.mean.calibration.gravity_W_m_s2;
+  const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
+  StartTilt out;
+  out.sigma_rad = std::sqrt(variance) / std::max(gravity.norm(), 1e-3);
+  const bool in_motion = impl_->start_tilt || impl_->world.tilt_sigma_rad() > impl_->params.expert.world.tilt_sigma_rad;
+  if (!mapping::has_started(impl_->tracking) || impl_->localiser.is_localised() || !in_motion) return std::nullopt;
+  if (!(out.sigma_rad <= kBetter * impl_->world.tilt_sigma_rad())) return impl_->start_tilt;
+  out.rotation = Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
+  if (impl_->start_tilt) out.rotation = (out.rotation * impl_->start_tilt->rotation).normalized();
+  return out;
+}
+
+void LidarInertialOdometry::set_start_tilt(const StartTilt& tilt) {
+  impl_->start_tilt = tilt;
+}
+
 Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& rate) {
   if (Status status = check(sample, rate); !status.ok()) return status;
   if (Status status = impl_->track.check(sample); !status.ok()) return status;

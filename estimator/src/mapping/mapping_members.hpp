@@ -109,11 +109,18 @@ void LocalMap::members(Self& s, Visitor& visit) {
 
 }  // namespace mapping
 
-/// Visits all members except the parameters, which the constructor sets.
+template <class Self, class Visitor>
+void LidarInertialOdometry::StartTilt::members(Self& s, Visitor& visit) {
+  visit("start_tilt.rotation", s.rotation);
+  visit("start_tilt.sigma_rad", s.sigma_rad, 0.0, 10.0);
+}
+
+/// Visits the members except the parameters, which are set at construction.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);
   visit("start_pose", s.start_pose);
+  visit("start_tilt", s.start_tilt);
   visit_variant("tracking", s.tracking, visit);
   visit("track", s.track);
   visit("boundary", s.boundary);

@@ -107,6 +107,7 @@ struct LidarInertialOdometry::Impl {
 
   Params params;
   std::optional<Eigen::Isometry3d> start_pose;  // position and heading of the IMU where the map starts
+  std::optional<StartTilt> start_tilt;
   mapping::TrackingState tracking;
   mapping::InertialTrack track;
   mapping::SweepBoundary boundary;  // boundary between the last sweep and the next sweep

@@ -107,7 +107,8 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   if (Status status = level_start(levelled); !status.ok()) return status;
   if (start_pose) levelled = mapping::moved_to(*start_pose, levelled);
   if (!track.starts_at_rest(params.expert.start.bias_rest_s)) {
-    const StateEstimate in_motion = mapping::belief_before_map(params, levelled);
+    StateEstimate in_motion = mapping::belief_before_map(params, levelled);
+    if (start_tilt) in_motion = mapping::with_tilt(*start_tilt, in_motion);
     world = mapping::world_at_first_sweep(params, in_motion);
     boundary.state_estimate = mapping::belief_at_first_sweep(params, in_motion);
     return {};
@@ -142,6 +143,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
     known = of_sweep;
     if (start_pose) boundary.state_estimate = mapping::moved_to(*start_pose, boundary.state_estimate);
+    if (start_tilt) boundary.state_estimate = mapping::with_tilt(*start_tilt, boundary.state_estimate);
     world = mapping::world_at_first_sweep(params, boundary.state_estimate);
     boundary.state_estimate = mapping::belief_at_first_sweep(params, boundary.state_estimate);
     return {};

@@ -35,6 +35,9 @@ class WorldCovariance {
   void add_insertion(double inserted_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 
+  /// Returns the standard deviation of the map's vertical.
+  double tilt_sigma_rad() const { return params_.tilt_sigma_rad; }
+
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -33,10 +33,12 @@ class Pass {
   Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)
       : input_(input), offset_ns_(static_cast<TimeNs>(std::llround(params.time_offset_s * 1e9))), out_(params) {
     if (input.start) out_.mapper.set_start_pose(*input.start);
+    if (input.start_tilt) out_.mapper.set_start_tilt(*input.start_tilt);
   }
 
   MappedRecording run() {
     for (std::size_t k = 0; k < input_.sweeps && out_.status.ok(); ++k) add(input_.sweep(k));
+    add_silence(input_.samples.back().time_ns - offset_ns_);
     for (std::vector<PoseState>& open : out_.mapper.window_trajectories()) apply_next(std::move(open));
     for (const MappedSweep& sweep : out_.sweeps) {
       if (!sweep.report.trajectory.empty()) out_.localisation.add(sweep.report);
@@ -47,6 +49,8 @@ class Pass {
  private:
   /// Adds the IMU samples up to the end of the sweep, then the odometer reading and the sweep.
   void add(WaitingSweep sweep) {
+    add_silence(sweep.start_ns);
+    if (!out_.status.ok()) return;
     add_samples(sweep.end_ns + offset_ns_);
     if (!out_.status.ok()) return;
     if (!shorten(input_.samples.back().time_ns - offset_ns_, sweep)) {
@@ -55,6 +59,18 @@ class Pass {
     }
     add_reading(sweep.end_ns + offset_ns_);
     if (out_.status.ok()) add_points(sweep);
+  }
+
+  /// Adds empty sweeps while the lidar is silent until `to_ns`, as TumblingOdometry does live.
+  void add_silence(TimeNs to_ns) {
+    while (out_.status.ok() && last_end_ns_) {
+      const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);
+      if (silent_ns >= to_ns + offset_ns_) return;
+      add_samples(silent_ns + 1);
+      const TimeNs end_ns = input_.samples[next_ - 1].time_ns - offset_ns_;
+      if (!out_.status.ok() || input_.samples[next_ - 1].time_ns <= silent_ns || end_ns > to_ns) return;
+      add_points({.start_ns = end_ns, .end_ns = end_ns, .points = {}});
+    }
   }
 
   /// Adds IMU samples up to the first sample at or after `to_ns`.
@@ -76,6 +92,7 @@ class Pass {
     added.status = out_.mapper.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, added.report);
     if (added.report.trajectory.empty()) return;
     last_pose_ns_ = added.report.pose.time_ns;
+    last_end_ns_ = sweep.end_ns;
     apply_next(std::exchange(added.report.smoothed, {}));
   }
 
@@ -95,6 +112,7 @@ class Pass {
   std::size_t next_ = 0;      ///< next sample
   std::size_t smoothed_ = 0;  ///< next sweep without a smoothed trajectory
   std::optional<TimeNs> last_pose_ns_;
+  std::optional<TimeNs> last_end_ns_;  ///< end of the last sweep with a pose, in the lidar's clock
 };
 
 /// Returns the initial calibration of a pass with the stated uncertainty.
@@ -116,7 +134,7 @@ bool determines_calibration(const MappedRecording& pass) {
   for (const MappedSweep& sweep : pass.sweeps) {
     if (sweep.report.trajectory.empty()) continue;
     ++located;
-    rejected += sweep.report.verdict == SweepVerdict::rejected;
+    rejected += sweep.report.verdict == SweepVerdict::rejected && sweep.report.points_used > 0;
   }
   return kSweepsPerRejection * rejected <= located;
 }
@@ -162,8 +180,10 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   LidarInertialOdometry::Params started = params;
   MappedRecording out = map_once(input, started);
   int passes = 1;
+  MappingInput levelled = input;  // with the tilt of a start in motion from the pass before
   const auto again = [&] {
-    out = map_once(input, started);
+    levelled.start_tilt = out.mapper.start_tilt();
+    out = map_once(levelled, started);
     ++passes;
   };
   double moved = 0.0;
@@ -180,6 +200,8 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
     started.mount_sigma_rad = sigma.head<3>().maxCoeff();
     started.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
     started.time_offset_sigma_s = sigma[6];
+    again();
+  } else if (determines_calibration(out) && !levelled.start_tilt && out.mapper.start_tilt()) {
     again();
   }
   out.passes = passes;

@@ -102,15 +102,76 @@ void set_units(const Units& units, ImuMerge::Params& params) {
   std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
 }
 
-Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, std::vector<ImuSample>& out) {
+/// Removes the gaps of a recording from the time of ImuMerge, whose calibration continues after a gap.
+class TimeWithoutGaps {
+ public:
+  explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
+
+  /// Returns the time of the next sample, and whether the sample follows a gap. A gap becomes as short as the step
+  /// before the gap.
+  std::pair<TimeNs, bool> next(TimeNs time_ns) {
+    const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
+    if (after_gap) {
+      const TimeNs removed_ns = time_ns - last_ns_ - step_ns_;
+      gaps_.push_back({time_ns - removed_ns - removed(), removed_ns + removed()});
+    } else if (started_) {
+      step_ns_ = time_ns - last_ns_;
+    }
+    started_ = true;
+    last_ns_ = time_ns;
+    return {time_ns - removed(), after_gap};
+  }
+  /// Returns the time in the recording.
+  TimeNs in_recording(TimeNs time_ns) const {
+    TimeNs removed_ns = 0;
+    for (const Gap& gap : gaps_) {
+      if (time_ns >= gap.end_ns) removed_ns = gap.removed_ns;
+    }
+    return time_ns + removed_ns;
+  }
+
+ private:
+  struct Gap {
+    TimeNs end_ns, removed_ns;  ///< end without gaps; sum of all gaps so far
+  };
+  TimeNs removed() const { return gaps_.empty() ? 0 : gaps_.back().removed_ns; }
+
+  double gap_max_s_;
+  std::vector<Gap> gaps_;
+  bool started_ = false;
+  TimeNs last_ns_ = 0, step_ns_ = 1;
+};
+
+/// Deletes the windows and the predicted motion, which end at a gap. The calibration of the units remains.
+void delete_motion(ImuMerge::State& state) {
+  for (ImuMerge::Unit& unit : state.units) unit.window = {};
+  state.recovery.running = false;
+  state.window_s = 0.0;
+  state.windows = 0;
+}
+
+Status run(const ImuMerge& merge, double gap_max_s, const Units& units, ImuMerge::State& state,
+           std::vector<ImuSample>& out) {
   std::vector<ImuSample> now(units.samples.size());
   std::optional<ImuSample> merged;
+  TimeWithoutGaps time(gap_max_s);
   out.clear();
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
+    const bool received = std::any_of(now.begin(), now.end(), [](const ImuSample& s) { return is_finite(s); });
+    if (received) {
+      const auto [time_ns, after_gap] = time.next(now[0].time_ns);
+      now[0].time_ns = time_ns;
+      if (after_gap) delete_motion(state);
+    }
     if (Status status = merge.step(now, state, merged); !status.ok()) return status;
     if (Status status = merge.verdict(state); !status.ok()) return status;
     if (merged) out.push_back(*merged);
+  }
+  for (ImuSample& sample : out) sample.time_ns = time.in_recording(sample.time_ns);
+  for (ImuMerge::Unit& unit : state.units) {
+    unit.frozen_since_ns = time.in_recording(unit.frozen_since_ns);
+    unit.disagrees_since_ns = time.in_recording(unit.disagrees_since_ns);
   }
   return {};
 }
@@ -229,13 +290,13 @@ Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Par
   set_units(units, params);
   auto state = std::make_unique<ImuMerge::State>();
   const ImuMerge first(params);
-  if (Status status = run(first, units, *state, out.samples); !status.ok()) return status;
+  if (Status status = run(first, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
   const bool faulty = exclude_found(first, *state, units, out.faults);
   set_units(units, params);
   const ImuMerge merge(params);
   if (faulty) {
     *state = {};
-    if (Status status = run(merge, units, *state, out.samples); !status.ok()) return status;
+    if (Status status = run(merge, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
   }
   report_calibration(merge, *state, units, out);
   return {};

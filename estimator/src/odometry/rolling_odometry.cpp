@@ -2,12 +2,10 @@
 #include "tumble/odometry/rolling_odometry.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "rolling_odometry_params.hpp"
-#include "tumble/common/so3.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble {
@@ -93,7 +91,7 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       start_(other.start_),
       T_W_run_(other.T_W_run_),
       restart_count_(other.restart_count_),
-      restarted_(other.restarted_),
+      restart_(other.restart_),
       live_(other.live_),
       finished_(other.finished_) {}
 
@@ -117,7 +115,9 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (const Status status = stamp_order_.classify_stamp(samples.front().time_ns, stamp_order_state_, verdict);
       !status.ok())
     return status;
-  if (verdict != StampOrder::Verdict::continues) restart_at_newest();
+  if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest(StampOrder::kStepBack_s);
+  if (verdict == StampOrder::Verdict::restarts_after_gap)
+    restart_at_newest(seconds(samples.front().time_ns - *stamp_order_state_.newest_ns));
   if (const Status status = add_delayed_samples(samples); !status.ok()) return status;
   UnitRails::Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
@@ -271,23 +271,8 @@ void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
   const std::size_t before = results_.size();
-  if (!live_ && !is_whole()) smoother_.finish(*state_, results_);
+  if (!live_) smoother_.finish(*state_, results_);
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
-}
-
-/// Restarts the run at its newest pose.
-void RollingOdometry::restart_at_newest() {
-  const std::optional<Pose> pose = newest();
-  end_run();
-  Eigen::Isometry3d T_WG = start_.value_or(Eigen::Isometry3d::Identity());
-  if (pose) {
-    T_WG.linear() = pose->pose.q_WA.toRotationMatrix();
-    T_WG.translation() = pose->pose.p_WA_m;
-  }
-  start_run();
-  start_ = T_WG;
-  ++restart_count_;
-  restarted_ = true;
 }
 
 void RollingOdometry::reset() {
@@ -313,39 +298,13 @@ void RollingOdometry::start_run() {
   whole_.reset();
   stamp_order_state_ = {};
   start_ = T_W_run_ = std::nullopt;
-  restarted_ = false;
+  restart_.reset();
   finished_ = false;
 }
 
 void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
   reset();
   start_ = T_WG;
-}
-
-/// Computes the pose of the run's origin from the run's first pose.
-void RollingOdometry::initialise_pose() {
-  if (!start_ || !state_->live.started) return;
-  const RollingEstimate first = RollingFilter::estimate(state_->live);
-  const Eigen::Quaterniond turn = Eigen::Quaterniond(start_->linear()) * first.q_WI.conjugate();
-  Eigen::Isometry3d T_WR = Eigen::Isometry3d::Identity();
-  T_WR.linear() = so3::exp({0.0, 0.0, 2.0 * std::atan2(turn.z(), turn.w())}).toRotationMatrix();
-  T_WR.translation() = start_->translation() - T_WR.linear() * first.p_WG_m;
-  T_W_run_ = T_WR;
-  start_.reset();
-}
-
-/// Transforms an estimate of the filter or the smoother to the world frame.
-RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
-  estimate.uncertain = estimate.uncertain || restarted_;
-  if (!T_W_run_) return estimate;
-  const Eigen::Matrix3d R = T_W_run_->linear();
-  Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();
-  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
-  estimate.p_WG_m = *T_W_run_ * estimate.p_WG_m;
-  estimate.q_WI = (Eigen::Quaterniond(R) * estimate.q_WI).normalized();
-  estimate.v_WG_m_s = R * estimate.v_WG_m_s;
-  estimate.covariance = both * estimate.covariance * both.transpose();
-  return estimate;
 }
 
 Status RollingOdometry::process_accepted_sample(const ImuSample& merged) {

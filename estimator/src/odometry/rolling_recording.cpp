@@ -49,10 +49,13 @@ Status RollingOdometry::finish_whole_recording() {
   whole->findings = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
+    // start_run() replaces state_
+    const TimeNs last_ns = state_->live.started ? state_->live.last_time_ns : sample.time_ns;
+    if (seconds(sample.time_ns - last_ns) > params_.expert.rolling.filter.expert.gap.gap_max_s)
+      restart_at_newest(seconds(sample.time_ns - last_ns));
     if (Status status = smoother_.step(sample, *state_, results_); !status.ok()) return status;
     initialise_pose();
   }
-  smoother_.finish(*state_, results_);
   return {};
 }
 

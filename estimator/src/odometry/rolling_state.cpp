@@ -42,6 +42,12 @@ void others(Self& p, Visitor& visit) {
 }
 
 template <class Self, class Visitor>
+void RollingOdometry::Restart::members(Self& s, Visitor& visit) {
+  visit("restart.p_WG", s.p_WG_m);
+  visit("restart.covariance", s.covariance);
+}
+
+template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones; the next three are derived from them
   visit.scratch(s.stamp_order_);
@@ -79,7 +85,7 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit("start", s.start_);
   visit("T_WR", s.T_W_run_);
   visit("gaps", s.restart_count_);
-  visit("restarted", s.restarted_);
+  visit("restart", s.restart_);
   visit.scratch(s.live_);
   visit("finished", s.finished_);
 }

@@ -39,7 +39,6 @@ std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
   return dropped;
 }
 
-constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
 constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits how many sweeps wait for the lag
 
@@ -219,7 +218,7 @@ void TumblingOdometry::register_covered_sweeps() {
   }
   const std::optional<TimeNs> covered_ns = pass_.covered_ns();
   if (!waiting_.empty() || !covered_ns) return;
-  if (seconds(*covered_ns - *last_registered_ns_) > kSilent_s) {
+  if (seconds(*covered_ns - *last_registered_ns_) > kLidarSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
     if (results_.back().report.trajectory.empty()) results_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;

@@ -58,12 +58,11 @@ Status TumblingOdometry::record(const ImuSample& sample) {
   StampOrder::Verdict verdict{};
   if (const Status status = stamp_order_.classify_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
     return status;
-  if (verdict != StampOrder::Verdict::continues && recorded_.size() > 1) {
-    const TimeNs last_ns = recorded_.back().time_ns;
-    const bool back = verdict == StampOrder::Verdict::restarts_after_step_back;
-    return {back ? ErrorCode::time_order : ErrorCode::gap, "time_ns", double(sample.time_ns), double(last_ns)};
-  }
-  if (verdict != StampOrder::Verdict::continues) {  // the first stamp was wrong
+  const bool first_is_wrong = verdict != StampOrder::Verdict::continues && recorded_.size() <= 1;
+  if (verdict == StampOrder::Verdict::restarts_after_step_back && !first_is_wrong)
+    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(recorded_.back().time_ns)};
+  if (verdict == StampOrder::Verdict::restarts_after_gap && !first_is_wrong) ++restart_count_;
+  if (first_is_wrong) {
     recorded_.clear();
     stamp_order_state_ = {};
     last_registered_ns_.reset();

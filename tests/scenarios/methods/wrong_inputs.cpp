@@ -75,6 +75,42 @@ void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
   }
 }
 
+/// The lidars lose their sweeps for so long, about the hardest impact.
+void silence_lidars(sim::Sensors& sensors, std::int64_t for_ns) {
+  const std::int64_t from_ns = sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2;
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    const sim::LidarRecord all = lidar;
+    const auto keep = [](const auto& rows, std::size_t first, std::size_t end, auto& kept) {
+      if (!rows.empty())
+        kept.insert(kept.end(), rows.begin() + std::ptrdiff_t(first), rows.begin() + std::ptrdiff_t(end));
+    };
+    lidar.sweep_start_ns.clear(), lidar.position_L_m.clear(), lidar.range_m.clear(), lidar.intensity.clear();
+    lidar.offset_ns.clear(), lidar.ring.clear(), lidar.sweep_first = {0};
+    for (std::size_t k = 0; k < all.sweep_start_ns.size(); ++k) {
+      if (all.sweep_start_ns[k] >= from_ns && all.sweep_start_ns[k] < from_ns + for_ns) continue;
+      const std::size_t first = all.sweep_first[k], end = all.sweep_first[k + 1];
+      lidar.sweep_start_ns.push_back(all.sweep_start_ns[k]);
+      keep(all.position_L_m, first, end, lidar.position_L_m), keep(all.range_m, first, end, lidar.range_m);
+      keep(all.intensity, first, end, lidar.intensity), keep(all.ring, first, end, lidar.ring);
+      keep(all.offset_ns, first, end, lidar.offset_ns);
+      lidar.sweep_first.push_back(lidar.offset_ns.size());
+    }
+  }
+}
+
+/// The times of the points run backwards within each sweep.
+void reverse_point_times(sim::Sensors& sensors) {
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    for (std::size_t k = 0; k + 1 < lidar.sweep_first.size(); ++k) {
+      const auto first = lidar.offset_ns.begin() + std::ptrdiff_t(lidar.sweep_first[k]);
+      const auto end = lidar.offset_ns.begin() + std::ptrdiff_t(lidar.sweep_first[k + 1]);
+      if (first == end) continue;
+      const std::uint32_t last_ns = *std::max_element(first, end);
+      std::for_each(first, end, [&](std::uint32_t& offset_ns) { offset_ns = last_ns - offset_ns; });
+    }
+  }
+}
+
 void scale_ranges(sim::Sensors& sensors, float by) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     for (Eigen::Vector3f& position : lidar.position_L_m) position *= by;
@@ -154,6 +190,12 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
        }},
       {"imus_silent_120_ms", [](sim::Sensors& s) { silence_imus(s, 120'000'000); }},
       {"imus_silent_300_ms", [](sim::Sensors& s) { silence_imus(s, 300'000'000); }},
+      {"imus_silent_1500_ms", [](sim::Sensors& s) { silence_imus(s, 1'500'000'000); }},
+      {"lidar_silent_1500_ms", [](sim::Sensors& s) { silence_lidars(s, 1'500'000'000); }},
+      {"lidar_and_imus_silent_1500_ms",
+       [](sim::Sensors& s) { silence_lidars(s, 1'500'000'000), silence_imus(s, 1'500'000'000); }},
+      {"lidar_times_reversed", [](sim::Sensors& s) { reverse_point_times(s); }},
+      {"lidar_ranges_in_feet", [](sim::Sensors& s) { scale_ranges(s, 3.28084F); }},
       {"lidar_20_ms", [](sim::Sensors& s) { shift_lidar(s, 20'000'000); }},
       {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
       {"lidar_ranges_long", [](sim::Sensors& s) { scale_ranges(s, 1.1F); }},

@@ -383,6 +383,20 @@ TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
   EXPECT_EQ(verdict_of(Kind::rate, Estimate{}, rig()), OutcomeStatus::diverged);
 }
 
+// A lidar or an IMU that starts late leaves no hole in the estimate.
+TEST(Verdict, TheTimeBeforeTheSensorsStartIsNoHole) {
+  sim::Recording late = rig();
+  const std::int64_t start_ns = late.sensors.imus.front().time_ns.back() * 2 / 5;
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  std::erase_if(estimate.poses, [&](const PoseState& pose) { return pose.time_ns < start_ns; });
+  EXPECT_EQ(verdict_of(Kind::slam, estimate, late), OutcomeStatus::diverged);
+  for (std::int64_t& sweep_ns : late.sensors.lidars.front().sweep_start_ns) sweep_ns = std::max(sweep_ns, start_ns);
+  EXPECT_EQ(verdict_of(Kind::slam, estimate, late), OutcomeStatus::ok);
+  EXPECT_EQ(verdict_of(Kind::position, estimate, late), OutcomeStatus::diverged) << "the IMU starts on time";
+  late.sensors.imus.front().time_ns.front() = start_ns;
+  EXPECT_EQ(verdict_of(Kind::position, estimate, late), OutcomeStatus::ok);
+}
+
 TEST(Score, NeedsTheTruth) {
   EXPECT_THROW(score(Kind::rate, Estimate{}, ScoringInput{&rig().sensors, nullptr, nullptr}), BadInput);
   EXPECT_THROW(verdict(Kind::rate, Estimate{}, ScoringInput{nullptr, &rig().truth, nullptr}), BadInput);

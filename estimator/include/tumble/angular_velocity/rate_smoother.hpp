@@ -33,7 +33,7 @@ struct RateSmootherParams {
   /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). RateSmoother uses the earlier sensor
   /// errors only if the estimation of sensor errors is enabled.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
-  double gap_max_s = 1.0;  ///< maximum time between samples; a longer gap is an error
+  double gap_max_s = 1.0;  ///< a longer time between samples separates parts of the recording
 
   using Expert = RateSmootherExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -52,7 +52,7 @@ struct RateSmootherParams {
                                           "prior; a larger distance is reported as an error",
                                           FieldRank::basic});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                        "maximum time between two samples; a longer gap ends the run with an error"});
+                        "maximum time between two samples of one part; no rate is estimated across a longer gap"});
     visit.group("", p.expert);
   }
 };
@@ -136,8 +136,10 @@ class RateSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateSmoother(const Params& params);
 
-  /// Estimates one RateState per sample, and the diagnostics of the run. Returns `empty`, `too_few` (fewer than two
-  /// samples), `non_finite`, `time_order`, `gap` or `diverged` on error. On error, the outputs are unchanged.
+  /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written. The returned
+  /// status contains field, value and bound. The kind of error is `empty`, `too_few` (less than two samples),
+  /// `non_finite`, `time_order` or `diverged`. After a gap in the samples, the calibration continues, and the white
+  /// angular jerk leaves the rate after the gap independent of the rate before it.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }

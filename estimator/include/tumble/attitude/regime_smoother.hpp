@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/attitude/clipped_readings.hpp"
 #include "tumble/attitude/hand_held_smoother.hpp"
 #include "tumble/attitude/regimes.hpp"
 #include "tumble/common/parameters.hpp"
@@ -68,6 +69,8 @@ class RegimeSmoother {
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
+  bool estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
+                          std::vector<RateState>& rates, HandHeldSmoother::Report& report) const;
   std::vector<double> hand_held_by_segment(std::span<const RegimeProbabilities> probabilities, const RateReport& report,
                                            std::span<const RateState> rates) const;
 

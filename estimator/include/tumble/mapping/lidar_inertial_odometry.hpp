@@ -70,6 +70,20 @@ class LidarInertialOdometry {
   /// Returns the pose that was passed to set_start_pose(), if any.
   const std::optional<Eigen::Isometry3d>& start() const;
 
+  /// Correction of the attitude at a start in motion, where the mean force is not gravity.
+  struct StartTilt {
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< corrects the attitude of the levelled start
+    double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
+
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
+  };
+  /// Returns the tilt of the start according to gravity in the map, for another run over the same data. The result is
+  /// empty after a start at rest, or if the motion does not determine gravity better than the start.
+  std::optional<StartTilt> start_tilt() const;
+  /// Sets the tilt of a start in motion. Call set_start_tilt() before the first sweep.
+  void set_start_tilt(const StartTilt& tilt);
+
   /// Sets the map of an earlier run, in which LidarInertialOdometry then localises the robot. Call use_map() before the
   /// first sweep.
   ///

@@ -131,7 +131,7 @@ class RollingOdometry {
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
   /// restarts the run. If the clock steps back, add_imus() rejects samples with `time_order` for 0.2 s, and then the
   /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
-  /// a restart have the flag `uncertain`.
+  /// a restart have the flag `uncertain`. The covariance of these poses includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -211,7 +211,7 @@ class RollingOdometry {
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
-  void restart_at_newest();
+  void restart_at_newest(double gap_s);
   void end_run();
   void start_run();
   void initialise_pose();
@@ -257,7 +257,14 @@ class RollingOdometry {
   std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
   std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; empty: the world's origin
   std::size_t restart_count_ = 0;
-  bool restarted_ = false;  ///< the position is uncertain because of a gap or a step of the clock
+  /// Restart after a gap or a step of the clock: position, and covariance of position and heading in the world.
+  struct Restart {
+    Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
+  };
+  std::optional<Restart> restart_;  ///< later poses are uncertain
   bool live_ = true, finished_ = false;
 };
 

@@ -48,8 +48,8 @@ struct RecordingEstimate;
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. The function finish() estimates the rates with RegimeSmoother, checks the IMU, and
 /// repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and
-/// take() returns all sweeps after finish(). A gap of more than a second or a step of the clock ends the recording. The
-/// function finish() needs more stack and memory than other functions.
+/// take() returns all sweeps after finish(). A step of the clock ends the recording, but a gap in the data does not.
+/// The function finish() needs more stack and memory than other functions.
 ///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
 /// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four

@@ -108,14 +108,10 @@ class ImuPlausibility {
   /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-<<<<<<< HEAD:estimator/include/tumble/attitude/imu_plausibility.hpp
-  /// Returns the mean magnitude of constant forces divided by gravity, or 1 while unknown.
-=======
   /// Limits the memory to about a minute of evidence, so that a finding ends after its cause.
   static void limit_memory(State& state);
 
-  /// Returns the mean magnitude of a constant force as a fraction of gravity, or 1 while unknown.
->>>>>>> h/h1:estimator/include/tumble/attitude/detail/imu_plausibility.hpp
+  /// Returns the mean magnitude of constant forces divided by gravity, or 1 while unknown.
   double force_ratio(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
   double unexplained_rotation_ratio(const State& state) const;

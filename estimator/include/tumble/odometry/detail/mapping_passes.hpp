@@ -32,6 +32,8 @@ struct MappingInput {
   /// may be empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
+  /// See LidarInertialOdometry::set_start_tilt().
+  std::optional<LidarInertialOdometry::StartTilt> start_tilt = std::nullopt;
 };
 
 /// MappedSweep contains the result of one sweep.

@@ -12,6 +12,8 @@
 
 namespace tumble {
 
+inline constexpr double kLidarSilent_s = 1.0;  ///< silence of the lidar after which an empty sweep is inserted
+
 /// WaitingSweep is a sweep that waits for the rates of its samples.
 struct WaitingSweep {
   TimeNs start_ns = 0, end_ns = 0;

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// RollingOdometry: restarts after a gap, and the pose of a run in the world.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "tumble/common/so3.hpp"
+#include "tumble/odometry/rolling_odometry.hpp"
+
+namespace tumble {
+
+namespace {
+
+// Standard deviations of the motion in a gap without data: horizontal speed in addition to the last speed, and rotation
+// about the vertical, up to an unknown heading (uniform over a turn).
+constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
+
+/// Returns the covariance without the tilt, which a restart levels again.
+Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
+  covariance.middleRows<2>(3).setZero();
+  covariance.middleCols<2>(3).setZero();
+  return covariance;
+}
+
+}  // namespace
+
+/// Restarts the run at the newest pose, after `gap_s` without data.
+void RollingOdometry::restart_at_newest(double gap_s) {
+  const std::size_t before = results_.size();
+  end_run();
+  std::optional<PoseState> pose;
+  if (const std::optional<Pose> live = newest()) pose = live->pose;
+  if (results_.size() > before) {
+    const RollingEstimate& last = results_.back();
+    pose = {last.time_ns, last.p_WG_m, last.q_WI, last.v_WG_m_s, last.covariance};
+  }
+  Eigen::Isometry3d T_WG = start_.value_or(Eigen::Isometry3d::Identity());
+  Restart restart;
+  if (pose) {
+    T_WG.linear() = pose->q_WA.toRotationMatrix();
+    T_WG.translation() = pose->p_WA_m;
+    restart = Restart{T_WG.translation(), position_and_heading(pose->covariance)};
+    const double moved_m = gap_s * std::hypot(pose->v_WA_m_s.norm(), kGapSpeed_m_s);
+    const double turned_rad = std::min(gap_s * kGapTurn_rad_s, kUnknownHeading_rad);
+    restart.covariance.diagonal().head<2>().array() += moved_m * moved_m;
+    restart.covariance(5, 5) += turned_rad * turned_rad;
+  }
+  start_run();
+  start_ = T_WG;
+  ++restart_count_;
+  restart_ = restart;
+}
+
+/// Computes the pose of the run's origin, from the run's first pose.
+void RollingOdometry::initialise_pose() {
+  if (!start_ || !state_->live.started) return;
+  const RollingEstimate first = RollingFilter::estimate(state_->live);
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(start_->linear()) * first.q_WI.conjugate();
+  Eigen::Isometry3d T_WR = Eigen::Isometry3d::Identity();
+  T_WR.linear() = so3::exp({0.0, 0.0, 2.0 * std::atan2(turn.z(), turn.w())}).toRotationMatrix();
+  T_WR.translation() = start_->translation() - T_WR.linear() * first.p_WG_m;
+  T_W_run_ = T_WR;
+  start_.reset();
+}
+
+/// Converts an estimate of the filter or the smoother to the world.
+RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
+  estimate.uncertain = estimate.uncertain || restart_.has_value();
+  if (!T_W_run_) return estimate;
+  const Eigen::Matrix3d R = T_W_run_->linear();
+  Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();
+  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
+  estimate.p_WG_m = *T_W_run_ * estimate.p_WG_m;
+  estimate.q_WI = (Eigen::Quaterniond(R) * estimate.q_WI).normalized();
+  estimate.v_WG_m_s = R * estimate.v_WG_m_s;
+  estimate.covariance = both * estimate.covariance * both.transpose();
+  if (!restart_) return estimate;
+  Eigen::Matrix<double, 6, 6> moved = Eigen::Matrix<double, 6, 6>::Identity();
+  moved.topRightCorner<3, 3>() = -so3::hat(estimate.p_WG_m - restart_->p_WG_m);
+  estimate.covariance += moved * restart_->covariance * moved.transpose();
+  return estimate;
+}
+
+}  // namespace tumble
