@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
+#include <span>
+#include <stdexcept>
 
 #include "odometry_node.hpp"
 #include "tumble_ros/tumbling_adapter.hpp"
@@ -55,15 +58,21 @@ class TumblingNode : public OdometryNode {
     imu_publisher_ = create_publisher<sensor_msgs::msg::Imu>("~/imu", kImuDepth);
     points_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>("~/points", 10);
     map_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>("~/map", rclcpp::QoS(1).transient_local());
-    save_map_ = saving("~/save_map", "map_file", [this] { return ply_of(adapter_->map()); });
+    save_map_ = saving("~/save_map", "map_file", [this] { return adapter_->map_file(text("map_file")); });
     save_calibration_ =
         saving("~/save_calibration", "calibration_file", [this] { return adapter_->calibration_yaml(); });
+    load_map_ = create_service<Trigger>(
+        "~/load_map", [this](const Trigger::Request::SharedPtr, const Trigger::Response::SharedPtr& answer) {
+          answer->success = adapter_.has_value() && load_map(answer->message);
+          if (!adapter_) answer->message = kNoData.message();
+        });
     subscribe<sensor_msgs::msg::Imu>("imu", kImuDepth, [this](const sensor_msgs::msg::Imu& message) {
       if (imu_frame_.empty()) imu_frame_ = message.header.frame_id;
       if (start()) report("imu", adapter_->on_imu(sample_of(message)));
     });
     subscribe<sensor_msgs::msg::PointCloud2>(
-        "points", kCloudDepth, [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); });
+        "points", kCloudDepth, [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); },
+        [this](const std::shared_ptr<rclcpp::SerializedMessage>& message) { on_livox(*message); });
   }
 
   bool wants(Output output) override {
@@ -95,13 +104,13 @@ class TumblingNode : public OdometryNode {
   }
 
  protected:
-  bool start_again(const Eigen::Isometry3d& T_OB) override {
-    if (adapter_) adapter_->reset(T_OB);
-    return adapter_.has_value();
+  Status start_again(const std::optional<StartPose>& start) override {
+    return adapter_ ? adapter_->reset(start) : kNoData;
   }
 
  private:
   static constexpr std::size_t kCloudDepth = 20;
+  static constexpr Status kNoData{ErrorCode::empty, "messages of imu and points", 0.0, 1.0};
 
   /// Creates the adapter when the mounting of both sensors is known.
   bool start() {
@@ -111,7 +120,33 @@ class TumblingNode : public OdometryNode {
     params_.T_BI = *T_BI;
     params_.T_BL = *T_BL;
     adapter_.emplace(params_, *this);
+    std::string message;
+    if (!text("prior_map_file").empty() && !load_map(message)) throw std::runtime_error(message);
     return true;
+  }
+
+  /// Reads `prior_map_file` and starts a run in this map. Returns false on error.
+  bool load_map(std::string& message) {
+    const std::string path = text("prior_map_file");
+    std::ifstream file(path, std::ios::binary);
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (!file) {
+      message = "cannot read '" + path + "'; set the parameter prior_map_file";
+      return false;
+    }
+    const Status status = adapter_->load_map(std::as_bytes(std::span(bytes)));
+    message = path + ": " + status.message();
+    return status.ok();
+  }
+
+  void on_livox(const rclcpp::SerializedMessage& message) {
+    const auto& raw = message.get_rcl_serialized_message();
+    const std::span<const std::uint8_t> bytes(raw.buffer, raw.buffer_length);
+    if (lidar_frame_.empty()) {
+      LivoxCloud cloud;
+      if (cloud.parse(bytes).ok()) lidar_frame_ = cloud.frame_id;
+    }
+    if (start()) report("points", adapter_->on_livox(bytes));
   }
 
   void on_points(const sensor_msgs::msg::PointCloud2& message) {
@@ -143,7 +178,7 @@ class TumblingNode : public OdometryNode {
   std::optional<TumblingAdapter> adapter_;
   rclcpp::Publisher<sensor_msgs::msg::Imu>::SharedPtr imu_publisher_;
   rclcpp::Publisher<sensor_msgs::msg::PointCloud2>::SharedPtr points_publisher_, map_publisher_;
-  rclcpp::Service<Trigger>::SharedPtr save_map_, save_calibration_;
+  rclcpp::Service<Trigger>::SharedPtr save_map_, save_calibration_, load_map_;
 };
 
 }  // namespace tumble::ros

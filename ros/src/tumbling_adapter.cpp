@@ -95,13 +95,41 @@ void TumblingAdapter::finish() {
   publish_sweeps();
 }
 
-void TumblingAdapter::reset(const Eigen::Isometry3d& T_OB) {
-  odometry_.reset(T_OB * params_.T_BI);
+Status TumblingAdapter::on_livox(std::span<const std::uint8_t> cdr) {
+  LivoxCloud cloud;
+  if (Status status = cloud.parse(cdr); !status.ok()) return clouds_.count(status);
+  return on_cloud(cloud.view());
+}
+
+Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
   samples_.clear();
   rates_.clear();
   early_.clear();
   sweeps_.clear();
   last_.reset();
+  if (prior_map_.empty()) {
+    odometry_.reset(start ? start->T_OB * params_.T_BI : params_.T_BI);
+    return {};
+  }
+  PriorMap map{.points = prior_map_, .extend = params_.prior_map_extend};
+  if (start) {
+    map.T_MI = start->T_OB * params_.T_BI;
+    map.sigma_m = start->sigma_m;
+    map.sigma_rad = start->sigma_rad;
+  }
+  odometry_.reset();
+  return odometry_.use_map(std::move(map));
+}
+
+Status TumblingAdapter::load_map(std::span<const std::byte> bytes) {
+  if (Status status = tumble::load_map(bytes, prior_map_); !status.ok()) return status;
+  return reset();
+}
+
+std::string TumblingAdapter::map_file(const std::string& path) const {
+  if (path.ends_with(".ply")) return ply_of(map());
+  const std::vector<std::byte> bytes = save_map(map());
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 void TumblingAdapter::publish_rate() {

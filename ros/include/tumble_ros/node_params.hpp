@@ -33,6 +33,7 @@ struct TumblingAdapterParams {
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in the base frame
   std::string time_field;                                  ///< see PointCloudReader
   double map_period_s = 5.0;
+  bool prior_map_extend = true;  ///< see PriorMap::extend
   AdapterParams adapter;
 
   template <class Self, class Visitor>
@@ -40,6 +41,9 @@ struct TumblingAdapterParams {
     visit.group("", p.odometry);
     visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
                            "time between two publications of the map, by the stamps of the IMU", FieldRank::basic});
+    visit(p.prior_map_extend,
+          {"prior_map_extend", "1", 0, 1, "whether sweeps extend the prior map; false: the prior map stays unchanged",
+           FieldRank::basic});
     visit.group("", p.adapter);
   }
   static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
@@ -73,6 +77,7 @@ struct TextParameter {
   const char* value;  ///< default of a text
   int count;          ///< length of the list; the default list is empty
   const char* meaning;
+  bool at_start = true;  ///< false: read at each call of a service
 };
 
 /// Returns the text and list parameters of both nodes.

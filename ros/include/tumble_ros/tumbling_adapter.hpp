@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +16,13 @@
 #include "tumble_ros/schedule.hpp"
 
 namespace tumble::ros {
+
+/// StartPose is the pose of the base at the start of a run. The standard deviations limit the search in a prior map.
+struct StartPose {
+  Eigen::Isometry3d T_OB = Eigen::Isometry3d::Identity();
+  double sigma_m = 0.0;    ///< per axis; 0: exact
+  double sigma_rad = 0.0;  ///< of the heading; 0: exact
+};
 
 /// TumblingAdapter connects TumblingOdometry to the messages of a robot. It contains the logic of the ROS nodes and
 /// needs no ROS. The adapter changes no estimate: the library called directly gives the same bits.
@@ -40,14 +50,22 @@ class TumblingAdapter {
   /// TumblingOdometry::add_sweep(). A busy computer may deliver clouds seconds before the IMU samples of their times.
   /// Such clouds wait, at most 32.
   Status on_cloud(const PointCloudView& cloud);
+  /// Processes a CustomMsg of a Livox driver, in CDR. Returns the status of LivoxCloud::parse() or of on_cloud().
+  Status on_livox(std::span<const std::uint8_t> cdr);
   /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
   void finish();
-  /// Starts a new run with a new map. Position and heading of the base are those of `T_OB`.
-  void reset(const Eigen::Isometry3d& T_OB);
+  /// Starts a new run. Position and heading of the base are those of `start`. Without a pose, the run starts at the
+  /// origin, or anywhere in the prior map. Returns `ok`, or the errors of TumblingOdometry::use_map().
+  Status reset(const std::optional<StartPose>& start = std::nullopt);
+  /// Starts a new run, which localises itself in a map that tumble::save_map() saved. Returns the errors of
+  /// tumble::load_map() and of reset(). After an error of tumble::load_map(), the run continues.
+  Status load_map(std::span<const std::byte> bytes);
 
   /// Returns the estimated mounting and lever arm as a ROS 2 parameter file, from which the next run can start.
   std::string calibration_yaml() const;
   std::vector<MapPoint> map() const { return odometry_.mapper().map(); }
+  /// Returns the map as contents of a file: PLY for the extension .ply, otherwise the format of load_map().
+  std::string map_file(const std::string& path) const;
   const TumblingOdometry& odometry() const { return odometry_; }
 
  private:
@@ -64,6 +82,7 @@ class TumblingAdapter {
   Params params_;
   Publisher& publisher_;
   TumblingOdometry odometry_;
+  std::vector<MapPoint> prior_map_;
   PointCloudReader reader_;
   std::deque<ImuSample> samples_;    ///< accepted samples whose rate is not smoothed yet
   std::deque<RateState> rates_;      ///< smoothed rates of the last seconds

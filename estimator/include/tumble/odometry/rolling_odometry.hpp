@@ -103,6 +103,9 @@ class RollingOdometry {
   struct Pose {
     PoseState pose;  ///< sphere's centre, sphere axes; live poses have no attitude covariance
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< of the sphere, sphere axes
+    /// Covariance of the error of the centre's velocity in sphere axes. With a lag, the part of the contact modes is
+    /// missing.
+    Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
     bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain

@@ -109,8 +109,8 @@ class RollingFilter {
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the filter's estimate at the last processed sample. The returned covariance contains only the position
-  /// block; all other entries are zero.
+  /// Returns the filter's estimate at the last processed sample. The returned pose covariance contains only the
+  /// position block; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
@@ -138,7 +138,7 @@ class RollingFilter {
   void constrain_position(State& state) const;
   static RollingMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
-  static Eigen::Matrix3d position_spread(const State& state);
+  static Eigen::Matrix3d spread(const State& state, int first);
   static void weigh_modes(State& state);
   static void keep_most_probable(std::size_t count, State& state);
 
