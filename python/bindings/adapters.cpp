@@ -58,6 +58,7 @@ class PythonPublisher : public ros::Publisher {
   }
   void odometry(const ros::Odometry& odometry) override { to_.attr("odometry")(odometry); }
   void odometry_imu(const ros::Odometry& odometry) override { to_.attr("odometry_imu")(odometry); }
+  void position_pose(const ros::Odometry& odometry) override { to_.attr("position_pose")(odometry); }
   void imu(const ros::RecoveredImu& imu) override { to_.attr("imu")(imu); }
   void points(const ros::DeskewedSweep& sweep) override { to_.attr("points")(sweep.stamp_ns, bytes_of(sweep.points)); }
   void map(TimeNs stamp_ns, const std::vector<MapPoint>& map) override { to_.attr("map")(stamp_ns, bytes_of(map)); }
@@ -173,17 +174,18 @@ void bind_adapters(nb::module_& m) {
           "__init__",
           [](Tumbling* self, const PublisherLike& publisher, const NumbersByName& numbers, const std::string& imu_sheet,
              const std::string& lidar_sheet, const std::string& time_field, const Numbers& own_body,
-             const Numbers& T_base_imu, const Numbers& T_base_lidar) {
+             const Numbers& position_arm, const Numbers& T_base_imu, const Numbers& T_base_lidar) {
             ros::TumblingAdapterParams params = tumbling_defaults(imu_sheet, lidar_sheet);
             params.T_BI = ros::pose_of("T_base_imu", T_base_imu);
             params.T_BL = ros::pose_of("T_base_lidar", T_base_lidar);
             params.odometry.own_body_L = ros::box_of("own_body", own_body);
+            params.position_arm_B_m = ros::position_of("position_arm", position_arm);
             params.time_field = time_field;
             read_numbers(numbers, params);
             new (self) Tumbling(publisher, params);
           },
           nb::arg("publisher"), nb::arg("numbers"), nb::arg("imu_sheet"), nb::arg("lidar_sheet"), nb::arg("time_field"),
-          nb::arg("own_body"), nb::arg("T_base_imu"), nb::arg("T_base_lidar"))
+          nb::arg("own_body"), nb::arg("position_arm"), nb::arg("T_base_imu"), nb::arg("T_base_lidar"))
       .def_static(
           "parameters",
           [](const std::string& imu_sheet, const std::string& lidar_sheet) {
@@ -198,6 +200,13 @@ void bind_adapters(nb::module_& m) {
           "Returns an empty text, or the error.")
       .def("on_cloud", &on_cloud, "Returns an empty text, or the error.")
       .def("finish", [](Tumbling& self) { self.adapter.finish(); })
+      .def(
+          "on_position",
+          [](Tumbling& self, TimeNs stamp_ns, const Numbers& position, const Numbers& covariance) {
+            return message_of(self.adapter.on_position(stamp_ns, Eigen::Vector3d(position.data()),
+                                                       Eigen::Matrix3d(covariance.data())));
+          },
+          "position: x y z. covariance: nine numbers. Returns an empty text, or the error.")
       .def(
           "on_livox",
           [](Tumbling& self, const nb::bytes& cdr) { return message_of(self.adapter.on_livox(bytes_in(cdr))); },

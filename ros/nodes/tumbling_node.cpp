@@ -52,6 +52,7 @@ class TumblingNode : public OdometryNode {
     params_.odometry.lidar = lidar_sheet(text("lidar_sheet"));
     declare_numbers(params_);
     params_.odometry.own_body_L = box_of("own_body", list("own_body"));
+    params_.position_arm_B_m = position_of("position_arm", list("position_arm"));
     params_.time_field = text("time_field");
     imu_frame_ = text("imu_frame");
     lidar_frame_ = text("lidar_frame");
@@ -70,6 +71,8 @@ class TumblingNode : public OdometryNode {
       if (imu_frame_.empty()) imu_frame_ = message.header.frame_id;
       if (start()) report("imu", adapter_->on_imu(sample_of(message)));
     });
+    position_publisher_ = create_publisher<Position>("~/pose", 10);
+    subscribe<Position>("position", kCloudDepth, [this](const Position& message) { on_position(message); });
     subscribe<sensor_msgs::msg::PointCloud2>(
         "points", kCloudDepth, [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); },
         [this](const std::shared_ptr<rclcpp::SerializedMessage>& message) { on_livox(*message); });
@@ -95,6 +98,22 @@ class TumblingNode : public OdometryNode {
     out.orientation_covariance[0] = -1.0;  // sensor_msgs/Imu: no orientation
     imu_publisher_->publish(out);
   }
+  void position_pose(const Odometry& odometry) override {
+    Position out;
+    out.header.stamp = rclcpp::Time(odometry.stamp_ns);
+    out.header.frame_id = position_frame_;
+    const Eigen::Vector3d p = odometry.T_OB.translation();
+    const Eigen::Quaterniond q(odometry.T_OB.linear());
+    out.pose.pose.position.x = p.x();
+    out.pose.pose.position.y = p.y();
+    out.pose.pose.position.z = p.z();
+    out.pose.pose.orientation.x = q.x();
+    out.pose.pose.orientation.y = q.y();
+    out.pose.pose.orientation.z = q.z();
+    out.pose.pose.orientation.w = q.w();
+    std::copy_n(odometry.pose_covariance.data(), 36, out.pose.covariance.begin());
+    position_publisher_->publish(out);
+  }
   void points(const DeskewedSweep& sweep) override {
     points_publisher_->publish(cloud(lidar_frame_, sweep.stamp_ns, {"x", "y", "z", "intensity"}, sweep.points));
   }
@@ -109,6 +128,7 @@ class TumblingNode : public OdometryNode {
   }
 
  private:
+  using Position = geometry_msgs::msg::PoseWithCovarianceStamped;
   static constexpr std::size_t kCloudDepth = 20;
   static constexpr Status kNoData{ErrorCode::empty, "messages of imu and points", 0.0, 1.0};
 
@@ -137,6 +157,16 @@ class TumblingNode : public OdometryNode {
     const Status status = adapter_->load_map(std::as_bytes(std::span(bytes)));
     message = path + ": " + status.message();
     return status.ok();
+  }
+
+  void on_position(const Position& message) {
+    position_frame_ = message.header.frame_id;
+    const auto& p = message.pose.pose.position;
+    const Matrix6 covariance(message.pose.covariance.data());
+    if (start()) {
+      report("position", adapter_->on_position(rclcpp::Time(message.header.stamp).nanoseconds(), {p.x, p.y, p.z},
+                                               covariance.topLeftCorner<3, 3>()));
+    }
   }
 
   void on_livox(const rclcpp::SerializedMessage& message) {
@@ -174,9 +204,10 @@ class TumblingNode : public OdometryNode {
   }
 
   TumblingAdapterParams params_;
-  std::string imu_frame_, lidar_frame_;
+  std::string imu_frame_, lidar_frame_, position_frame_;
   std::optional<TumblingAdapter> adapter_;
   rclcpp::Publisher<sensor_msgs::msg::Imu>::SharedPtr imu_publisher_;
+  rclcpp::Publisher<Position>::SharedPtr position_publisher_;
   rclcpp::Publisher<sensor_msgs::msg::PointCloud2>::SharedPtr points_publisher_, map_publisher_;
   rclcpp::Service<Trigger>::SharedPtr save_map_, save_calibration_, load_map_;
 };

@@ -47,6 +47,7 @@ std::span<const TextParameter> text_parameters() {
       {"calibration_file", "calibration.yaml", 0, "file that the service save_calibration writes", false},
       {"own_body", "", 6,
        "box around the robot in lidar axes, whose returns are dropped: x y z min, x y z max; empty: none"},
+      {"position_arm", "", 3, "position x y z of the antenna in the base frame; empty: its origin"},
       {"T_base_imu", "", 7,
        "pose of the IMU in the base frame: x y z qx qy qz qw; empty: from TF. A sphere needs it, once for each IMU"},
       {"T_base_lidar", "", 7, "pose of the lidar in the base frame: x y z qx qy qz qw; empty: from TF"}};
@@ -69,6 +70,12 @@ Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double>
   if (numbers.size() != 6)
     throw InvalidParams(parameter, static_cast<double>(numbers.size()), "6 numbers: x y z min, x y z max");
   return {Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), Eigen::Vector3d(numbers[3], numbers[4], numbers[5])};
+}
+
+Eigen::Vector3d position_of(const std::string& parameter, std::span<const double> numbers) {
+  if (numbers.empty()) return Eigen::Vector3d::Zero();
+  if (numbers.size() != 3) throw InvalidParams(parameter, static_cast<double>(numbers.size()), "3 numbers: x y z");
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 ImuSheet imu_sheet(const std::string& name) {

@@ -101,6 +101,12 @@ Status TumblingAdapter::on_livox(std::span<const std::uint8_t> cdr) {
   return on_cloud(cloud.view());
 }
 
+Status TumblingAdapter::on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m,
+                                    const Eigen::Matrix3d& covariance_m2) {
+  const Eigen::Vector3d arm_I_m = params_.T_BI.inverse() * params_.position_arm_B_m;
+  return positions_.count(odometry_.add_position({stamp_ns, position_m, covariance_m2, arm_I_m}));
+}
+
 Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
   samples_.clear();
   rates_.clear();
@@ -151,6 +157,11 @@ void TumblingAdapter::publish_sweeps() {
     if (report.trajectory.empty() || rates_.empty()) continue;  // no pose before the map starts
     publisher_.odometry(base_odometry(report.pose, report.velocity_covariance_I_m2_s2, rate_at(report.pose.time_ns),
                                       params_.T_BI.inverse()));
+    if (sweep->position_frame) {
+      publisher_.position_pose(base_odometry(sweep->position_frame->transform(report.pose),
+                                             report.velocity_covariance_I_m2_s2, rate_at(report.pose.time_ns),
+                                             params_.T_BI.inverse()));
+    }
     if (publisher_.wants(Output::points)) publish_points(report);
     last_ = report;
     last_->trajectory.clear();
@@ -190,6 +201,7 @@ void TumblingAdapter::publish_diagnostics() {
   out.message = !health.ok() ? health.message() : last_ ? "ok" : "no registered sweep yet";
   add_input(out, "imu", imu_);
   add_input(out, "clouds", clouds_);
+  if (positions_.received > 0) add_input(out, "positions", positions_);
   add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());
   add(out, "dropped sweeps", odometry_.dropped_sweeps());

@@ -59,7 +59,7 @@ class Expected:
         self.poses, self.rates, self.sweeps = {}, {}, {}
 
     def tumble(self, recording, parameters: dict) -> "Expected":
-        lists = [parameters[key] for key in ("own_body", "T_base_imu", "T_base_lidar")]
+        lists = [parameters.get(key, []) for key in ("own_body", "position_arm", "T_base_imu", "T_base_lidar")]
         adapter = _tumble.TumblingAdapter(self, {"lever_arm_m": parameters["lever_arm_m"]}, *SHEETS.values(), "", *lists)
         for _, topic, message in messages(recording, ("imu", "points")):
             if topic == "imu":

@@ -279,6 +279,34 @@ TEST(TumblingAdapter, LocalisesInASavedMap) {
       << "both runs end at the same pose of one map";
 }
 
+TEST(TumblingAdapter, PublishesThePoseInTheFrameOfPositions) {
+  const ThrownBody body;
+  TumblingAdapter::Params params = adapter_params(body);
+  params.T_BI = params.T_BL = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.3));
+  params.position_arm_B_m = {0.0, 0.2, 0.5};
+  RecordedOutputs got;
+  TumblingAdapter adapter(params, got);
+  const Eigen::Isometry3d T_PW =
+      Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  play(
+      body, 0,
+      [&](const ImuSample& sample) {
+        adapter.on_imu(sample);
+        if (sample.time_ns < 100'000'000) return;
+        const Eigen::Isometry3d T_WB = body.T_WI(1e-9 * double(sample.time_ns)) * params.T_BI.inverse();
+        const Eigen::Vector3d antenna_m = T_PW * T_WB * params.position_arm_B_m;
+        EXPECT_TRUE(adapter.on_position(sample.time_ns, antenna_m, 1e-4 * Eigen::Matrix3d::Identity()).ok());
+      },
+      [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
+        EXPECT_TRUE(adapter.on_cloud(test::ouster_cloud(points).view(start_ns)).ok());
+      });
+  ASSERT_FALSE(got.in_position_frame.empty());
+  const ros::Odometry& last = got.in_position_frame.back();
+  const Eigen::Isometry3d T_PB = T_PW * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
+  EXPECT_LT((last.T_OB.translation() - T_PB.translation()).norm(), 0.1);
+  EXPECT_LT((last.T_OB.linear() - T_PB.linear()).norm(), 0.1);
+}
+
 TEST(TumblingAdapter, ReadsLivoxMessages) {
   const ThrownBody body;
   RecordedOutputs clouds, livox;

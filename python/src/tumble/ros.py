@@ -223,7 +223,10 @@ class TumblingNode(OdometryNode):
         self.create_service(Trigger, "~/save_map", self.on_save_map)
         self.create_service(Trigger, "~/load_map", self.on_load_map)
         self.create_service(Trigger, "~/save_calibration", self.on_save_calibration)
-        self.inputs = [(Imu, "imu", self.on_imu, IMU_DEPTH), (PointCloud2, "points", self.on_points, CLOUD_DEPTH)]
+        self.position_publisher = self.create_publisher(PoseWithCovarianceStamped, "~/pose", 10)
+        self.position_frame = ""
+        self.inputs = [(Imu, "imu", self.on_imu, IMU_DEPTH), (PointCloud2, "points", self.on_points, CLOUD_DEPTH),
+                       (PoseWithCovarianceStamped, "position", self.on_position, CLOUD_DEPTH)]
         self.start()  # reports wrong parameters at once, if they give the mounting
 
     def start(self) -> bool:
@@ -234,7 +237,7 @@ class TumblingNode(OdometryNode):
         if T_base_imu is None or T_base_lidar is None:
             return False
         self.adapter = _tumble.TumblingAdapter(self, self.given, self.text["imu_sheet"], self.text["lidar_sheet"], self.text["time_field"],
-                                               list(self.text["own_body"]), T_base_imu, T_base_lidar)
+                                               list(self.text["own_body"]), list(self.text["position_arm"]), T_base_imu, T_base_lidar)
         if self.text["prior_map_file"] and (error := self.load_map()):
             raise ValueError(error)
         return True
@@ -260,6 +263,13 @@ class TumblingNode(OdometryNode):
             fields = [(field.name, field.offset, field.datatype, field.count) for field in message.fields]
             self.report("points", self.adapter.on_cloud(to_ns(message.header.stamp), message.height, message.width, fields, message.is_bigendian,
                                                         message.point_step, message.row_step, message.data))
+
+    def on_position(self, message: PoseWithCovarianceStamped) -> None:
+        self.position_frame = message.header.frame_id
+        p, covariance = message.pose.pose.position, message.pose.covariance
+        if self.start():
+            rows = [covariance[6 * i + j] for i in range(3) for j in range(3)]
+            self.report("position", self.adapter.on_position(to_ns(message.header.stamp), [p.x, p.y, p.z], rows))
 
     def on_livox(self, message: bytes) -> None:
         self.frames["lidar"] = self.frames["lidar"] or _tumble.livox_frame(message)
@@ -289,6 +299,16 @@ class TumblingNode(OdometryNode):
         out.linear_acceleration_covariance = [recovered.force_variance if k % 4 == 0 else 0.0 for k in range(9)]
         out.orientation_covariance[0] = -1.0  # sensor_msgs/Imu: no orientation
         self.imu_publisher.publish(out)
+
+    def position_pose(self, odometry: _tumble.BaseOdometry) -> None:
+        out = PoseWithCovarianceStamped()
+        out.header.frame_id = self.position_frame
+        put_stamp(out.header.stamp, odometry.stamp_ns)
+        p, q = out.pose.pose.position, out.pose.pose.orientation
+        p.x, p.y, p.z = odometry.position
+        q.x, q.y, q.z, q.w = odometry.orientation
+        out.pose.covariance = odometry.pose_covariance
+        self.position_publisher.publish(out)
 
     def points(self, stamp_ns: int, data: bytes) -> None:
         self.points_publisher.publish(cloud(self.frames["lidar"], stamp_ns, ("x", "y", "z", "intensity"), data))

@@ -28,10 +28,11 @@ struct AdapterParams {
 
 /// Parameters of TumblingAdapter.
 struct TumblingAdapterParams {
-  TumblingParams odometry;                                 ///< T_IL is set from T_BI and T_BL
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< pose of the IMU in the base frame
-  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in the base frame
-  std::string time_field;                                  ///< see PointCloudReader
+  TumblingParams odometry;                                     ///< T_IL is set from T_BI and T_BL
+  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();      ///< pose of the IMU in the base frame
+  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();      ///< pose of the lidar in the base frame
+  Eigen::Vector3d position_arm_B_m = Eigen::Vector3d::Zero();  ///< antenna of position readings, in the base frame
+  std::string time_field;                                      ///< see PointCloudReader
   double map_period_s = 5.0;
   bool prior_map_extend = true;  ///< see PriorMap::extend
   AdapterParams adapter;
@@ -90,6 +91,10 @@ Eigen::Isometry3d pose_of(const std::string& parameter, std::span<const double> 
 /// Converts the smallest and the largest corner to a box; no numbers give an empty box. Throws InvalidParams with the
 /// name of the parameter for another count.
 Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double> numbers);
+
+/// Converts three numbers to a position; no numbers give zero. Throws InvalidParams with the name of the parameter for
+/// another count.
+Eigen::Vector3d position_of(const std::string& parameter, std::span<const double> numbers);
 
 /// Return the data sheet with this name, or the default sheet for an empty name. Throw InvalidParams for an unknown
 /// name, with all known names.

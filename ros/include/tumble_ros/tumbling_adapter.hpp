@@ -31,6 +31,7 @@ struct StartPose {
 /// | --- | --- |
 /// | Publisher::imu | for each IMU sample, lag_s later |
 /// | Publisher::odometry, points | for each registered sweep |
+/// | Publisher::position_pose | for each registered sweep, once positions determine their frame |
 /// | Publisher::odometry_imu | for each accepted IMU sample after the first registered sweep |
 /// | Publisher::map, diagnostics | at the periods of the parameters |
 ///
@@ -52,6 +53,9 @@ class TumblingAdapter {
   Status on_cloud(const PointCloudView& cloud);
   /// Processes a CustomMsg of a Livox driver, in CDR. Returns the status of LivoxCloud::parse() or of on_cloud().
   Status on_livox(std::span<const std::uint8_t> cdr);
+  /// Processes the position of the antenna, with its covariance, in a frame with z up. Returns the status of
+  /// TumblingOdometry::add_position().
+  Status on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m, const Eigen::Matrix3d& covariance_m2);
   /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
   void finish();
   /// Starts a new run. Position and heading of the base are those of `start`. Without a pose, the run starts at the
@@ -89,7 +93,7 @@ class TumblingAdapter {
   std::deque<TimedSweep> early_;     ///< sweeps that wait for IMU samples
   std::deque<TimedSweep> sweeps_;    ///< sweeps that wait for their poses
   std::optional<SweepReport> last_;  ///< newest registered sweep, without its trajectory
-  Rejections imu_, clouds_;
+  Rejections imu_, clouds_, positions_;
   Schedule map_, diagnostics_;
 };
 
