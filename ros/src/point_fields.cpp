@@ -2,8 +2,13 @@
 #include "tumble_ros/point_fields.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
 #include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace tumble::ros {
 

@@ -15,8 +15,8 @@ namespace {
 constexpr double kGate = 16.27;  // 99.9 % quantile of chi-square with three degrees of freedom
 constexpr std::size_t kPairsMin = 3, kPairsPerOutlier = 5;
 constexpr double kHeadingSigma_rad = 0.1;
-constexpr double kSpacing = 0.5;     // distance of two pairs, in standard deviations of a reading
-constexpr double kWalk_m2_m = 1e-4;  // least drift of the poses: 1 cm per root of a metre of path
+constexpr double kSpacing = 0.5;  // distance of two pairs, in standard deviations of a reading
+constexpr double kDrift = 0.01;   // least drift of the poses, as a share of the path
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
@@ -133,8 +133,10 @@ void PositionAlignment::add_pair(const PositionReading& reading, const PoseState
 void PositionAlignment::fit() {
   frame_.reset();
   std::deque<Pair> inliers = pairs_;
-  for (Pair& pair : inliers)
-    pair.variance_m2 += kWalk_m2_m * (path_m_ - pair.path_m) + std::max(0.0, pose_variance_m2_ - pair.pose_variance_m2);
+  for (Pair& pair : inliers) {
+    const double drift_m = kDrift * (path_m_ - pair.path_m);
+    pair.variance_m2 += drift_m * drift_m + std::max(0.0, pose_variance_m2_ - pair.pose_variance_m2);
+  }
   const std::size_t least = std::max(kPairsMin, pairs_.size() - pairs_.size() / kPairsPerOutlier);
   while (inliers.size() >= least) {
     const PositionFrame found = fit_frame(inliers);
