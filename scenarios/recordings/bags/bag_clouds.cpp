@@ -32,8 +32,9 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   const Status status = check_layout(view);
   if (status.error_code == ErrorCode::empty) return out;
   if (!status.ok()) {
-    throw BadInput(fmt::format("{}: {} ({} x {} points of {} bytes in data of {} bytes)", where, status.message(),
-                               view.height, view.width, view.point_step, view.data.size()));
+    throw BadInput(
+        fmt::format("{}: {} x {} points of {} bytes do not fit the data of {} bytes, or are not supported: {}", where,
+                    view.height, view.width, view.point_step, view.data.size(), status.message()));
   }
   out.points = std::size_t{view.width} * view.height;
   for (const tumble::ros::PointField& field : fields) {

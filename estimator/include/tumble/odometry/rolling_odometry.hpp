@@ -229,8 +229,7 @@ class RollingOdometry {
   UnitAlignment unit_alignment_;
   UnitAlignment::State unit_alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each unit, with kWholeRecording
-  std::unique_ptr<ImuMerge::State> imu_merge_state_;
-  std::unique_ptr<ImuMerge::State> merge_state_buffer_;  ///< buffer for the next state of ImuMerge
+  std::unique_ptr<ImuMerge::State> imu_merge_state_, merge_state_buffer_;  ///< state, and buffer for the next state
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
   std::vector<OutlierFilter> outlier_filters_;  ///< one per unit
