@@ -222,7 +222,7 @@ TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
     update.exec();
     EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, {}); }),
                 field_count ? HasSubstr("message 0 of /lidar/points: states 4294967280 entries of 13 bytes")
-                            : HasSubstr("message 0 of /lidar/points: 1 x 4294967280 points of 26 bytes do not fit the data of 1300 bytes"));
+                            : HasSubstr("message 0 of /lidar/points: 1 x 4294967280 points of 26 bytes do not fit"));
   }
 }
 
