@@ -130,6 +130,11 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   expect_whole(ImuSample{}, "samples");
   expect_whole(LidarPoint{}, "points");
   expect_whole(WaitingSweep{}, "waiting");
+  expect_whole(PositionFrame{}, "position_frame");
+  expect_whole(FurtherLidars{}, "further_lidars");
+  expect_whole(PositionReading{}, "positions");
+  expect_whole(PositionAlignment::Pair{}, "pairs");
+  expect_whole(PositionAlignment{}, "positions");
   expect_whole(PoseState{}, "trajectory");
 }
 

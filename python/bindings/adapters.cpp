@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -56,6 +58,7 @@ class PythonPublisher : public ros::Publisher {
   }
   void odometry(const ros::Odometry& odometry) override { to_.attr("odometry")(odometry); }
   void odometry_imu(const ros::Odometry& odometry) override { to_.attr("odometry_imu")(odometry); }
+  void position_pose(const ros::Odometry& odometry) override { to_.attr("position_pose")(odometry); }
   void imu(const ros::RecoveredImu& imu) override { to_.attr("imu")(imu); }
   void points(const ros::DeskewedSweep& sweep) override { to_.attr("points")(sweep.stamp_ns, bytes_of(sweep.points)); }
   void map(TimeNs stamp_ns, const std::vector<MapPoint>& map) override { to_.attr("map")(stamp_ns, bytes_of(map)); }
@@ -119,6 +122,19 @@ std::string on_cloud(Bound<ros::TumblingAdapter>& self, TimeNs stamp_ns, std::ui
       {stamp_ns, height, width, named, is_bigendian, point_step, row_step, {data.data(), data.size()}}));
 }
 
+std::span<const std::uint8_t> bytes_in(const nb::bytes& bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+nb::bytes to_bytes(const std::string& text) {
+  return nb::bytes(text.data(), text.size());
+}
+
+std::optional<ros::StartPose> start_of(const Numbers& pose, double sigma_m, double sigma_rad) {
+  if (pose.empty()) return std::nullopt;
+  return ros::StartPose{ros::pose_of("pose", pose), sigma_m, sigma_rad};
+}
+
 void bind_messages(nb::module_& m) {
   nb::class_<ros::Odometry>(m, "BaseOdometry", "Contents of nav_msgs/Odometry for the base frame.")
       .def_ro("stamp_ns", &ros::Odometry::stamp_ns)
@@ -138,12 +154,14 @@ void bind_messages(nb::module_& m) {
   m.def(
       "node_texts",
       [] {
-        std::vector<std::tuple<std::string, std::string, int, std::string>> out;
+        std::vector<std::tuple<std::string, std::string, int, std::string, bool>> out;
         for (const ros::TextParameter& text : ros::text_parameters())
-          out.emplace_back(text.name, text.value, text.count, text.meaning);
+          out.emplace_back(text.name, text.value, text.count, text.meaning, text.at_start);
         return out;
       },
-      "Returns name, default, list length and meaning of the text and list parameters of the nodes.");
+      "Returns name, default, list length and meaning of the text and list parameters of the nodes, and whether they "
+      "are read\n"
+      "only at the start.");
 }
 
 }  // namespace
@@ -156,17 +174,18 @@ void bind_adapters(nb::module_& m) {
           "__init__",
           [](Tumbling* self, const PublisherLike& publisher, const NumbersByName& numbers, const std::string& imu_sheet,
              const std::string& lidar_sheet, const std::string& time_field, const Numbers& own_body,
-             const Numbers& T_base_imu, const Numbers& T_base_lidar) {
+             const Numbers& position_arm, const Numbers& T_base_imu, const Numbers& T_base_lidar) {
             ros::TumblingAdapterParams params = tumbling_defaults(imu_sheet, lidar_sheet);
             params.T_BI = ros::pose_of("T_base_imu", T_base_imu);
             params.T_BL = ros::pose_of("T_base_lidar", T_base_lidar);
             params.odometry.own_body_L = ros::box_of("own_body", own_body);
+            params.position_arm_B_m = ros::position_of("position_arm", position_arm);
             params.time_field = time_field;
             read_numbers(numbers, params);
             new (self) Tumbling(publisher, params);
           },
           nb::arg("publisher"), nb::arg("numbers"), nb::arg("imu_sheet"), nb::arg("lidar_sheet"), nb::arg("time_field"),
-          nb::arg("own_body"), nb::arg("T_base_imu"), nb::arg("T_base_lidar"))
+          nb::arg("own_body"), nb::arg("position_arm"), nb::arg("T_base_imu"), nb::arg("T_base_lidar"))
       .def_static(
           "parameters",
           [](const std::string& imu_sheet, const std::string& lidar_sheet) {
@@ -181,12 +200,42 @@ void bind_adapters(nb::module_& m) {
           "Returns an empty text, or the error.")
       .def("on_cloud", &on_cloud, "Returns an empty text, or the error.")
       .def("finish", [](Tumbling& self) { self.adapter.finish(); })
-      .def("reset", [](Tumbling& self, const Numbers& T_OB) { self.adapter.reset(ros::pose_of("pose", T_OB)); })
+      .def(
+          "on_position",
+          [](Tumbling& self, TimeNs stamp_ns, const Numbers& position, const Numbers& covariance) {
+            return message_of(self.adapter.on_position(stamp_ns, Eigen::Vector3d(position.data()),
+                                                       Eigen::Matrix3d(covariance.data())));
+          },
+          "position: x y z. covariance: nine numbers. Returns an empty text, or the error.")
+      .def(
+          "on_livox",
+          [](Tumbling& self, const nb::bytes& cdr) { return message_of(self.adapter.on_livox(bytes_in(cdr))); },
+          "Processes a serialized CustomMsg. Returns an empty text, or the error.")
+      .def(
+          "reset",
+          [](Tumbling& self, const Numbers& pose, double sigma_m, double sigma_rad) {
+            return message_of(self.adapter.reset(start_of(pose, sigma_m, sigma_rad)));
+          },
+          nb::arg("pose"), nb::arg("sigma_m") = 0.0, nb::arg("sigma_rad") = 0.0,
+          "Starts a new run at a pose of the base; an empty list: at the origin, or anywhere in the prior map. Returns "
+          "an\n"
+          "empty text, or the error.")
+      .def(
+          "load_map",
+          [](Tumbling& self, const nb::bytes& map) {
+            return message_of(self.adapter.load_map(std::as_bytes(bytes_in(map))));
+          },
+          "Starts a new run, which localises itself in a saved map. Returns an empty text, or the error.")
       .def("calibration_yaml", [](const Tumbling& self) { return self.adapter.calibration_yaml(); })
-      .def("map_ply", [](const Tumbling& self) {
-        const std::string ply = ros::ply_of(self.adapter.map());
-        return nb::bytes(ply.data(), ply.size());
-      });
+      .def("map_file",
+           [](const Tumbling& self, const std::string& path) { return to_bytes(self.adapter.map_file(path)); });
+  m.def(
+      "livox_frame",
+      [](const nb::bytes& cdr) {
+        ros::LivoxCloud cloud;
+        return cloud.parse(bytes_in(cdr)).ok() ? cloud.frame_id : std::string();
+      },
+      "Returns the frame_id of a serialized CustomMsg.");
   using Rolling = Bound<ros::RollingAdapter>;
   nb::class_<Rolling>(m, "RollingAdapter", "RollingOdometry behind the messages of a robot: see ros/README.md.")
       .def(
@@ -205,7 +254,13 @@ void bind_adapters(nb::module_& m) {
       .def("on_imu",
            [](Rolling& self, std::size_t unit, TimeNs stamp_ns, double wx, double wy, double wz, double fx, double fy,
               double fz) { return message_of(self.adapter.on_imu(unit, sample_of(stamp_ns, wx, wy, wz, fx, fy, fz))); })
-      .def("reset", [](Rolling& self, const Numbers& T_OB) { self.adapter.reset(ros::pose_of("pose", T_OB)); });
+      .def(
+          "reset",
+          [](Rolling& self, const Numbers& pose, double, double) {
+            self.adapter.reset(start_of(pose, 0.0, 0.0).value_or(ros::StartPose{}).T_OB);
+            return std::string();
+          },
+          nb::arg("pose"), nb::arg("sigma_m") = 0.0, nb::arg("sigma_rad") = 0.0);
 }
 
 }  // namespace tumble::python

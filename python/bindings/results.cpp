@@ -155,6 +155,12 @@ void bind_rolling_of_results(nb::module_& m) {
           [](const R& s) { return column<double, 6, 6>(s.rows, [](auto& r) { return r.covariance.data(); }); },
           kPoseCovariances)
       .def_prop_ro(
+          "velocity_covariance",
+          [](const R& s) {
+            return column<double, 3, 3>(s.rows, [](auto& r) { return r.velocity_covariance_I_m2_s2.data(); });
+          },
+          "(N, 3, 3), m^2/s^2: of the error of the velocity, in sphere axes")
+      .def_prop_ro(
           "mode",
           [](const R& s) {
             return column<std::uint8_t>(s.rows, [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.mode); });

@@ -156,8 +156,16 @@ RollingOdometry::Params rolling_params(const nb::kwargs& given) {
 }
 
 RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
-  return {p.pose.time_ns,    p.pose.p_WA_m, p.pose.q_WA, p.pose.v_WA_m_s, p.angular_velocity_rad_s,
-          p.pose.covariance, p.mode,        p.at_rest,   p.uncertain};
+  return {p.pose.time_ns,
+          p.pose.p_WA_m,
+          p.pose.q_WA,
+          p.pose.v_WA_m_s,
+          p.angular_velocity_rad_s,
+          p.pose.covariance,
+          p.velocity_covariance_B_m2_s2,
+          p.mode,
+          p.at_rest,
+          p.uncertain};
 }
 
 /// Returns the samples of all IMUs, from one triple of arrays or from lists with one array per IMU. All IMUs share

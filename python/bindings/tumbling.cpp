@@ -53,6 +53,23 @@ Sheet sheet_of(nb::handle given, const char* field, const char* type) {
   return sheet;
 }
 
+/// Reads pairs (LidarSheet, T_IL) or triples with own_body_L.
+std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
+  std::vector<FurtherLidar> out;
+  for (const nb::handle each : given) {
+    const bool listed = nb::isinstance<nb::tuple>(each);
+    const std::size_t count = listed ? nb::len(each) : 0;
+    if (count != 2 && count != 3)
+      raise_input("type", "further_lidars", each.type(),
+                  nb::str("tuples (LidarSheet, T_IL) or (LidarSheet, T_IL, own_body_L)"));
+    FurtherLidar& lidar = out.emplace_back();
+    lidar.sheet = sheet_of<LidarSheet>(each[0], "further_lidars", "a LidarSheet");
+    lidar.T_IL = pose_of(each[1], "further_lidars T_IL");
+    if (count == 3) lidar.own_body_L = box_of(each[2], "further_lidars own_body_L");
+  }
+  return out;
+}
+
 TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
   Keywords keywords("TumblingOdometry", given);
   TumblingOdometry::Params params;
@@ -63,6 +80,8 @@ TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
   params.lever_arm_I_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
   if (const nb::object body = keywords.take("own_body_L"); body.is_valid())
     params.own_body_L = box_of(body, "own_body_L");
+  if (const nb::object further = keywords.take("further_lidars"); further.is_valid())
+    params.further_lidars = further_lidars_of(further);
   if (const nb::object rig = keywords.take("calibration"); rig.is_valid() && !rig.is_none())
     params.expert.rate.rate.model.calibration = rig_of(rig, "calibration");
   read_fields(keywords, params, derived_tumbling_parameters());
@@ -84,17 +103,26 @@ void add_tumbling_imu(BoundTumblingOdometry& self, const ArrayLike& time_ns, con
 
 void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
                         const ArrayLike& position, const ArrayLike& offset_ns, const ArrayLike& ring,
-                        const ArrayLike& intensity) {
+                        const ArrayLike& intensity, std::size_t lidar) {
   const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
   const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
   LastTimes before;
   const Status status = self.run_timed([&](TumblingOdometry& odometry, LastTimes& last) {
     before = last;
-    const Status added = odometry.add_sweep(start, end, points);
-    if (added.ok()) last.sweep_end_ns = end;
+    const Status added = odometry.add_sweep(lidar, start, end, points);
+    if (added.ok() && lidar == 0) last.sweep_end_ns = end;
     return added;
   });
   require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
+}
+
+void add_tumbling_position(BoundTumblingOdometry& self, const WholeNumber& time_ns, nb::handle position,
+                           nb::handle covariance, nb::handle lever_arm) {
+  PositionReading reading{.time_ns = time_of(time_ns, "time_ns"), .p_PA_m = vector_of(position, "position")};
+  const std::vector<double> numbers = numbers_of(as_array(covariance, "covariance").attr("ravel")(), "covariance", 9);
+  reading.covariance_m2 = Eigen::Map<const Eigen::Matrix3d>(numbers.data());
+  if (!lever_arm.is_none()) reading.p_IA_m = vector_of(lever_arm, "lever_arm");
+  require(self.run([&](TumblingOdometry& odometry) { return odometry.add_position(reading); }));
 }
 
 Rates rates_of(const std::optional<RateState>& rate) {
@@ -229,7 +257,13 @@ void bind_tumbling(nb::module_& m) {
       .def_prop_ro(
           "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
           "whether the sweep has poses; a sweep that starts before the first IMU sample has none")
-      .def_ro("report", &Sweep::report);
+      .def_ro("report", &Sweep::report)
+      .def_prop_ro(
+          "pose_in_position_frame",
+          [](const Sweep& s) {
+            return s.position_frame ? std::optional(s.position_frame->transform(s.report.pose)) : std::nullopt;
+          },
+          "pose at the end of the sweep in the frame of the position readings; None until they determine the frame");
   nb::class_<SweepScale>(m, "SweepScale",
                          "Ratio of the motion between sweeps measured by the lidar to that measured by the IMU.")
       .def_ro("scale", &SweepScale::scale)
@@ -247,7 +281,9 @@ void bind_tumbling(nb::module_& m) {
       "of\n"
       "mass to the IMU, in IMU axes, accurate to 1 cm. own_body_L (2, 3) has the smallest and the largest corner of a "
       "box\n"
-      "in lidar axes; returns within the box belong to the robot. calibration is rig() of an earlier run. Options: "
+      "in lidar axes; returns within the box belong to the robot. further_lidars: tuples (LidarSheet, T_IL[, "
+      "own_body_L]).\n"
+      "calibration is rig() of an earlier run. Options: "
       "see\n"
       "parameters(). World: z up, origin and yaw of the IMU at the first sample. The body must be stationary for the\n"
       "first half second.");
@@ -263,9 +299,18 @@ void bind_tumbling(nb::module_& m) {
            "Adds one sample or many, in order of time. Registers the sweeps whose rates became available.")
       .def(
           "add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
-          nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
+          nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(), nb::arg("lidar") = 0,
           "Adds a sweep of points measured in [start_ns, end_ns]; the call may come at any time after the last point.\n"
-          "position (N, 3), m: in lidar axes at the time of each point. offset_ns (N,): time after start_ns.")
+          "position (N, 3), m: in lidar axes at the time of each point. offset_ns (N,): time after start_ns. lidar k "
+          "is\n"
+          "further_lidars[k - 1]; its points join the sweep of lidar 0 at their time, if they arrive within lag_s.")
+      .def(
+          "add_position", &add_tumbling_position, nb::arg("time_ns"), nb::arg("position"), nb::arg("covariance"),
+          nb::arg("lever_arm") = nb::none(),
+          "Adds a position reading, for example of GPS or a beacon, before its sweep is registered. position (3,), m: "
+          "of\n"
+          "the antenna, in a frame P with z up. covariance (3, 3), m^2. lever_arm (3,), m: antenna in IMU axes. Poses\n"
+          "and map do not change; Sweep.pose_in_position_frame is the pose in P, which does not drift.")
       .def(
           "use_map",
           [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double sigma_m, double sigma_rad,

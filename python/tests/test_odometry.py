@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests diagnostics of the odometry classes, in addition to poses, rates and map."""
+import itertools
+
 import numpy as np
 import pytest
 
@@ -50,3 +52,43 @@ def test_diagnostics_of_the_units_of_rolling_odometry(slip):
     assert len(states) == len(units)
     assert states[1].frozen and states[1].left_out > 0 and not states[0].frozen and not states[2].disagrees
     assert all(abs(unit.time_offset_s) < 0.01 and unit.rate_bias_rad_s.shape == (3,) and unit.absent == 0 for unit in states)
+
+
+def test_positions_and_a_second_lidar(hill):
+    options, imu = tumble.tumbling_options(hill), hill.imus[0]
+    shift, arm = np.array([100.0, -50.0, 7.0]), np.linalg.inv(imu.T_BI)[:3, 3]  # the antenna is in the centre of mass
+
+    def true_position(time_ns):
+        return hill.truth.position[time_ns // hill.truth.period_ns]
+
+    sheet = tumble.LidarSheet()
+    first, second, plain = (tumble.TumblingOdometry(**options, further_lidars=[(sheet, hill.T_IL)]),
+                            tumble.TumblingOdometry(**options, further_lidars=[(sheet, hill.T_IL, [[-2, -2, -2], [2, 2, 2]])]),
+                            tumble.TumblingOdometry(**options))
+    for odometry in (first, second, plain):
+        given = 0
+        for sweep in itertools.islice(hill.sweeps, 40):
+            reached = int(np.searchsorted(imu.time_ns, sweep.end_ns)) + 1
+            odometry.add_imu(imu.time_ns[given:reached], imu.gyro[given:reached], imu.accel[given:reached])
+            given = reached
+            lower = sweep.ring < 8
+            parts = [(0, slice(None))] if odometry is plain else [(1, ~lower), (0, lower)]
+            for lidar, rows in parts:
+                odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.position[rows], sweep.offset_ns[rows], sweep.ring[rows], lidar=lidar)
+            if odometry is plain:
+                odometry.add_position(sweep.end_ns, true_position(sweep.end_ns) + shift, 0.01 * np.eye(3), lever_arm=arm)
+        odometry.finish()
+    done = {id(odometry): odometry.take_all() for odometry in (first, second, plain)}
+    end = [done[id(odometry)][-1] for odometry in (first, second, plain)]
+    assert end[0].report.points_used > 1.3 * end[1].report.points_used, "the box of the second lidar drops near returns alone"
+    assert np.linalg.norm(end[0].report.pose.position - end[2].report.pose.position) < 0.3
+    assert end[0].pose_in_position_frame is None
+    located = [sweep.pose_in_position_frame for sweep in done[id(plain)] if sweep.pose_in_position_frame is not None]
+    antenna = located[-1].matrix[:3, :3] @ arm + located[-1].position
+    assert np.linalg.norm(antenna - true_position(located[-1].time_ns) - shift) < 0.5
+    with pytest.raises(tumble.TumbleError) as caught:
+        first.add_sweep(0, 1, np.zeros((1, 3)), [0], lidar=2)
+    assert caught.value.field == "lidar"
+    with pytest.raises(tumble.TumbleError) as caught:
+        first.add_position(imu.time_ns[-1], np.zeros(3), np.zeros((3, 3)))
+    assert caught.value.trouble == "out_of_range"

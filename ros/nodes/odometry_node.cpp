@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace tumble::ros {
 
@@ -11,7 +12,7 @@ OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& o
   for (const TextParameter& each : text_parameters()) {
     rcl_interfaces::msg::ParameterDescriptor described;
     described.description = each.meaning;
-    described.read_only = true;
+    described.read_only = each.at_start;
     if (each.count > 0) {
       declare_parameter(each.name, std::vector<double>{}, described);
     } else {
@@ -23,8 +24,9 @@ OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& o
   diagnostics_publisher_ = create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
   reset_ = create_service<Trigger>(
       "~/reset", [this](const Trigger::Request::SharedPtr, const Trigger::Response::SharedPtr& answer) {
-        answer->success = start_again(Eigen::Isometry3d::Identity());
-        answer->message = answer->success ? "started again at the origin" : "no data yet";
+        const Status status = start_again(std::nullopt);
+        answer->success = status.ok();
+        answer->message = status.ok() ? "started again" : status.message();
       });
   timer_ = create_wall_timer(std::chrono::milliseconds(200), [this] {
     std::erase_if(inputs_, [](const std::function<bool()>& subscribe) { return subscribe(); });
@@ -33,8 +35,12 @@ OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& o
       "initialpose", 1, [this](const geometry_msgs::msg::PoseWithCovarianceStamped& given) {
         const auto& p = given.pose.pose.position;
         const auto& q = given.pose.pose.orientation;
+        const auto& covariance = given.pose.covariance;  // x y z, and rotations about x y z
         try {
-          start_again(pose_of("initialpose", std::vector<double>{p.x, p.y, p.z, q.x, q.y, q.z, q.w}));
+          report("initialpose",
+                 start_again(StartPose{pose_of("initialpose", std::vector<double>{p.x, p.y, p.z, q.x, q.y, q.z, q.w}),
+                                       std::sqrt(std::max({covariance[0], covariance[7], 0.0})),
+                                       std::sqrt(std::max(covariance[35], 0.0))}));
         } catch (const InvalidParams& error) {
           RCLCPP_WARN(get_logger(), "%s", error.what());
         }

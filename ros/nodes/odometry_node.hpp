@@ -22,7 +22,9 @@
 #include <vector>
 
 #include "tumble_ros/node_params.hpp"
+#include "tumble_ros/point_fields.hpp"
 #include "tumble_ros/publisher.hpp"
+#include "tumble_ros/tumbling_adapter.hpp"
 
 namespace tumble::ros {
 
@@ -41,17 +43,19 @@ class OdometryNode : public rclcpp::Node, public Publisher {
   using Trigger = std_srvs::srv::Trigger;
   static constexpr std::size_t kImuDepth = 2000;  ///< samples that wait while a sweep is registered
 
-  /// Starts a new run at a pose of the base. Returns false before the first data.
-  virtual bool start_again(const Eigen::Isometry3d& T_OB) = 0;
+  /// Starts a new run at a pose of the base; without a pose at the origin, or anywhere in a prior map. Returns `empty`
+  /// before the first data.
+  virtual Status start_again(const std::optional<StartPose>& start) = 0;
 
   std::string text(const std::string& parameter) { return get_parameter(parameter).as_string(); }
   std::vector<double> list(const std::string& parameter) { return get_parameter(parameter).as_double_array(); }
-  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. A best-effort
-  /// subscription would lose large clouds.
+  using Serialized = std::function<void(std::shared_ptr<rclcpp::SerializedMessage>)>;
+  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best effort would
+  /// lose large clouds. If the topic has the type CustomMsg of Livox, `livox` receives the messages.
   template <class Message>
-  void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback);
-  /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks the
-  /// pose.
+  void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback,
+                 Serialized livox = nullptr);
+  /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks it.
   std::optional<Eigen::Isometry3d> mounting(const std::string& parameter, const std::string& frame);
   void report(const char* topic, const Status& status);
 
@@ -80,12 +84,18 @@ inline ImuSample sample_of(const sensor_msgs::msg::Imu& message) {
 }
 
 template <class Message>
-void OdometryNode::subscribe(const std::string& topic, std::size_t depth,
-                             std::function<void(const Message&)> callback) {
-  inputs_.push_back([this, topic, depth, callback] {
-    if (count_publishers(topic) == 0) return false;
-    subscriptions_.push_back(
-        create_subscription<Message>(topic, rclcpp::QoS(depth).reliability_best_available(), callback));
+void OdometryNode::subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback,
+                             Serialized livox) {
+  inputs_.push_back([this, topic, depth, callback, livox] {
+    const auto publishers = get_publishers_info_by_topic(get_node_topics_interface()->resolve_topic_name(topic));
+    if (publishers.empty()) return false;
+    const rclcpp::QoS quality = rclcpp::QoS(depth).reliability_best_available();
+    const std::string type = publishers.front().topic_type();
+    if (livox && LivoxCloud::is_type(type)) {
+      subscriptions_.push_back(create_generic_subscription(topic, type, quality, livox));
+    } else {
+      subscriptions_.push_back(create_subscription<Message>(topic, quality, callback));
+    }
     return true;
   });
 }

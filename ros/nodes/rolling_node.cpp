@@ -33,9 +33,9 @@ class RollingNode : public OdometryNode {
   }
 
  protected:
-  bool start_again(const Eigen::Isometry3d& T_OB) override {
-    adapter_->reset(T_OB);
-    return true;
+  Status start_again(const std::optional<StartPose>& start) override {
+    adapter_->reset(start.value_or(StartPose{}).T_OB);
+    return {};
   }
 
  private:

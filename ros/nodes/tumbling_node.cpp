@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
+#include <span>
+#include <stdexcept>
 
 #include "odometry_node.hpp"
 #include "tumble_ros/tumbling_adapter.hpp"
@@ -49,21 +52,30 @@ class TumblingNode : public OdometryNode {
     params_.odometry.lidar = lidar_sheet(text("lidar_sheet"));
     declare_numbers(params_);
     params_.odometry.own_body_L = box_of("own_body", list("own_body"));
+    params_.position_arm_B_m = position_of("position_arm", list("position_arm"));
     params_.time_field = text("time_field");
     imu_frame_ = text("imu_frame");
     lidar_frame_ = text("lidar_frame");
     imu_publisher_ = create_publisher<sensor_msgs::msg::Imu>("~/imu", kImuDepth);
     points_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>("~/points", 10);
     map_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>("~/map", rclcpp::QoS(1).transient_local());
-    save_map_ = saving("~/save_map", "map_file", [this] { return ply_of(adapter_->map()); });
+    save_map_ = saving("~/save_map", "map_file", [this] { return adapter_->map_file(text("map_file")); });
     save_calibration_ =
         saving("~/save_calibration", "calibration_file", [this] { return adapter_->calibration_yaml(); });
+    load_map_ = create_service<Trigger>(
+        "~/load_map", [this](const Trigger::Request::SharedPtr, const Trigger::Response::SharedPtr& answer) {
+          answer->success = adapter_.has_value() && load_map(answer->message);
+          if (!adapter_) answer->message = kNoData.message();
+        });
     subscribe<sensor_msgs::msg::Imu>("imu", kImuDepth, [this](const sensor_msgs::msg::Imu& message) {
       if (imu_frame_.empty()) imu_frame_ = message.header.frame_id;
       if (start()) report("imu", adapter_->on_imu(sample_of(message)));
     });
+    position_publisher_ = create_publisher<Position>("~/pose", 10);
+    subscribe<Position>("position", kCloudDepth, [this](const Position& message) { on_position(message); });
     subscribe<sensor_msgs::msg::PointCloud2>(
-        "points", kCloudDepth, [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); });
+        "points", kCloudDepth, [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); },
+        [this](const std::shared_ptr<rclcpp::SerializedMessage>& message) { on_livox(*message); });
   }
 
   bool wants(Output output) override {
@@ -86,6 +98,22 @@ class TumblingNode : public OdometryNode {
     out.orientation_covariance[0] = -1.0;  // sensor_msgs/Imu: no orientation
     imu_publisher_->publish(out);
   }
+  void position_pose(const Odometry& odometry) override {
+    Position out;
+    out.header.stamp = rclcpp::Time(odometry.stamp_ns);
+    out.header.frame_id = position_frame_;
+    const Eigen::Vector3d p = odometry.T_OB.translation();
+    const Eigen::Quaterniond q(odometry.T_OB.linear());
+    out.pose.pose.position.x = p.x();
+    out.pose.pose.position.y = p.y();
+    out.pose.pose.position.z = p.z();
+    out.pose.pose.orientation.x = q.x();
+    out.pose.pose.orientation.y = q.y();
+    out.pose.pose.orientation.z = q.z();
+    out.pose.pose.orientation.w = q.w();
+    std::copy_n(odometry.pose_covariance.data(), 36, out.pose.covariance.begin());
+    position_publisher_->publish(out);
+  }
   void points(const DeskewedSweep& sweep) override {
     points_publisher_->publish(cloud(lidar_frame_, sweep.stamp_ns, {"x", "y", "z", "intensity"}, sweep.points));
   }
@@ -95,13 +123,14 @@ class TumblingNode : public OdometryNode {
   }
 
  protected:
-  bool start_again(const Eigen::Isometry3d& T_OB) override {
-    if (adapter_) adapter_->reset(T_OB);
-    return adapter_.has_value();
+  Status start_again(const std::optional<StartPose>& start) override {
+    return adapter_ ? adapter_->reset(start) : kNoData;
   }
 
  private:
+  using Position = geometry_msgs::msg::PoseWithCovarianceStamped;
   static constexpr std::size_t kCloudDepth = 20;
+  static constexpr Status kNoData{ErrorCode::empty, "messages of imu and points", 0.0, 1.0};
 
   /// Creates the adapter when the mounting of both sensors is known.
   bool start() {
@@ -111,7 +140,43 @@ class TumblingNode : public OdometryNode {
     params_.T_BI = *T_BI;
     params_.T_BL = *T_BL;
     adapter_.emplace(params_, *this);
+    std::string message;
+    if (!text("prior_map_file").empty() && !load_map(message)) throw std::runtime_error(message);
     return true;
+  }
+
+  /// Reads `prior_map_file` and starts a run in this map. Returns false on error.
+  bool load_map(std::string& message) {
+    const std::string path = text("prior_map_file");
+    std::ifstream file(path, std::ios::binary);
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (!file) {
+      message = "cannot read '" + path + "'; set the parameter prior_map_file";
+      return false;
+    }
+    const Status status = adapter_->load_map(std::as_bytes(std::span(bytes)));
+    message = path + ": " + status.message();
+    return status.ok();
+  }
+
+  void on_position(const Position& message) {
+    position_frame_ = message.header.frame_id;
+    const auto& p = message.pose.pose.position;
+    const Matrix6 covariance(message.pose.covariance.data());
+    if (start()) {
+      report("position", adapter_->on_position(rclcpp::Time(message.header.stamp).nanoseconds(), {p.x, p.y, p.z},
+                                               covariance.topLeftCorner<3, 3>()));
+    }
+  }
+
+  void on_livox(const rclcpp::SerializedMessage& message) {
+    const auto& raw = message.get_rcl_serialized_message();
+    const std::span<const std::uint8_t> bytes(raw.buffer, raw.buffer_length);
+    if (lidar_frame_.empty()) {
+      LivoxCloud cloud;
+      if (cloud.parse(bytes).ok()) lidar_frame_ = cloud.frame_id;
+    }
+    if (start()) report("points", adapter_->on_livox(bytes));
   }
 
   void on_points(const sensor_msgs::msg::PointCloud2& message) {
@@ -139,11 +204,12 @@ class TumblingNode : public OdometryNode {
   }
 
   TumblingAdapterParams params_;
-  std::string imu_frame_, lidar_frame_;
+  std::string imu_frame_, lidar_frame_, position_frame_;
   std::optional<TumblingAdapter> adapter_;
   rclcpp::Publisher<sensor_msgs::msg::Imu>::SharedPtr imu_publisher_;
+  rclcpp::Publisher<Position>::SharedPtr position_publisher_;
   rclcpp::Publisher<sensor_msgs::msg::PointCloud2>::SharedPtr points_publisher_, map_publisher_;
-  rclcpp::Service<Trigger>::SharedPtr save_map_, save_calibration_;
+  rclcpp::Service<Trigger>::SharedPtr save_map_, save_calibration_, load_map_;
 };
 
 }  // namespace tumble::ros

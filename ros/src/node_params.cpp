@@ -38,10 +38,16 @@ std::span<const TextParameter> text_parameters() {
       {"imu_sheet", "", 0, "data sheet of the IMU, which gives the defaults of imu_*"},
       {"lidar_sheet", "", 0, "data sheet of the lidar, which gives the defaults of range_*"},
       {"time_field", "", 0, "field of PointCloud2 with the times of the points; empty: by the usual names"},
-      {"map_file", "map.ply", 0, "file that the service save_map writes"},
-      {"calibration_file", "calibration.yaml", 0, "file that the service save_calibration writes"},
+      {"map_file", "map.tumblemap", 0,
+       "file that the service save_map writes: .ply, or .tumblemap for another run in this map", false},
+      {"prior_map_file", "", 0,
+       "map of an earlier run (.tumblemap), in which the node localises itself at the start and after the service "
+       "load_map; empty: none",
+       false},
+      {"calibration_file", "calibration.yaml", 0, "file that the service save_calibration writes", false},
       {"own_body", "", 6,
        "box around the robot in lidar axes, whose returns are dropped: x y z min, x y z max; empty: none"},
+      {"position_arm", "", 3, "position x y z of the antenna in the base frame; empty: its origin"},
       {"T_base_imu", "", 7,
        "pose of the IMU in the base frame: x y z qx qy qz qw; empty: from TF. A sphere needs it, once for each IMU"},
       {"T_base_lidar", "", 7, "pose of the lidar in the base frame: x y z qx qy qz qw; empty: from TF"}};
@@ -64,6 +70,12 @@ Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double>
   if (numbers.size() != 6)
     throw InvalidParams(parameter, static_cast<double>(numbers.size()), "6 numbers: x y z min, x y z max");
   return {Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), Eigen::Vector3d(numbers[3], numbers[4], numbers[5])};
+}
+
+Eigen::Vector3d position_of(const std::string& parameter, std::span<const double> numbers) {
+  if (numbers.empty()) return Eigen::Vector3d::Zero();
+  if (numbers.size() != 3) throw InvalidParams(parameter, static_cast<double>(numbers.size()), "3 numbers: x y z");
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 ImuSheet imu_sheet(const std::string& name) {

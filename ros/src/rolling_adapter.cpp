@@ -9,19 +9,25 @@ namespace tumble::ros {
 
 namespace {
 
-/// Converts a pose of the sphere to an odometry message. The base frame is that of the sphere.
-Odometry odometry_of(const RollingOdometry::Pose& sphere) {
-  RateState rate;
-  rate.w_WI_I_rad_s = sphere.angular_velocity_rad_s;
-  return base_odometry(sphere.pose, Eigen::Matrix3d::Zero(), rate, Eigen::Isometry3d::Identity());
+double rate_variance(const ImuSheet& sheet) {
+  return sheet.gyro_noise_rad_s_sqrt_hz * sheet.gyro_noise_rad_s_sqrt_hz * sheet.rate_hz;
 }
 
 }  // namespace
+
+/// Converts a pose of the sphere. The base frame is the sphere.
+Odometry RollingAdapter::odometry_of(const RollingOdometry::Pose& sphere) const {
+  RateState rate;
+  rate.w_WI_I_rad_s = sphere.angular_velocity_rad_s;
+  rate.covariance_rad2_s2 = rate_variance_rad2_s2_ * Eigen::Matrix3d::Identity();
+  return base_odometry(sphere.pose, sphere.velocity_covariance_B_m2_s2, rate, Eigen::Isometry3d::Identity());
+}
 
 RollingAdapter::RollingAdapter(const Params& params, Publisher& publisher)
     : units_(params.odometry.units.size()),
       publisher_(publisher),
       odometry_(params.odometry),
+      rate_variance_rad2_s2_(rate_variance(params.odometry.units.front().sheet)),
       diagnostics_(params.adapter.diagnostics_period_s) {
   require_valid_fields(params.adapter);
 }

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "adapter_values.hpp"
 
@@ -95,13 +99,47 @@ void TumblingAdapter::finish() {
   publish_sweeps();
 }
 
-void TumblingAdapter::reset(const Eigen::Isometry3d& T_OB) {
-  odometry_.reset(T_OB * params_.T_BI);
+Status TumblingAdapter::on_livox(std::span<const std::uint8_t> cdr) {
+  LivoxCloud cloud;
+  if (Status status = cloud.parse(cdr); !status.ok()) return clouds_.count(status);
+  return on_cloud(cloud.view());
+}
+
+Status TumblingAdapter::on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m,
+                                    const Eigen::Matrix3d& covariance_m2) {
+  const Eigen::Vector3d arm_I_m = params_.T_BI.inverse() * params_.position_arm_B_m;
+  return positions_.count(odometry_.add_position({stamp_ns, position_m, covariance_m2, arm_I_m}));
+}
+
+Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
   samples_.clear();
   rates_.clear();
   early_.clear();
   sweeps_.clear();
   last_.reset();
+  if (prior_map_.empty()) {
+    odometry_.reset(start ? start->T_OB * params_.T_BI : params_.T_BI);
+    return {};
+  }
+  PriorMap map{.points = prior_map_, .extend = params_.prior_map_extend};
+  if (start) {
+    map.T_MI = start->T_OB * params_.T_BI;
+    map.sigma_m = start->sigma_m;
+    map.sigma_rad = start->sigma_rad;
+  }
+  odometry_.reset();
+  return odometry_.use_map(std::move(map));
+}
+
+Status TumblingAdapter::load_map(std::span<const std::byte> bytes) {
+  if (Status status = tumble::load_map(bytes, prior_map_); !status.ok()) return status;
+  return reset();
+}
+
+std::string TumblingAdapter::map_file(const std::string& path) const {
+  if (path.ends_with(".ply")) return ply_of(map());
+  const std::vector<std::byte> bytes = save_map(map());
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 void TumblingAdapter::publish_rate() {
@@ -123,6 +161,11 @@ void TumblingAdapter::publish_sweeps() {
     if (report.trajectory.empty() || rates_.empty()) continue;  // no pose before the map starts
     publisher_.odometry(base_odometry(report.pose, report.velocity_covariance_I_m2_s2, rate_at(report.pose.time_ns),
                                       params_.T_BI.inverse()));
+    if (sweep->position_frame) {
+      publisher_.position_pose(base_odometry(sweep->position_frame->transform(report.pose),
+                                             report.velocity_covariance_I_m2_s2, rate_at(report.pose.time_ns),
+                                             params_.T_BI.inverse()));
+    }
     if (publisher_.wants(Output::points)) publish_points(report);
     last_ = report;
     last_->trajectory.clear();
@@ -163,6 +206,7 @@ void TumblingAdapter::publish_diagnostics() {
   add_findings(out, health);
   add_input(out, "imu", imu_);
   add_input(out, "clouds", clouds_);
+  if (positions_.received > 0) add_input(out, "positions", positions_);
   add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());
   add(out, "dropped sweeps", odometry_.dropped_sweeps());

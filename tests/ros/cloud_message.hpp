@@ -80,4 +80,30 @@ inline CloudMessage ouster_cloud(const std::vector<LidarPoint>& points) {
   return cloud_message(points, columns);
 }
 
+/// A livox_ros_driver2/CustomMsg in CDR, little-endian, as ROS 2 serializes it. The last point has no padding.
+inline std::vector<std::uint8_t> livox_cdr(TimeNs stamp_ns, const std::string& frame,
+                                           const std::vector<LidarPoint>& points) {
+  std::vector<std::uint8_t> out = {0, 1, 0, 0};
+  const auto align = [&](std::size_t to) { out.resize(4 + (out.size() - 4 + to - 1) / to * to); };
+  put<std::int32_t>(out, double(stamp_ns / 1'000'000'000));
+  put<std::uint32_t>(out, double(stamp_ns % 1'000'000'000));
+  put<std::uint32_t>(out, double(frame.size() + 1));
+  out.insert(out.end(), frame.begin(), frame.end());
+  out.push_back(0);
+  align(8);
+  out.insert(out.end(), 8, std::uint8_t{7});  // timebase, of another clock
+  put<std::uint32_t>(out, double(points.size()));
+  out.insert(out.end(), {3, 0, 0, 0});  // lidar_id, rsvd
+  put<std::uint32_t>(out, double(points.size()));
+  for (const LidarPoint& point : points) {
+    align(4);
+    put<std::uint32_t>(out, double(point.offset_ns));
+    for (const float axis : point.position_L_m) put<float>(out, axis);
+    put<std::uint8_t>(out, 255.0 * point.intensity + 0.5);
+    put<std::uint8_t>(out, 16.0);  // tag
+    put<std::uint8_t>(out, double(point.ring));
+  }
+  return out;
+}
+
 }  // namespace tumble::test

@@ -15,8 +15,10 @@ import time
 
 import numpy as np
 import rclpy
+import rclpy.parameter
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import SetParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Imu, PointCloud2
@@ -57,7 +59,7 @@ class Expected:
         self.poses, self.rates, self.sweeps = {}, {}, {}
 
     def tumble(self, recording, parameters: dict) -> "Expected":
-        lists = [parameters[key] for key in ("own_body", "T_base_imu", "T_base_lidar")]
+        lists = [parameters.get(key, []) for key in ("own_body", "position_arm", "T_base_imu", "T_base_lidar")]
         adapter = _tumble.TumblingAdapter(self, {"lever_arm_m": parameters["lever_arm_m"]}, *SHEETS.values(), "", *lists)
         for _, topic, message in messages(recording, ("imu", "points")):
             if topic == "imu":
@@ -155,15 +157,25 @@ def latency(sent: list, got: dict) -> str:
     return f"median {1e3 * np.median(waits):.1f} ms, largest {1e3 * max(waits):.1f} ms, n = {len(waits)}"
 
 
-def call(node, name: str, service: str) -> Trigger.Response:
-    client = node.create_client(Trigger, f"{name}/{service}")
+def request(node, kind, service: str, content):
+    client = node.create_client(kind, service)
     assert client.wait_for_service(20.0), f"no service {service}"
-    answer = client.call_async(Trigger.Request())
+    answer = client.call_async(content)
     deadline = time.monotonic() + 20.0
     while not answer.done() and time.monotonic() < deadline:
         time.sleep(0.05)
     assert answer.done(), f"service {service} does not answer"
     return answer.result()
+
+
+def call(node, name: str, service: str) -> Trigger.Response:
+    return request(node, Trigger, f"{name}/{service}", Trigger.Request())
+
+
+def set_text(node, name: str, parameter: str, value: str) -> None:
+    content = SetParameters.Request(parameters=[rclpy.parameter.Parameter(parameter, value=value).to_parameter_msg()])
+    result = request(node, SetParameters, f"{name}/set_parameters", content).results[0]
+    assert result.successful, result.reason
 
 
 def wait_for_node(node, name: str, topics: tuple, process: subprocess.Popen) -> None:
@@ -185,7 +197,7 @@ def tumble_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]
     name, recording, problems = "/tumbling_odometry", tumble.read(path, truth=False), []
     box = [x for corner in tumble.processing.RIG_BODY_L for x in corner]
     parameters = {**SHEETS, "lever_arm_m": list(map(float, recording.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
-                  "T_base_lidar": pose_numbers(recording.T_IL), "tf": "none", "map_file": str(folder / "map.ply"),
+                  "T_base_lidar": pose_numbers(recording.T_IL), "tf": "none", "map_file": str(folder / "map.tumblemap"),
                   "calibration_file": str(folder / "calibration.yaml")}
     expected = Expected().tumble(recording, parameters)
     assert len(expected.poses) > 20 and len(expected.rates) > 300, (len(expected.poses), len(expected.rates))
@@ -204,8 +216,13 @@ def tumble_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]
                          if not (answer := call(node, name, service)).success]
             if not received.maps or received.maps[0].header.frame_id != "odom":
                 problems.append("no map")
-            if not (folder / "map.ply").read_bytes().startswith(b"ply"):
-                problems.append("map.ply is no PLY file")
+            if call(node, name, "load_map").success:
+                problems.append("load_map: succeeds without a file")
+            set_text(node, name, "prior_map_file", str(folder / "map.tumblemap"))
+            if not (answer := call(node, name, "load_map")).success:
+                problems.append(f"load_map: {answer.message}")
+            if not (answer := call(node, name, "reset")).success:
+                problems.append(f"reset: {answer.message}")
             process.send_signal(signal.SIGKILL)
             process.wait(20)
         else:

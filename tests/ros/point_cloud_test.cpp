@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include <limits>
+#include <span>
 
 #include "cloud_message.hpp"
 
@@ -115,6 +116,33 @@ TEST(PointClouds, AnotherClockCountsFromTheStamp) {
   EXPECT_EQ(sweep.start_ns, kStamp_ns);
   ASSERT_TRUE(PointCloudReader().read(cloud.view(5'000'000'100'000), sweep).ok());
   EXPECT_EQ(sweep.start_ns, 5'000'000'000'000) << "the same times in the stamp's clock";
+}
+
+TEST(PointClouds, LivoxMessagesGiveTheSamePoints) {
+  const std::vector<LidarPoint> points = some_points();
+  for (const char* frame : {"", "livox_frame", "l"}) {
+    const std::vector<std::uint8_t> bytes = test::livox_cdr(kStamp_ns, frame, points);
+    ros::LivoxCloud cloud;
+    ASSERT_TRUE(cloud.parse(bytes).ok());
+    EXPECT_EQ(cloud.frame_id, frame);
+    TimedSweep sweep;
+    ASSERT_TRUE(PointCloudReader().read(cloud.view(), sweep).ok());
+    EXPECT_EQ(sweep.start_ns, kStamp_ns);
+    ASSERT_EQ(sweep.points.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_EQ(sweep.points[i].position_L_m, points[i].position_L_m);
+      EXPECT_EQ(sweep.points[i].offset_ns, points[i].offset_ns);
+      EXPECT_EQ(sweep.points[i].ring, points[i].ring);
+      EXPECT_NEAR(sweep.points[i].intensity, points[i].intensity, 1.0 / 255.0);
+    }
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+      ASSERT_EQ(cloud.parse(std::span(bytes).first(size)).error_code, ErrorCode::too_few) << size;
+  }
+  std::vector<std::uint8_t> big_endian = test::livox_cdr(kStamp_ns, "l", points);
+  big_endian[1] = 0;
+  EXPECT_EQ(ros::LivoxCloud().parse(big_endian).error_code, ErrorCode::out_of_range);
+  const std::vector<std::uint8_t> none = test::livox_cdr(kStamp_ns, "l", {});
+  EXPECT_EQ(ros::LivoxCloud().parse(none).error_code, ErrorCode::empty);
 }
 
 TEST(PointClouds, MissesAreDropped) {

@@ -50,6 +50,22 @@ template <class Type>
 struct Service {
   using SharedPtr = std::shared_ptr<Service>;
 };
+struct GenericSubscription : SubscriptionBase {
+  using SharedPtr = std::shared_ptr<GenericSubscription>;
+};
+struct SerializedMessage {
+  struct Bytes {
+    std::uint8_t* buffer;
+    std::size_t buffer_length;
+  };
+  const Bytes& get_rcl_serialized_message() const;
+};
+struct TopicEndpointInfo {
+  const std::string& topic_type() const;
+};
+struct NodeTopicsInterface {
+  std::string resolve_topic_name(const std::string& name, bool only_expand = false) const;
+};
 struct TimerBase {
   using SharedPtr = std::shared_ptr<TimerBase>;
 };
@@ -64,7 +80,11 @@ struct Node {
   Clock::SharedPtr get_clock();
   Logger get_logger() const;
   const char* get_name() const;
-  std::size_t count_publishers(const std::string& topic) const;
+  std::vector<TopicEndpointInfo> get_publishers_info_by_topic(const std::string& topic, bool no_mangle = false) const;
+  std::shared_ptr<NodeTopicsInterface> get_node_topics_interface();
+  GenericSubscription::SharedPtr create_generic_subscription(
+      const std::string& topic, const std::string& type, const QoS& quality,
+      std::function<void(std::shared_ptr<SerializedMessage>)> callback);
   template <class Value>
   Value declare_parameter(const std::string& name, const Value& value, const rcl_interfaces::msg::ParameterDescriptor&);
   Parameter get_parameter(const std::string& name) const;

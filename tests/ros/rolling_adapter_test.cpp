@@ -47,6 +47,37 @@ TEST(RollingAdapter, PublishesTheLibrarysResultsBitForBit) {
   }
 }
 
+// The sphere rolls along x with the speed of its rotation, in closed form.
+TEST(RollingAdapter, TheTwistHasItsStatedAccuracy) {
+  for (const double lag_s : {0.0, 0.5}) {
+    ros::RollingAdapter::Params params;
+    params.odometry = test::params_of({test::kPositions[0]});
+    params.odometry.lag_s = lag_s;
+    test::RecordedOutputs got;
+    ros::RollingAdapter adapter(params, got);
+    for (const ImuSample& sample : test::noisy(test::unit_at(test::kPositions[0]))) adapter.on_imu(0, sample);
+    double nees = 0.0;
+    std::size_t count = 0;
+    for (const ros::Odometry& odometry : got.sweeps) {
+      const double t_s = 1e-9 * double(odometry.stamp_ns), h_s = 1e-4;
+      if (t_s < test::kRest_s + 0.3 || t_s > test::kRest_s + test::kRoll_s - 0.3) continue;
+      const double speed_m_s =
+          test::kRadius_m * (test::angle_rad(t_s + h_s) - test::angle_rad(t_s - h_s)) / (2.0 * h_s);
+      const Eigen::Vector3d v_B = Eigen::AngleAxisd(test::angle_rad(t_s), Eigen::Vector3d::UnitY()).inverse() *
+                                  Eigen::Vector3d(speed_m_s, 0.0, 0.0);
+      const Eigen::Vector3d error = odometry.twist_B.head<3>() - v_B;
+      const Eigen::Matrix3d covariance = odometry.twist_covariance.topLeftCorner<3, 3>();
+      EXPECT_GT(covariance.diagonal().minCoeff(), 0.0);
+      EXPECT_GT(odometry.twist_covariance(5, 5), 0.0);
+      nees += error.dot(covariance.ldlt().solve(error)) / 3.0;
+      ++count;
+    }
+    ASSERT_GT(count, 300u);
+    EXPECT_LT(nees / double(count), 4.0) << "1 is consistent; one run, whose errors are correlated; lag " << lag_s;
+    EXPECT_GT(nees / double(count), 0.01) << "lag " << lag_s;
+  }
+}
+
 TEST(RollingAdapter, ResetStartsAtTheGivenPose) {
   ros::RollingAdapter::Params params;
   params.odometry = test::params_of({test::kPositions[0]});

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
+#include <string>
 
 #include "cloud_message.hpp"
 #include "estimator/tests/live_readings.hpp"
@@ -250,11 +252,77 @@ TEST(TumblingAdapter, ResetStartsAtTheGivenPose) {
   TumblingAdapter adapter(params, got);
   const Eigen::Isometry3d T_OB =
       Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
-  adapter.reset(T_OB);
+  EXPECT_TRUE(adapter.reset(ros::StartPose{T_OB}).ok());
   play_to(adapter, body, 0);
   ASSERT_FALSE(got.sweeps.empty());
   EXPECT_LT((got.sweeps.front().T_OB.translation() - T_OB.translation()).norm(), 2e-3);
   EXPECT_LT((got.sweeps.front().T_OB.linear() - T_OB.linear()).norm(), 5e-3);
+}
+
+TEST(TumblingAdapter, LocalisesInASavedMap) {
+  const ThrownBody body;
+  RecordedOutputs first, second;
+  TumblingAdapter mapped(adapter_params(body), first);
+  const Eigen::Isometry3d T_OB =
+      Eigen::Translation3d(3.0, -2.0, 0.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(mapped.reset(ros::StartPose{T_OB}).ok());
+  play_to(mapped, body, 0);
+  const std::string bytes = mapped.map_file("room.tumblemap");
+  EXPECT_TRUE(mapped.map_file("room.ply").starts_with("ply"));
+
+  TumblingAdapter adapter(adapter_params(body), second);
+  EXPECT_FALSE(adapter.load_map(std::as_bytes(std::span("ply"))).ok());
+  ASSERT_TRUE(adapter.load_map(std::as_bytes(std::span(bytes))).ok());
+  EXPECT_FALSE(adapter.odometry().mapper().localised().ok());
+  const Eigen::Isometry3d near = Eigen::Translation3d(0.3, 0.2, 0.0) * T_OB;
+  EXPECT_TRUE(adapter.reset(ros::StartPose{near, 0.3, 0.1}).ok());
+  play_to(adapter, body, 0);
+  EXPECT_TRUE(adapter.odometry().mapper().localised().ok());
+  EXPECT_LT((second.sweeps.back().T_OB.translation() - first.sweeps.back().T_OB.translation()).norm(), 0.15)
+      << "both runs end at the same pose of one map";
+}
+
+TEST(TumblingAdapter, PublishesThePoseInTheFrameOfPositions) {
+  const ThrownBody body;
+  TumblingAdapter::Params params = adapter_params(body);
+  params.T_BI = params.T_BL = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.3));
+  params.position_arm_B_m = {0.0, 0.2, 0.5};
+  RecordedOutputs got;
+  TumblingAdapter adapter(params, got);
+  const Eigen::Isometry3d T_PW =
+      Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  play(
+      body, 0,
+      [&](const ImuSample& sample) {
+        adapter.on_imu(sample);
+        if (sample.time_ns < 100'000'000) return;
+        const Eigen::Isometry3d T_WB = body.T_WI(1e-9 * double(sample.time_ns)) * params.T_BI.inverse();
+        const Eigen::Vector3d antenna_m = T_PW * T_WB * params.position_arm_B_m;
+        EXPECT_TRUE(adapter.on_position(sample.time_ns, antenna_m, 1e-4 * Eigen::Matrix3d::Identity()).ok());
+      },
+      [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
+        EXPECT_TRUE(adapter.on_cloud(test::ouster_cloud(points).view(start_ns)).ok());
+      });
+  ASSERT_FALSE(got.in_position_frame.empty());
+  const ros::Odometry& last = got.in_position_frame.back();
+  const Eigen::Isometry3d T_PB = T_PW * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
+  EXPECT_LT((last.T_OB.translation() - T_PB.translation()).norm(), 0.1);
+  EXPECT_LT((last.T_OB.linear() - T_PB.linear()).norm(), 0.1);
+}
+
+TEST(TumblingAdapter, ReadsLivoxMessages) {
+  const ThrownBody body;
+  RecordedOutputs clouds, livox;
+  TumblingAdapter expected(adapter_params(body), clouds), adapter(adapter_params(body), livox);
+  play_to(expected, body, 0);
+  play(
+      body, 0, [&](const ImuSample& sample) { adapter.on_imu(sample); },
+      [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
+        EXPECT_TRUE(adapter.on_livox(test::livox_cdr(start_ns, "livox", points)).ok());
+      });
+  ASSERT_EQ(livox.sweeps.size(), clouds.sweeps.size());
+  for (std::size_t k = 0; k < livox.sweeps.size(); ++k)
+    EXPECT_EQ(livox.sweeps[k].T_OB.matrix(), clouds.sweeps[k].T_OB.matrix());
 }
 
 TEST(TumblingAdapter, ReportsRejectedMessages) {

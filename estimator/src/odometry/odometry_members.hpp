@@ -56,12 +56,58 @@ template <StateOf<TumblingOdometry::Sweep> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("done.status", s.status);
   visit("done.report", s.report);
+  visit("done.position_frame", s.position_frame);
+}
+
+template <StateOf<PositionFrame> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("position_frame.T_PW", s.T_PW);
+  visit("position_frame.reference_W_m", s.reference_W_m);
+  visit("position_frame.covariance", s.covariance);
+}
+
+template <StateOf<PositionReading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("position.time_ns", s.time_ns);
+  visit("position.p_PA_m", s.p_PA_m);
+  visit("position.covariance_m2", s.covariance_m2);
+  visit("position.p_IA_m", s.p_IA_m);
+}
+
+template <StateOf<PositionAlignment::Pair> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("pair.p_WA_m", s.p_WA_m);
+  visit("pair.p_PA_m", s.p_PA_m);
+  visit("pair.variance_m2", s.variance_m2);
+  visit("pair.path_m", s.path_m);
+  visit("pair.pose_variance_m2", s.pose_variance_m2);
+}
+
+template <class Self, class Visitor>
+void PositionAlignment::members(Self& s, Visitor& visit) {
+  visit("positions.waiting", s.waiting_);
+  visit("positions.pairs", s.pairs_);
+  if constexpr (Visitor::kReads) visit.bounded("positions.pairs", double(s.pairs_.size()), 0.0, double(kPairsMax));
+  visit("positions.frame", s.frame_);
+  visit("positions.last_W_m", s.last_W_m_);
+  visit("positions.path_m", s.path_m_);
+  visit("positions.pose_variance_m2", s.pose_variance_m2_);
+  visit("positions.in_prior_map", s.in_prior_map_);
+}
+
+template <StateOf<FurtherLidar> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("further_lidar.T_IL", s.T_IL);
+  visit_params(s.sheet, visit);
+  visit("further_lidar.own_body_L", s.own_body_L);
+  visit("further_lidar.time_offset_s", s.time_offset_s);
 }
 
 template <StateOf<TumblingOdometry::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);
   visit("own_body_L", p.own_body_L);
+  visit("further_lidars", p.further_lidars);
   others(p.expert.rate, visit);
   others(p.expert.mapping, visit);
 }
@@ -78,6 +124,14 @@ void members(Self& s, Visitor& visit) {
   visit("waiting.start_ns", s.start_ns);
   visit("waiting.end_ns", s.end_ns);
   visit("waiting.points", s.points);
+}
+
+template <class Self, class Visitor>
+void FurtherLidars::members(Self& s, Visitor& visit) {
+  visit.scratch(s.lidars_);  // of the parameters
+  visit.scratch(s.T_LI_first_);
+  visit("further.waiting", s.waiting_);
+  visit("further.unused_points", s.unused_points_);
 }
 
 template <class Self, class Visitor>
@@ -102,6 +156,8 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("early_sweeps", s.early_sweeps_);
   visit("waiting", s.waiting_);
   visit("readings", s.readings_);
+  visit("positions", s.positions_);
+  visit("further_lidars", s.further_lidars_);
   visit("done", s.results_);
   visit("sweep_end_ns", s.sweep_end_ns_);
   visit("recorded", s.recorded_);

@@ -32,6 +32,7 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
   out.angular_velocity_rad_s = estimate.w_WI_I_rad_s;
+  out.velocity_covariance_B_m2_s2 = estimate.velocity_covariance_I_m2_s2;
   out.mode = estimate.mode;
   out.at_rest = estimate.at_rest;
   out.uncertain = estimate.uncertain;

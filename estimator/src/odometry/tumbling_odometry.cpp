@@ -51,7 +51,8 @@ TumblingOdometry::TumblingOdometry(const Params& params)
       sample_clock_(params.expert.stamps),
       plausibility_(plausibility_params(params.expert.gravity_m_s2, params.imu.gyro_range_rad_s)),
       pass_(rate_params(params), mapper_params(params)),
-      second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)) {}
+      second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)),
+      further_lidars_(params.further_lidars, params.T_IL) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
@@ -107,7 +108,7 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     ++early_sweeps_;
     return {};
   }
-  const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  const std::size_t most = most_waiting();
   if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
   if (waiting_.size() >= most)
     return {ErrorCode::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
@@ -116,6 +117,19 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
   waiting_.push_back({from_ns, end_ns, points_from(from_ns, start_ns, points)});
   register_covered_sweeps();
   return {};
+}
+
+std::size_t TumblingOdometry::most_waiting() const {
+  return params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+}
+
+Status TumblingOdometry::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns,
+                                   std::span<const LidarPoint> points) {
+  if (lidar == 0) return add_sweep(start_ns, end_ns, points);
+  if (finished_) return {ErrorCode::out_of_range, "sweeps after finish()", 1.0, 0.0};
+  const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
+  return further_lidars_.add(lidar, start_ns, end_ns, points, latest_ns,
+                             params_.further_lidars.size() * most_waiting());
 }
 
 Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
@@ -133,13 +147,20 @@ Status TumblingOdometry::add_reading(const OdometerReading& reading) {
   return readings_.add(reading, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
+Status TumblingOdometry::add_position(const PositionReading& position) {
+  if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
+  const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
+  const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
+  return positions_.add(position, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
+}
+
 Status TumblingOdometry::use_map(PriorMap map) {
   return pass_.use_map(std::move(map));
 }
 
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   if (results_.empty()) return std::nullopt;
-  Sweep out = std::move(results_.front());
+  std::optional<Sweep> out(std::move(results_.front()));
   results_.pop_front();
   return out;
 }
@@ -188,10 +209,14 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   last_registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
+  positions_.observe(out.report);
+  out.position_frame = positions_.frame();
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   // the second pass has a separate local frame
   if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.abandon();
+  const bool applied_before = second_pass_.applied();
   second_pass_.advance(pass_);
+  if (second_pass_.applied() != applied_before) positions_.restart_fit();
 }
 
 /// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, the newest sample
@@ -214,6 +239,7 @@ void TumblingOdometry::register_covered_sweeps() {
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
     waiting_.pop_front();
+    further_lidars_.merge_into(sweep);
     register_sweep(sweep.start_ns, sweep.end_ns, std::move(sweep.points));
   }
   const std::optional<TimeNs> covered_ns = pass_.covered_ns();
@@ -260,11 +286,13 @@ void TumblingOdometry::restart_at_newest() {
 void TumblingOdometry::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
+  FurtherLidars further = std::move(further_lidars_);
   OutlierFilter::State outliers = outlier_filter_state_;
   const std::optional<TimeNs> sweep_end_ns = sweep_end_ns_;
   reset();
   if (start) pass_.set_start_pose(*start);
   waiting_ = std::move(waiting);
+  further_lidars_ = std::move(further);
   sweep_end_ns_ = sweep_end_ns;
   outliers.count = 0;
   ++outliers.rejected;

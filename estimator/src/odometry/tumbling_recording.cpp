@@ -87,6 +87,7 @@ Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
     return status;
   if (Status status = estimate_rates(params_, samples, *whole); !status.ok()) return status;
   whole->rails = flag_saturated_forces(odometry::recording_rate_params(params_).rate.rails, samples);
+  for (WaitingSweep& sweep : waiting_) further_lidars_.merge_into(sweep);
   if (!waiting_.empty()) {
     const MappingInput input{samples,
                              whole->rates,
@@ -100,7 +101,11 @@ Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
     whole->mapped = map_with_calibration(input, mapping);
     whole->scale = find_sweep_scale(samples, whole->mapped, params_.expert.gravity_m_s2);
   }
-  for (MappedSweep& sweep : whole->mapped.sweeps) results_.push_back({sweep.status, std::move(sweep.report)});
+  PositionAlignment positions = positions_;
+  for (MappedSweep& sweep : whole->mapped.sweeps) {
+    positions.observe(sweep.report);
+    results_.push_back({sweep.status, std::move(sweep.report), positions.frame()});
+  }
   whole->mapped.sweeps.clear();
   whole->health = whole->findings.health;
   if (!waiting_.empty()) whole->mapped.add_findings(whole->scale, whole->health);

@@ -6,6 +6,7 @@
 
 #include "lost_heading.hpp"
 #include "rolling_node.hpp"
+#include "rolling_window.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/so3.hpp"
@@ -112,8 +113,8 @@ void RollingFilter::complete_node(const Eigen::Vector3d& next_rate_rad_s, State&
     choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), heading_lost, state);
   }
   state.position_covariance_m2 =
-      state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
-  // If the hypotheses about past motion disagree, the current position is more uncertain.
+      state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + spread(state, rolling::kPosition);
+  // If the hypotheses about past motion disagree, the uncertainty of the current position increases.
   if (state.at_rest && state.count == 1) {
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_spread_m2;
     state.position_covariance_m2 += state.pruned_position_spread_m2;
@@ -154,17 +155,17 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the position covariance that differences between the hypotheses cause: rolling.md (R27). The position
-/// covariance is the mean of d d^T, weighted by the weights of the hypotheses. The vector d is the position of a
-/// hypothesis relative to that of the best hypothesis.
-Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
-  const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
+/// Returns the covariance of a position or velocity that differences between the hypotheses cause: rolling.md (R27).
+/// `first` is the index of the position or velocity in the state. The covariance is the mean of d d^T, weighted by the
+/// weights of the hypotheses. The vector d is the difference between a hypothesis and the best hypothesis.
+Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
+  const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(first);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   double total = 0.0;
   for (int k = 0; k < state.count; ++k) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
-    const Eigen::Vector3d d = h.x.segment<3>(rolling::kPosition) - best;
+    const Eigen::Vector3d d = h.x.segment<3>(first) - best;
     spread += weight * d * d.transpose();
     total += weight;
   }
@@ -252,6 +253,14 @@ RollingEstimate RollingFilter::estimate(const State& state) {
   out.v_WG_m_s = state.v_WG_m_s;
   out.w_WI_I_rad_s = newest_rate_rad_s(state) - state.nominal.gyro_bias_rad_s;
   out.covariance.topLeftCorner<3, 3>() = state.position_covariance_m2;
+  if (state.count > 0) {
+    const Eigen::Matrix3d R_IW = state.nominal.q_WI.toRotationMatrix().transpose();
+    out.velocity_covariance_I_m2_s2 =
+        rolling::velocity_covariance_I(
+            state.nominal, out.w_WI_I_rad_s,
+            rolling::reported_covariance(rolling::output_covariance_rows(state.hypotheses[0].P))) +
+        R_IW * spread(state, rolling::kVelocity) * R_IW.transpose();
+  }
   out.mode = most_probable_mode(state);
   out.at_rest = state.at_rest;
   out.uncertain = state.uncertain;

@@ -297,7 +297,7 @@ void RollingFilter::correct_at_rest(State& state) const {
   rearrange(order, count, state.hypotheses);
   // After some time at rest, all hypotheses agree about the present state, so one hypothesis is sufficient.
   const bool rested = seconds(state.rest.within_bias_since_ns) > kLongAgo_s;
-  if (rested && state.count > 1) state.pruned_position_spread_m2 = position_spread(state);
+  if (rested && state.count > 1) state.pruned_position_spread_m2 = spread(state, rolling::kPosition);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {

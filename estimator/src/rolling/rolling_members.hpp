@@ -133,6 +133,7 @@ void members(Self& s, Visitor& visit) {
   visit("estimate.v_WG_m_s", s.v_WG_m_s);
   visit("estimate.w_WI_I_rad_s", s.w_WI_I_rad_s);
   visit("estimate.covariance", s.covariance);
+  visit("estimate.velocity_covariance_I_m2_s2", s.velocity_covariance_I_m2_s2);
   visit("estimate.mode", s.mode, RollingMode::rough);
   visit("estimate.at_rest", s.at_rest);
   visit("estimate.uncertain", s.uncertain);

@@ -141,6 +141,8 @@ RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling
   estimate.v_WG_m_s = point.v_WI_m_s + at.error.segment<3>(3) - w_W.cross(arm_W);
   if (at.node == nullptr) return estimate;
   estimate.covariance = stated(params) * pose_covariance(*at.node, arm_W);
+  estimate.velocity_covariance_I_m2_s2 =
+      stated(params) * rolling::velocity_covariance_I(at.node->nominal, estimate.w_WI_I_rad_s, at.node->smoothed_P);
   estimate.mode = at.node->path.mode;
   estimate.at_rest = at.node->path.at_rest;
   return estimate;

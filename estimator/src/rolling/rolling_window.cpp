@@ -104,6 +104,20 @@ Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covarianc
   return out;
 }
 
+Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows) {
+  Eigen::Matrix<double, kReported, kReported> out;
+  out << rows.leftCols<9>(), rows.middleCols<3>(kLeverArm);
+  return out;
+}
+
+Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
+                                      const Eigen::Matrix<double, kReported, kReported>& reported) {
+  const Eigen::Matrix3d R_IW = nominal.q_WI.toRotationMatrix().transpose();
+  Eigen::Matrix<double, 3, kReported> J;
+  J << R_IW * so3::hat(nominal.v_WI_m_s), R_IW, Eigen::Matrix3d::Zero(), -so3::hat(w_WI_I_rad_s);
+  return J * reported * J.transpose();
+}
+
 void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
                    const PathNode& path, PathFilter& filter, NodeRecord& record) {
   record.path = path;
@@ -172,11 +186,8 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
   auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
     NodeRecord& node = nodes[n];
-    const auto own = (Eigen::Matrix<double, kReported, kReported>() << node.P_rows.leftCols<9>(),
-                      node.P_rows.middleCols<3>(kLeverArm))
-                         .finished();
     node.smoothed = -node.P_rows * lambda;
-    node.smoothed_P = own - node.P_rows * Lambda * node.P_rows.transpose();
+    node.smoothed_P = reported_covariance(node.P_rows) - node.P_rows * Lambda * node.P_rows.transpose();
     if (node.heading_lost) move_back(node.turned, adjoint);
     for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {
       const Row& H = node.H[k];

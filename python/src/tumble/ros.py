@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import array
 import functools
+import importlib
 import math
 import pathlib
 import sys
@@ -68,8 +69,8 @@ class OdometryNode(Node):
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.text: dict[str, Any] = {}
-        for key, default, count, meaning in _tumble.node_texts():
-            described = ParameterDescriptor(description=meaning, read_only=True, dynamic_typing=count > 0)
+        for key, default, count, meaning, at_start in _tumble.node_texts():
+            described = ParameterDescriptor(description=meaning, read_only=at_start, dynamic_typing=count > 0)
             self.text[key] = self.declare_parameter(key, [] if count > 0 else default, described).value
         if self.text["tf"] not in ("imu", "sweep", "none"):
             raise ValueError(f"parameter tf is '{self.text['tf']}'; it must be imu, sweep or none")
@@ -89,9 +90,14 @@ class OdometryNode(Node):
         """Subscribes to the inputs that have a publisher, reliably if all its publishers are reliable. A best-effort subscription would lose large clouds."""
         for each in list(self.inputs):
             kind, topic, callback, depth = each
-            if self.count_publishers(self.resolve_topic_name(topic)) > 0:
-                self.create_subscription(kind, topic, callback, QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_AVAILABLE))
+            publishers = self.get_publishers_info_by_topic(self.resolve_topic_name(topic))
+            if publishers:
+                quality = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_AVAILABLE)
+                self.subscribe_input(publishers[0].topic_type, kind, topic, callback, quality)
                 self.inputs.remove(each)
+
+    def subscribe_input(self, published_type: str, kind: Any, topic: str, callback: Any, quality: QoSProfile) -> None:
+        self.create_subscription(kind, topic, callback, quality)
 
     def numbers(self, parameters: list[_tumble.Parameter]) -> dict[str, Any]:
         """Declares the numbers of the library, and returns the values that are set. A number without default is NaN until it is set."""
@@ -171,25 +177,30 @@ class OdometryNode(Node):
 
     adapter: Any = None
 
-    def start_again(self, pose: list[float]) -> None:
-        if self.adapter is not None:
-            self.adapter.reset(pose)
+    def start_again(self, *start: Any) -> str:
+        """Starts a new run at a pose with standard deviations; an empty list: at the origin, or anywhere in a prior map."""
+        return str(self.adapter.reset(*start)) if self.adapter is not None else "no data yet"
 
     def on_reset(self, _: Trigger.Request, answer: Trigger.Response) -> Trigger.Response:
-        self.start_again(IDENTITY)
-        answer.success = self.adapter is not None
-        answer.message = "started again at the origin" if answer.success else "no data yet"
+        error = self.start_again([])
+        answer.success, answer.message = not error, error or "started again"
         return answer
 
     def on_initial_pose(self, given: PoseWithCovarianceStamped) -> None:
         p, q = given.pose.pose.position, given.pose.pose.orientation
+        covariance = given.pose.covariance  # x y z, and rotations about x y z
+        sigma_m, sigma_rad = math.sqrt(max(covariance[0], covariance[7], 0.0)), math.sqrt(max(covariance[35], 0.0))
         try:
-            self.start_again([p.x, p.y, p.z, q.x, q.y, q.z, q.w])
+            self.report("initialpose", self.start_again([p.x, p.y, p.z, q.x, q.y, q.z, q.w], sigma_m, sigma_rad))
         except ValueError as error:
             self.report("initialpose", str(error))
 
+    def path(self, parameter: str) -> pathlib.Path:
+        """Returns a file, whose parameter may have changed since the start."""
+        return pathlib.Path(self.get_parameter(parameter).value).absolute()
+
     def write(self, parameter: str, content: bytes, answer: Trigger.Response) -> Trigger.Response:
-        path = pathlib.Path(self.text[parameter]).absolute()
+        path = self.path(parameter)
         try:
             path.write_bytes(content)
             answer.success, answer.message = True, f"wrote {path}"
@@ -210,8 +221,12 @@ class TumblingNode(OdometryNode):
         self.points_publisher = self.create_publisher(PointCloud2, "~/points", 10)
         self.map_publisher = self.create_publisher(PointCloud2, "~/map", latched)
         self.create_service(Trigger, "~/save_map", self.on_save_map)
+        self.create_service(Trigger, "~/load_map", self.on_load_map)
         self.create_service(Trigger, "~/save_calibration", self.on_save_calibration)
-        self.inputs = [(Imu, "imu", self.on_imu, IMU_DEPTH), (PointCloud2, "points", self.on_points, CLOUD_DEPTH)]
+        self.position_publisher = self.create_publisher(PoseWithCovarianceStamped, "~/pose", 10)
+        self.position_frame = ""
+        self.inputs = [(Imu, "imu", self.on_imu, IMU_DEPTH), (PointCloud2, "points", self.on_points, CLOUD_DEPTH),
+                       (PoseWithCovarianceStamped, "position", self.on_position, CLOUD_DEPTH)]
         self.start()  # reports wrong parameters at once, if they give the mounting
 
     def start(self) -> bool:
@@ -222,8 +237,19 @@ class TumblingNode(OdometryNode):
         if T_base_imu is None or T_base_lidar is None:
             return False
         self.adapter = _tumble.TumblingAdapter(self, self.given, self.text["imu_sheet"], self.text["lidar_sheet"], self.text["time_field"],
-                                               list(self.text["own_body"]), T_base_imu, T_base_lidar)
+                                               list(self.text["own_body"]), list(self.text["position_arm"]), T_base_imu, T_base_lidar)
+        if self.text["prior_map_file"] and (error := self.load_map()):
+            raise ValueError(error)
         return True
+
+    def load_map(self) -> str:
+        """Reads `prior_map_file` and starts a run in this map. Returns an empty text, or the error."""
+        path = self.path("prior_map_file")
+        try:
+            error = self.adapter.load_map(path.read_bytes())
+        except OSError as unreadable:
+            return f"{unreadable}; set the parameter prior_map_file"
+        return f"{path}: {error}" if error else ""
 
     def on_imu(self, message: Imu) -> None:
         self.frames["imu"] = self.frames["imu"] or message.header.frame_id
@@ -237,6 +263,25 @@ class TumblingNode(OdometryNode):
             fields = [(field.name, field.offset, field.datatype, field.count) for field in message.fields]
             self.report("points", self.adapter.on_cloud(to_ns(message.header.stamp), message.height, message.width, fields, message.is_bigendian,
                                                         message.point_step, message.row_step, message.data))
+
+    def on_position(self, message: PoseWithCovarianceStamped) -> None:
+        self.position_frame = message.header.frame_id
+        p, covariance = message.pose.pose.position, message.pose.covariance
+        if self.start():
+            rows = [covariance[6 * i + j] for i in range(3) for j in range(3)]
+            self.report("position", self.adapter.on_position(to_ns(message.header.stamp), [p.x, p.y, p.z], rows))
+
+    def on_livox(self, message: bytes) -> None:
+        self.frames["lidar"] = self.frames["lidar"] or _tumble.livox_frame(message)
+        if self.start():
+            self.report("points", self.adapter.on_livox(message))
+
+    def subscribe_input(self, published_type: str, kind: Any, topic: str, callback: Any, quality: QoSProfile) -> None:
+        if kind is PointCloud2 and published_type.endswith("/CustomMsg"):  # the type is installed with the driver
+            livox = importlib.import_module(published_type.split("/")[0] + ".msg").CustomMsg
+            self.create_subscription(livox, topic, self.on_livox, quality, raw=True)
+        else:
+            super().subscribe_input(published_type, kind, topic, callback, quality)
 
     def wants(self, output: str) -> bool:
         if output == "points":
@@ -255,6 +300,16 @@ class TumblingNode(OdometryNode):
         out.orientation_covariance[0] = -1.0  # sensor_msgs/Imu: no orientation
         self.imu_publisher.publish(out)
 
+    def position_pose(self, odometry: _tumble.BaseOdometry) -> None:
+        out = PoseWithCovarianceStamped()
+        out.header.frame_id = self.position_frame
+        put_stamp(out.header.stamp, odometry.stamp_ns)
+        p, q = out.pose.pose.position, out.pose.pose.orientation
+        p.x, p.y, p.z = odometry.position
+        q.x, q.y, q.z, q.w = odometry.orientation
+        out.pose.covariance = odometry.pose_covariance
+        self.position_publisher.publish(out)
+
     def points(self, stamp_ns: int, data: bytes) -> None:
         self.points_publisher.publish(cloud(self.frames["lidar"], stamp_ns, ("x", "y", "z", "intensity"), data))
 
@@ -263,7 +318,12 @@ class TumblingNode(OdometryNode):
         self.map_publisher.publish(cloud(self.text["odom_frame"], stamp_ns, names, data))
 
     def on_save_map(self, _: Trigger.Request, answer: Trigger.Response) -> Trigger.Response:
-        return self.write("map_file", self.adapter.map_ply(), answer) if self.adapter else answer
+        return self.write("map_file", self.adapter.map_file(str(self.path("map_file"))), answer) if self.adapter else answer
+
+    def on_load_map(self, _: Trigger.Request, answer: Trigger.Response) -> Trigger.Response:
+        error = self.load_map() if self.adapter else "no data yet"
+        answer.success, answer.message = not error, error or f"localises in {self.path('prior_map_file')}"
+        return answer
 
     def on_save_calibration(self, _: Trigger.Request, answer: Trigger.Response) -> Trigger.Response:
         return self.write("calibration_file", self.adapter.calibration_yaml().encode(), answer) if self.adapter else answer

@@ -28,11 +28,13 @@ struct AdapterParams {
 
 /// Parameters of TumblingAdapter.
 struct TumblingAdapterParams {
-  TumblingParams odometry;                                 ///< T_IL is set from T_BI and T_BL
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< pose of the IMU in the base frame
-  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in the base frame
-  std::string time_field;                                  ///< see PointCloudReader
+  TumblingParams odometry;                                     ///< T_IL is set from T_BI and T_BL
+  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();      ///< pose of the IMU in the base frame
+  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();      ///< pose of the lidar in the base frame
+  Eigen::Vector3d position_arm_B_m = Eigen::Vector3d::Zero();  ///< antenna of position readings, in the base frame
+  std::string time_field;                                      ///< see PointCloudReader
   double map_period_s = 5.0;
+  bool prior_map_extend = true;  ///< see PriorMap::extend
   AdapterParams adapter;
 
   template <class Self, class Visitor>
@@ -40,6 +42,9 @@ struct TumblingAdapterParams {
     visit.group("", p.odometry);
     visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
                            "time between two publications of the map, by the stamps of the IMU", FieldRank::basic});
+    visit(p.prior_map_extend,
+          {"prior_map_extend", "1", 0, 1, "whether sweeps extend the prior map; false: the prior map stays unchanged",
+           FieldRank::basic});
     visit.group("", p.adapter);
   }
   static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
@@ -74,6 +79,7 @@ struct TextParameter {
   const char* value;  ///< default of a text
   int count;          ///< length of the list; the default list is empty
   const char* meaning;
+  bool at_start = true;  ///< false: read at each call of a service
 };
 
 /// Returns the text and list parameters of both nodes.
@@ -86,6 +92,10 @@ Eigen::Isometry3d pose_of(const std::string& parameter, std::span<const double> 
 /// Converts the smallest and the largest corner to a box; no numbers give an empty box. Throws InvalidParams with the
 /// name of the parameter for another count of numbers.
 Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double> numbers);
+
+/// Converts three numbers to a position; no numbers give zero. Throws InvalidParams with the name of the parameter for
+/// another count.
+Eigen::Vector3d position_of(const std::string& parameter, std::span<const double> numbers);
 
 /// Returns the data sheet with this name, or the default sheet for an empty name. Throws InvalidParams for an unknown
 /// name, with a list of all known names.

@@ -2,34 +2,16 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 #include "tumble/mapping/lidar.hpp"
+#include "tumble_ros/point_fields.hpp"
 
 namespace tumble::ros {
-
-/// PointField describes one field of a point, like sensor_msgs/PointField.
-struct PointField {
-  std::string name;
-  std::uint32_t offset = 0;   ///< byte within the point
-  std::uint8_t datatype = 0;  ///< number of sensor_msgs/PointField: 1 (int8) to 8 (float64)
-  std::uint32_t count = 1;
-};
-
-/// PointCloudView refers to the contents of a sensor_msgs/PointCloud2.
-struct PointCloudView {
-  TimeNs stamp_ns = 0;
-  std::uint32_t height = 0, width = 0;
-  std::span<const PointField> fields;
-  bool is_bigendian = false;
-  std::uint32_t point_step = 0, row_step = 0;
-  std::span<const std::uint8_t> data;
-};
 
 /// TimedSweep contains the arguments of TumblingOdometry::add_sweep().
 struct TimedSweep {
@@ -40,16 +22,14 @@ struct TimedSweep {
 /// PointCloudReader converts the points of lidar drivers to the library's points, sweep by sweep. PointCloudReader
 /// needs only the current and earlier sweeps.
 ///
-/// The fields x, y, z and a time are required. Intensity ("intensity", "reflectivity") and ring ("ring", "line",
-/// "channel") are optional. A time field is called "t", "time", "timestamp", "timestamps", "time_stamp", "offset_time",
-/// "time_offset" or "offset", in any case, with or without the suffix _s, _ms, _us or _ns. If several fields have such
-/// a name, the field whose suffix states the unit is used.
+/// The fields x, y, z and a time (TimeFieldChoice) are required. The fields for intensity and ring (kIntensityNames,
+/// kRingNames) are optional. LivoxCloud converts the CustomMsg of Livox to such a cloud.
 ///
-/// The suffix of a time field states the unit. Without a suffix, the first sweep of at least 100 points determines the
-/// time unit. The times of a sweep span 1 ms to 1 s, and units differ by factors of 1000, so only one unit fits. Times
-/// are relative to the header's stamp or absolute, whichever puts the first point closer to the stamp. If neither is
-/// within a second of the stamp, the times belong to another clock, and the first point is assumed to be measured at
-/// the stamp.
+/// The suffix _s, _ms, _us or _ns of the time field states the unit. Without a suffix, the first sweep of at least 100
+/// points determines the time unit. The times of a sweep span 1 ms to 1 s, and units differ by factors of 1000, so only
+/// one unit fits. Times are relative to the header's stamp or absolute, whichever puts the first point closer to the
+/// stamp. If neither is within a second of the stamp, the times belong to another clock, and the first point is assumed
+/// to be measured at the stamp.
 ///
 /// | driver | field | type | times |
 /// | --- | --- | --- | --- |

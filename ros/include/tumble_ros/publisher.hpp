@@ -63,6 +63,7 @@ class Publisher {
   virtual bool wants(Output) { return true; }
   virtual void odometry(const Odometry&) = 0;      ///< pose of a registered sweep, or smoothed pose of a sphere
   virtual void odometry_imu(const Odometry&) = 0;  ///< predicted pose at the newest IMU sample
+  virtual void position_pose(const Odometry&) {}   ///< pose of a registered sweep in the frame of position readings
   virtual void imu(const RecoveredImu&) {}
   virtual void points(const DeskewedSweep&) {}
   virtual void map(TimeNs, const std::vector<MapPoint>&) {}

@@ -14,9 +14,8 @@ namespace tumble::ros {
 /// node and needs no ROS. The adapter publishes the estimates unchanged.
 ///
 /// Publisher::odometry receives the smoothed poses, which are lag_s old (live poses if lag_s is 0).
-/// Publisher::odometry_imu receives the newest pose after each accepted sample. The base frame is that of the sphere,
-/// so its axes turn with the sphere. RollingOdometry reports no covariance of velocities: the twist's covariance is
-/// zero.
+/// Publisher::odometry_imu receives the newest pose after each accepted sample. The base frame is the sphere, so its
+/// axes turn with the sphere. The covariance of the angular velocity is the white noise of the first IMU's data sheet.
 class RollingAdapter {
  public:
   using Params = RollingAdapterParams;
@@ -31,11 +30,13 @@ class RollingAdapter {
   const RollingOdometry& odometry() const { return odometry_; }
 
  private:
+  Odometry odometry_of(const RollingOdometry::Pose& sphere) const;
   void publish_diagnostics(TimeNs time_ns);
 
   std::size_t units_;
   Publisher& publisher_;
   RollingOdometry odometry_;
+  double rate_variance_rad2_s2_;
   Rejections imu_;
   Schedule diagnostics_;
   TimeNs newest_ns_ = 0;  ///< stamp of the last published newest pose

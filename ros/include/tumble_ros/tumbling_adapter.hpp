@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,13 @@
 
 namespace tumble::ros {
 
+/// StartPose is the pose of the base at the start of a run. The standard deviations limit the search in a prior map.
+struct StartPose {
+  Eigen::Isometry3d T_OB = Eigen::Isometry3d::Identity();
+  double sigma_m = 0.0;    ///< per axis; 0: exact
+  double sigma_rad = 0.0;  ///< of the heading; 0: exact
+};
+
 /// TumblingAdapter connects TumblingOdometry to the messages of a robot. TumblingAdapter contains the logic of the ROS
 /// nodes and needs no ROS. The adapter publishes the estimates unchanged: the library called directly gives the same
 /// bits.
@@ -22,6 +32,7 @@ namespace tumble::ros {
 /// | --- | --- |
 /// | Publisher::imu | for each IMU sample, lag_s later |
 /// | Publisher::odometry, points | for each registered sweep |
+/// | Publisher::position_pose | for each registered sweep, once positions determine their frame |
 /// | Publisher::odometry_imu | for each accepted IMU sample after the first registered sweep |
 /// | Publisher::map, diagnostics | at the periods of the parameters |
 ///
@@ -42,14 +53,25 @@ class TumblingAdapter {
   /// TumblingOdometry::add_sweep(). A busy computer may deliver clouds seconds before the IMU samples of their times.
   /// The adapter keeps at most 32 such clouds until the samples arrive.
   Status on_cloud(const PointCloudView& cloud);
+  /// Processes a CustomMsg of a Livox driver, in CDR. Returns the status of LivoxCloud::parse() or of on_cloud().
+  Status on_livox(std::span<const std::uint8_t> cdr);
+  /// Processes the position of the antenna, with its covariance, in a frame with z up. Returns the status of
+  /// TumblingOdometry::add_position().
+  Status on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m, const Eigen::Matrix3d& covariance_m2);
   /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
   void finish();
-  /// Starts a new run with a new map. Position and heading of the base are those of `T_OB`.
-  void reset(const Eigen::Isometry3d& T_OB);
+  /// Starts a new run. Position and heading of the base are those of `start`. Without a pose, the run starts at the
+  /// origin, or anywhere in the prior map. Returns `ok`, or the errors of TumblingOdometry::use_map().
+  Status reset(const std::optional<StartPose>& start = std::nullopt);
+  /// Starts a new run, which localises itself in a map that tumble::save_map() saved. Returns the errors of
+  /// tumble::load_map() and of reset(). After an error of tumble::load_map(), the run continues.
+  Status load_map(std::span<const std::byte> bytes);
 
   /// Returns the estimated mounting and lever arm as a ROS 2 parameter file, from which the next run can start.
   std::string calibration_yaml() const;
   std::vector<MapPoint> map() const { return odometry_.mapper().map(); }
+  /// Returns the map as contents of a file: PLY for the extension .ply, otherwise the format of load_map().
+  std::string map_file(const std::string& path) const;
   const TumblingOdometry& odometry() const { return odometry_; }
 
  private:
@@ -66,13 +88,14 @@ class TumblingAdapter {
   Params params_;
   Publisher& publisher_;
   TumblingOdometry odometry_;
+  std::vector<MapPoint> prior_map_;
   PointCloudReader reader_;
   std::deque<ImuSample> samples_;    ///< accepted samples whose rate is not smoothed yet
   std::deque<RateState> rates_;      ///< smoothed rates of the last seconds
   std::deque<TimedSweep> early_;     ///< sweeps that wait for IMU samples
   std::deque<TimedSweep> sweeps_;    ///< sweeps that wait for their poses
   std::optional<SweepReport> last_;  ///< newest registered sweep, without its trajectory
-  Rejections imu_, clouds_;
+  Rejections imu_, clouds_, positions_;
   Schedule map_, diagnostics_;
 };
 

@@ -5,71 +5,47 @@
 
 #include <xxhash.h>
 
-#include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "scenarios/errors.hpp"
+#include "tumble_ros/point_fields.hpp"
 
 namespace tumble::scenarios {
-
-namespace {
-
-template <class Number>
-void take_column(const ros::PointCloud2& cloud, std::size_t row_bytes, std::size_t offset, std::vector<double>& out) {
-  std::size_t point = 0;
-  for (std::uint32_t row = 0; row < cloud.height; ++row) {
-    for (std::uint32_t i = 0; i < cloud.width; ++i) {
-      Number value;
-      std::memcpy(&value, cloud.data.data() + row * row_bytes + std::size_t{i} * cloud.point_step + offset,
-                  sizeof(value));
-      out[point++] = static_cast<double>(value);
-    }
-  }
-}
-
-struct ReadType {
-  std::size_t bytes;
-  void (*take)(const ros::PointCloud2&, std::size_t, std::size_t, std::vector<double>&);
-};
-
-/// Returns the PCL type with this number, or null if the number is unknown.
-const ReadType* type_of(std::uint8_t datatype) {
-  static const ReadType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
-                                   {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
-                                   {4, take_column<std::int32_t>}, {4, take_column<std::uint32_t>},
-                                   {4, take_column<float>},        {8, take_column<double>}};
-  return datatype >= ros::PointField::int8 && datatype <= ros::PointField::float64 ? &known[datatype - 1] : nullptr;
-}
-
-}  // namespace
 
 bool is_livox_type(const std::string& type) {
   return type == ros::kLivoxRos1 || type == "livox_ros_driver2/CustomMsg" || type == "livox_interfaces/CustomMsg";
 }
 
-// The function checks the layout against the data before the conversion.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
-  if (message.is_bigendian != 0)
-    throw BadInput(where + ": points are big-endian; only little-endian points are supported");
-  const std::uint64_t tight = std::uint64_t{message.width} * message.point_step;
-  const std::uint64_t row_bytes = std::max<std::uint64_t>(message.row_step, tight);
+  std::vector<tumble::ros::PointField> fields;
+  for (const ros::PointField& field : message.fields)
+    fields.push_back({field.name, field.offset, field.datatype, field.count});
+  const tumble::ros::PointCloudView view{0,
+                                         message.height,
+                                         message.width,
+                                         fields,
+                                         message.is_bigendian != 0,
+                                         message.point_step,
+                                         message.row_step,
+                                         message.data};
   Cloud out;
-  if (message.width == 0 || message.height == 0) return out;
-  if (message.point_step == 0 || row_bytes > message.data.size() / message.height) {
-    throw BadInput(fmt::format("{}: the cloud states {} x {} points of {} bytes, which do not fit its data of {} bytes",
-                               where, message.height, message.width, message.point_step, message.data.size()));
+  const Status status = check_layout(view);
+  if (status.error_code == ErrorCode::empty) return out;
+  if (!status.ok()) {
+    throw BadInput(
+        fmt::format("{}: {} x {} points of {} bytes do not fit the data of {} bytes, or are not supported: {}", where,
+                    view.height, view.width, view.point_step, view.data.size(), status.message()));
   }
-  out.points = std::size_t{message.width} * message.height;
-  for (const ros::PointField& field : message.fields) {
-    const ReadType* type = type_of(field.datatype);
-    if (type == nullptr || field.count > 1) continue;  // count 0: some drivers mean one
-    if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
-      throw BadInput(fmt::format("{}: field '{}' starts at byte {} and ends outside of a point, which has {} bytes",
-                                 where, field.name, field.offset, message.point_step));
-    }
+  out.points = std::size_t{view.width} * view.height;
+  for (const tumble::ros::PointField& field : fields) {
+    if (!is_number(field)) continue;
     out.names.push_back(field.name);
-    type->take(message, row_bytes, field.offset, out.columns.emplace_back(out.points));
+    std::vector<double>& column = out.columns.emplace_back();
+    column.reserve(out.points);
+    for (std::uint32_t row = 0; row < view.height; ++row) {
+      const std::uint8_t* at = view.data.data() + row * view.row_bytes();
+      for (std::uint32_t i = 0; i < view.width; ++i, at += view.point_step) column.push_back(number_at(at, field));
+    }
   }
   return out;
 }

@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -13,18 +12,12 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "sim/parameters.hpp"
+#include "tumble_ros/point_fields.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-struct TimeUnit {
-  const char* name;
-  double ns;
-};
-constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
-constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
-                                               "time_stamp", "offset_time", "time_offset", "offset"};
 /// The point times of a sweep must cover a fraction of the period between kSpanMin (a sector of 7 degrees) and kSpanMax
 /// (some overlap). Time units differ by factors of 1000, so at most one unit fits. A shorter range of times, for
 /// example if times count from each packet, still fits exactly one unit.
@@ -38,22 +31,10 @@ constexpr double kPointsThatSpan = 100.0;
 /// Among kCloudsToCompare clouds with absolute times, at least two start more than two periods after time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
+using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
 
-/// Returns the time unit that the suffix of a name states, or null.
-const TimeUnit* unit_of_name(const std::string& name) {
-  const auto ends = [&](const TimeUnit& unit) { return name.ends_with(std::string("_") + unit.name); };
-  const auto* found = std::find_if(kUnits.begin(), kUnits.end(), ends);
-  return found == kUnits.end() ? nullptr : found;
-}
-
-bool is_time(const std::string& field) {
-  std::string name = lower(field);
-  if (const TimeUnit* unit = unit_of_name(name)) name.resize(name.size() - std::string(unit->name).size() - 1);
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+std::string_view name_of(const TimeUnit& unit) {
+  return unit.suffix.substr(1);
 }
 
 std::string choose_field(const Cloud& cloud, const SweepReading& reading, const std::string& where) {
@@ -65,16 +46,13 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     throw BadInput(fmt::format("{}: there is no field '{}'{} (existing fields:{})", where, reading.time_field,
                                near.empty() ? "" : "; did you mean '" + near + "'?", all));
   }
-  std::string found;
-  for (const std::string& name : cloud.names) {
-    if (!is_time(name)) continue;
-    const bool states = unit_of_name(lower(name)) != nullptr, stated = unit_of_name(lower(found)) != nullptr;
-    if (!found.empty() && states == stated)
-      throw BadInput(fmt::format("{}: the fields '{}' and '{}' may both be point times; select one with --time-field",
-                                 where, found, name));
-    if (found.empty() || states) found = name;  // prefer the field whose name states the unit
+  tumble::ros::TimeFieldChoice choice;
+  for (const std::string& name : cloud.names) choice.offer(name);
+  if (!choice.rival.empty()) {
+    throw BadInput(fmt::format("{}: the fields '{}' and '{}' may both be point times; select one with --time-field",
+                               where, choice.field, choice.rival));
   }
-  return found;
+  return choice.field;
 }
 
 /// Point times farther from the median than kDamaged interquartile ranges are damaged.
@@ -107,7 +85,7 @@ bool fits(double span, const TimeUnit& unit, double period_ns, double least = kS
 }
 
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
-  std::string text = fmt::format("in {} this is ", unit.name);
+  std::string text = fmt::format("in {} this is ", name_of(unit));
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
   return text + " % of the sweep period";
 }
@@ -116,11 +94,11 @@ std::string share_of(double span, const TimeUnit& unit, double period_ns) {
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
-  const auto* read =
-      std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return fits(span, each, period_ns); });
-  if (read == kUnits.end()) return;
+  const auto* read = std::find_if(kTimeUnits.begin(), kTimeUnits.end(),
+                                  [&](const TimeUnit& each) { return fits(span, each, period_ns); });
+  if (read == kTimeUnits.end()) return;
   std::string line = fmt::format("{}: the point times in field '{}' have the stated unit {} and a range of ", where,
-                                 field, stated.name);
+                                 field, name_of(stated));
   append_number(line, span);
   throw BadInput(fmt::format("{} in a sweep: {}, {}; check the unit", line, share_of(span, stated, period_ns),
                              share_of(span, *read, period_ns)));
@@ -128,7 +106,7 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
 
 /// Determines the time unit from the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
-  for (const TimeUnit& unit : kUnits) {
+  for (const TimeUnit& unit : kTimeUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns, kShortSpanMin)) return unit.ns;
     // For time stamps since 1970, the function returns the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
@@ -176,15 +154,15 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
   }
   const std::string unit = reading.time_unit;
   const auto* named =
-      std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return unit == each.name; });
+      std::find_if(kTimeUnits.begin(), kTimeUnits.end(), [&](const TimeUnit& each) { return unit == name_of(each); });
   const double span = upper_median(spans), period = static_cast<double>(period_ns);
-  if (!unit.empty() && named == kUnits.end())
+  if (!unit.empty() && named == kTimeUnits.end())
     throw BadInput(fmt::format("the unit of point times is '{}'; it must be s, ms, us or ns", unit));
-  if (unit.empty()) named = unit_of_name(lower(rule.field));
-  if (named != nullptr && named != kUnits.end() && upper_median(points) >= kPointsThatSpan)
+  if (unit.empty()) named = stated_unit(rule.field);
+  if (named != nullptr && named != kTimeUnits.end() && upper_median(points) >= kPointsThatSpan)
     require_no_other_unit(*named, span, period, rule.field, where);
-  rule.unit_ns =
-      named != nullptr && named != kUnits.end() ? named->ns : unit_by_size(span, largest, period, rule.field, where);
+  rule.unit_ns = named != nullptr && named != kTimeUnits.end() ? named->ns
+                                                               : unit_by_size(span, largest, period, rule.field, where);
   rule.short_span = upper_median(points) >= kPointsThatSpan && period > 0.0 && span * rule.unit_ns <= kSpanMin * period;
   std::size_t far = 0;
   for (const Cloud& cloud : first) {

@@ -4,15 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
+#include <span>
+#include <string_view>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "tumble_ros/point_fields.hpp"
 
 namespace tumble::scenarios {
 
@@ -29,8 +31,7 @@ constexpr double kOverlapMost = 1.05;   // longest sweep relative to the time be
 /// kOffsetMax_ns is the longest point offset while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
-constexpr std::array<const char*, 3> kRingNames = {"ring", "line", "channel"};
-constexpr std::array<const char*, 3> kIntensityNames = {"intensity", "Intensity", "reflectivity"};
+using tumble::ros::kRingNames, tumble::ros::kIntensityNames;
 
 const std::vector<double>& coordinate(const Cloud& cloud, const char* name, const std::string& where) {
   const std::vector<double>* found = cloud.find(name);
@@ -40,10 +41,13 @@ const std::vector<double>& coordinate(const Cloud& cloud, const char* name, cons
   throw BadInput(fmt::format("{}: there is no field '{}' (existing fields:{})", where, name, all));
 }
 
-template <std::size_t kCount>
-const std::vector<double>* first_of(const Cloud& cloud, const std::array<const char*, kCount>& names) {
-  for (const char* name : names) {
-    if (const std::vector<double>* found = cloud.find(name)) return found;
+bool is_among(const std::string& name, std::span<const std::string_view> names) {
+  return std::ranges::find(names, tumble::ros::lower_case(name)) != names.end();
+}
+
+const std::vector<double>* first_of(const Cloud& cloud, std::span<const std::string_view> names) {
+  for (std::size_t c = 0; c < cloud.names.size(); ++c) {
+    if (is_among(cloud.names[c], names)) return &cloud.columns[c];
   }
   return nullptr;
 }
@@ -283,10 +287,7 @@ void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size
   }
   const std::set<std::string> used = {"x", "y", "z", rule_->field};
   for (const std::string& name : cloud.names) {
-    const auto is = [&](const char* each) { return name == each; };
-    if (used.contains(name) || std::any_of(kRingNames.begin(), kRingNames.end(), is) ||
-        std::any_of(kIntensityNames.begin(), kIntensityNames.end(), is))
-      continue;
+    if (used.contains(name) || is_among(name, kRingNames) || is_among(name, kIntensityNames)) continue;
     ++ignored_[name];
   }
 }

@@ -108,6 +108,9 @@ class RollingOdometry {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
     Eigen::Vector3d angular_velocity_rad_s =
         Eigen::Vector3d::Zero();  ///< angular velocity of the sphere, in sphere axes
+    /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the variance
+    /// of the contact modes.
+    Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
     bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain

@@ -16,7 +16,9 @@
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/detail/further_lidars.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
+#include "tumble/odometry/detail/position_frame.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
@@ -70,6 +72,8 @@ class TumblingOdometry {
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     LidarInertialOdometry::SweepReport report;
+    /// Transform to the frame of the position readings, from the readings up to the sweep's end. Empty: unknown.
+    std::optional<PositionFrame> position_frame;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the box `own_body_L` is
@@ -96,6 +100,13 @@ class TumblingOdometry {
   /// is outside the sweep, or that the end is a second after the newest IMU sample. The function also returns
   /// `out_of_range` if a time stamp exceeds 97 years or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
+  /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. TumblingOdometry
+  /// registers the points of a further lidar together with the sweep of the first lidar at their time. The points of a
+  /// further lidar must therefore arrive before the registration of that sweep, which is `lag_s` after its end. A lag
+  /// of two sweeps suffices. The lidars need no synchronisation. Limitation: the ranges and the own-body box of the
+  /// first lidar also apply to the points of further lidars, in axes of the first lidar. Returns the errors of
+  /// add_sweep() for the first lidar, and `out_of_range` for an unknown lidar.
+  Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
   /// TumblingOdometry uses only the last reading. On error, the state is unchanged. Returns `empty` (no IMU sample
@@ -104,6 +115,12 @@ class TumblingOdometry {
   /// readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
+  /// Processes a position reading, for example from GPS or a beacon. Readings do not change poses and map: they
+  /// determine Sweep::position_frame, in which poses do not drift (PositionAlignment). All readings are used, in any
+  /// order; each must arrive before its sweep is registered. Readings also work with kWholeRecording. On error the
+  /// state is unchanged. Returns the errors of add_velocity(); `out_of_range` also means that the covariance is not
+  /// symmetric and positive definite.
+  Status add_position(const PositionReading& position);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU samples cover, at the end of a run or during a halt. After finish(), take()
@@ -138,6 +155,8 @@ class TumblingOdometry {
   SensorHealth health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;
+  /// Returns the newest Sweep::position_frame, for newest(); empty with kWholeRecording.
+  const std::optional<PositionFrame>& position_frame() const { return positions_.frame(); }
   /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
@@ -163,6 +182,8 @@ class TumblingOdometry {
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }
   std::size_t unused_odometer_readings() const { return readings_.spanning_two_sweeps(); }
+  /// Returns the number of unused points of further lidars: the points arrived late, or the first lidar had no sweep.
+  std::size_t unused_points() const { return further_lidars_.unused_points(); }
   /// Returns the jitter of the IMU's time stamps about a regular clock [s], while SampleClock corrects the time stamps.
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper, which provides the map and the calibration of the lidar.
@@ -193,6 +214,7 @@ class TumblingOdometry {
   Status process_accepted_sample(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
+  std::size_t most_waiting() const;
   void register_covered_sweeps();
   void flush_all();
   void restart_rates();
@@ -224,7 +246,9 @@ class TumblingOdometry {
       last_registered_ns_;  ///< end of the last registered sweep; before the first, time of the first sample
   std::size_t restart_count_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
+  FurtherLidars further_lidars_;
   WaitingReadings readings_;
+  PositionAlignment positions_;
   std::deque<Sweep> results_;
   std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
   std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; the sweeps are in `waiting_`

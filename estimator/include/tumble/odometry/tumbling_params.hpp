@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
@@ -12,6 +13,7 @@
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/calibration_fields.hpp"
 #include "tumble/mapping/odometry_params.hpp"
+#include "tumble/odometry/detail/further_lidars.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/odometry/lidar_sheet.hpp"
@@ -73,6 +75,7 @@ struct TumblingParams {
   /// Box in lidar axes that contains the robot. TumblingOdometry drops lidar returns inside the box. The default, an
   /// empty Eigen box, keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
+  std::vector<FurtherLidar> further_lidars;  ///< lidars in addition to the first; see TumblingOdometry::add_sweep()
   /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.
   double lag_s = 0.2;
 

@@ -141,7 +141,7 @@ class RollingFilter {
   void constrain_position(State& state) const;
   static RollingMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
-  static Eigen::Matrix3d position_spread(const State& state);
+  static Eigen::Matrix3d spread(const State& state, int first);
   static void weigh_modes(State& state);
   static void keep_most_probable(std::size_t count, State& state);
 

@@ -32,6 +32,8 @@ struct RollingEstimate {
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< gyro reading minus bias
   /// Covariance of the position error [m] and the attitude error [rad] in world axes, at the node after the sample.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Covariance of the error of the centre's velocity in IMU axes, at the node after the sample.
+  Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
   bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::uncertain_m)

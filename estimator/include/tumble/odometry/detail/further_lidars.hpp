@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "tumble/common/status.hpp"
+#include "tumble/odometry/detail/waiting_input.hpp"
+#include "tumble/odometry/lidar_sheet.hpp"
+
+namespace tumble {
+
+/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Its mounting relative to the first lidar and its
+/// clock are exact; only the mounting of the first lidar is estimated.
+struct FurtherLidar {
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+  LidarSheet sheet;
+  Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
+  double time_offset_s = 0.0;      ///< this lidar's stamps plus the offset are in the clock of the first lidar
+};
+
+/// Adds the points of further lidars to the sweeps of the first lidar. Each point joins the sweep at its time, in axes
+/// of the first lidar. A copy of a FurtherLidars contains the complete state.
+class FurtherLidars {
+ public:
+  FurtherLidars() = default;
+  /// Throws InvalidParams for a pose, range or offset that is not finite, for swapped corners of a box, or for an
+  /// offset beyond a second. `T_IL_first` is the pose of the first lidar.
+  FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first);
+
+  /// Stores a sweep of lidar `lidar`, counted from 1. See TumblingOdometry::add_sweep(). If more than `most` sweeps
+  /// wait, the oldest sweep is dropped.
+  Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
+             std::size_t most);
+  /// Moves the stored points from the time of a sweep to the sweep, and drops earlier points. Cost: O(stored points).
+  void merge_into(WaitingSweep& sweep);
+  /// Returns the number of points that arrived late, or when the first lidar had no sweep.
+  std::size_t unused_points() const { return unused_points_; }
+
+  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
+ private:
+  std::vector<FurtherLidar> lidars_;
+  Eigen::Isometry3d T_LI_first_ = Eigen::Isometry3d::Identity();
+  std::deque<WaitingSweep> waiting_;  ///< points in axes of the first lidar
+  std::size_t unused_points_ = 0;
+};
+
+}  // namespace tumble
