@@ -43,8 +43,8 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 /// clipped sample also counts as clipped if the sensing element was saturated for a part of its window. A sample was
 /// partly saturated if it is less than half as far from the plane as the next sample. `before` and `after` are the
 /// neighbouring samples, or null.
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
-                        const ImuSample* before, const ImuSample& now, const ImuSample* after);
+Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
+                            const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
 /// Finds partly saturated axes, and uses the saturation plane of each sensing element whose plane is known.
 void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
@@ -60,6 +60,6 @@ std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool u
                                                 const Eigen::Matrix2d& before);
 
 /// Returns the prior calibration after an update of RigConstants::elements by the saturation planes.
-RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright);
+RigCalibration prior_with_planes(const RateModel& before, const RailPlanes& planes, bool upright);
 
 }  // namespace tumble

@@ -15,10 +15,10 @@ namespace tumble {
 /// it is closer to the saturation level than to one of its neighbours. Within 3 % of the saturation level, the test
 /// uses the largest step within two readings on each side, see rails.md (R76). The test excludes signs without an
 /// observed saturation level, so all bits are zero without clipping. A repeated reading counts once.
-std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
+std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const RailPlanes& planes);
 
 /// Checks one reading of a stream by the steps to its neighbouring readings (null at the ends). Cost: O(1).
-std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
-                            const RailPlanes& planes);
+std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSample& now, const ImuSample* after,
+                                         const RailPlanes& planes);
 
 }  // namespace tumble

@@ -18,11 +18,11 @@ namespace tumble {
 void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// Marks flat maxima of the readings that may hide a saturated peak. Cost: O(N). `offset_share` is the difference
+/// Marks flat maxima of the readings that may hide a saturated peak. Cost: O(N). `offset_sigma_ratio` is the difference
 /// between sensing elements as a fraction of the saturation level (RailPlaneFinder::Params). The function has no effect
 /// if the device flags clipping, or if no saturation level is known. The function also has no effect if the sensing
 /// element has reported far higher readings. The function sets RateObservation::suspect.
-void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_share,
+void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_sigma_ratio,
                              double noise_rad_s, std::span<RateObservation> observations);
 
 }  // namespace tumble

@@ -16,32 +16,35 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// kConstantShare is the prior fraction of segments in which the rate is constant (spins, turntables). The fraction
-// limits how much a long segment of equal readings supports saturation.
-constexpr double kConstantShare = 0.05;
-// A flat segment indicates saturation only if the ratio of `bend` to `flat` in SegmentShape is at least kBend.
-constexpr double kBend = 3.0;
-// kLevelShare is the range of possible constant rates, as a fraction of the largest reading of the axis.
-constexpr double kLevelShare = 0.2;
+// kConstantRateFraction is the prior fraction of segments in which the rate is constant (spins, turntables). The
+// fraction limits how much a long segment of equal readings supports saturation.
+constexpr double kConstantRateFraction = 0.05;
+// A flat segment indicates saturation only if the ratio of `bend` to `flat` in SegmentShape is at least kBendRatioMin.
+constexpr double kBendRatioMin = 3.0;
+// kLevelRangeFraction is the range of possible constant rates, as a fraction of the largest reading of the axis.
+constexpr double kLevelRangeFraction = 0.2;
 // The noise estimate uses the residuals of a parabola fit in windows of kNoiseWindow readings. `kNoiseQuantile` selects
 // the window whose residuals determine the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// kKinkAlone is the maximum log-likelihood of a kink at the end of a segment if the other axes move smoothly.
-constexpr double kKinkAlone = 2.5;
-// The test of a kink needs a change of the other axes by at least kMoving standard deviations around the end of a
-// segment.
-constexpr double kMoving = 10.0;
-// If a segment scatters far less than noise (log-likelihood above kThinAlone), the shape of its ends is ignored.
-constexpr double kThinAlone = 8.0;
-// A segment loses kThinTaken degrees of freedom: two to the fitted straight line and two to the partly saturated ends.
-constexpr std::size_t kThinTaken = 4;
-// A reading is at the saturation level if it is within kAtRail standard deviations of the saturation plane. The
-// tolerance for readings at a saturation level is at most the fraction kAtRailShareMax of the level.
-constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// `kBeyond` is the amount by which each reading beyond a saturation plane decreases the log odds of the plane. `kStray`
-// is the fraction of readings that may be beyond the plane without effect on the log odds.
-constexpr double kBeyond = 5.0, kStray = 0.02;
+// kMaxKinkLogLikelihood is the maximum log-likelihood of a kink at the end of a segment if the other axes move
+// smoothly.
+constexpr double kMaxKinkLogLikelihood = 2.5;
+// The test of a kink needs a change of the other axes by at least kMotionSigmasMin standard deviations around the end
+// of a segment.
+constexpr double kMotionSigmasMin = 10.0;
+// If a segment scatters far less than noise (log-likelihood above kThinLogLikelihoodMin), the shape of its ends is
+// ignored.
+constexpr double kThinLogLikelihoodMin = 8.0;
+// A segment loses kThinLostFreedom degrees of freedom: two to the fitted straight line and two to the partly saturated
+// ends.
+constexpr std::size_t kThinLostFreedom = 4;
+// A reading is at the saturation level if it is within kAtRailSigmas standard deviations of the saturation plane. The
+// tolerance for readings at a saturation level is at most the fraction kAtRailRatioMax of the level.
+constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
+// `kBeyondPenalty` is the amount by which each reading beyond a saturation plane decreases the log odds of the plane.
+// `kOutlierFraction` is the fraction of readings that may be beyond the plane without effect on the log odds.
+constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
 
 // Returns the noise of a reading, computed from the root mean square of third differences: rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
@@ -71,8 +74,8 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
 // Returns a log-likelihood ratio that is positive if the readings scatter about a straight line less than noise:
 // rails.md (R65). Readings of an angular rate contain sensor noise. Saturated readings contain no noise if the device
 // clips after the noise is added. The ratio is zero if quantisation hides the noise.
-double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
-  if (s.size() <= kThinTaken) return 0.0;
+double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
+  if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
   const double middle = 0.5 * static_cast<double>(count - 1);
   double mean = 0.0, slope = 0.0, moment = 0.0, squares = 0.0;
@@ -87,7 +90,8 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
     const double line = mean + slope * (static_cast<double>(i) - middle);
     squares += std::pow(facet.row.dot(readings.rates[first + i]) - line, 2);
   }
-  const double free = static_cast<double>(s.size() - kThinTaken), digit = readings.digit[facet.axis] / std::sqrt(12.0);
+  const double free = static_cast<double>(s.size() - kThinLostFreedom),
+               digit = readings.digit[facet.axis] / std::sqrt(12.0);
   const double least = std::max(digit, kEqualReadingsRatio * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
@@ -99,7 +103,7 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
 // the largest and the smallest reading of the segment.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
-  bool bends() const { return bend >= kBend * flat; }
+  bool bends() const { return bend >= kBendRatioMin * flat; }
 };
 
 // Computes the shape of a segment of consecutive readings. The shape is empty for a single reading, and for a segment
@@ -135,9 +139,9 @@ double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, c
   const double own = std::abs(facet.row.dot(bent));
   Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
   beside[facet.axis] = moving[facet.axis] = 0.0;
-  if (moving.norm() < kMoving * noise) return 0.0;
+  if (moving.norm() < kMotionSigmasMin * noise) return 0.0;
   const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
-  return std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
+  return std::clamp(-std::log(5.0 * ratio), -0.5, kMaxKinkLogLikelihood);
 }
 
 Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
@@ -185,7 +189,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet) {
   const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
-  const double of_level = std::log(kLevelShare * facet.level / thickness);
+  const double of_level = std::log(kLevelRangeFraction * facet.level / thickness);
   double odds = 0.0;
   facet.segments = 0;
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
@@ -195,15 +199,15 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
     // the readings of a moving gyro scatter at least by the gyro's noise
-    const double thin = thinness(readings, facet, s);
-    if (!shape->bends() && thin < kThinAlone) continue;
+    const double thin = thin_log_likelihood(readings, facet, s);
+    if (!shape->bends() && thin < kThinLogLikelihoodMin) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
     // The log odds of saturation increase with the flatness of a segment: rails.md (R62). The log odds also increase if
     // several segments have similar mean readings: rails.md (R63).
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
-    odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
+    odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
@@ -211,11 +215,12 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
-  odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
+  odds -= kBeyondPenalty *
+          std::max(0.0, static_cast<double>(beyond) - kOutlierFraction * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
   // A reading counts as saturated if its distance from the saturation plane is within the noise or the error of the
   // plane.
-  facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
+  facet.tolerance = std::max(facet.tolerance, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.level));
   // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The factor penalises the free
   // choice of saturation level and cross-axis sensitivities.
   const Eigen::Matrix3d posterior_covariance = H.inverse();

@@ -15,7 +15,7 @@ namespace tumble::rails {
 /// `steepest`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
-  double from = 0.0, steepest = 0.0, near_from = 0.0;
+  double from = 0.0, steepest = 0.0, near_min = 0.0;
 };
 
 /// Side is the state of the search for one sign of one sensing element.
@@ -45,7 +45,7 @@ inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double
 struct Extreme {
   int axis = 0, sign = 1;
   double slab = 0.0;
-  double steepest = 0.0, near_from = 0.0;
+  double steepest = 0.0, near_min = 0.0;
 };
 
 /// Finds the readings close to the largest reading, and stores their indices in the workspace. Cost: O(N). Returns

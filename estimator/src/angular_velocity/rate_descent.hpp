@@ -30,20 +30,21 @@ class RateIteration {
     }
   }
 
-  /// Moved contains the derivatives of all unknowns with respect to the sensor errors. Moved also contains the
-  /// information of the readings about the sensor errors, after optimisation of all unknowns. The derivatives hold for
-  /// the last factorisation, with its `estimates` and `rig`, before apply().
-  struct Moved {
+  /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors.
+  /// SensorErrorDerivatives also contains the information of the readings about the sensor errors, after optimisation
+  /// of all unknowns. The derivatives hold for the last factorisation, with its `estimates` and `rig`, before apply().
+  struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
     SensorErrorEvidence evidence;
   };
-  Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
+  SensorErrorDerivatives error_derivatives(const RateModel& model, std::span<const RateEstimate> estimates,
+                                           const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the decrease of the cost that the last factorisation predicts. The decrement is also the square of
-  /// the largest change of any combination of unknowns, in standard deviations.
-  double decrement() const;
+  /// Returns twice the decrease of the cost that the last factorisation predicts. The newton_decrement is also the
+  /// square of the largest change of any combination of unknowns, in standard deviations.
+  double newton_decrement() const;
 
  private:
   std::span<const RateObservation> observations_;

@@ -14,7 +14,7 @@ struct RateFit {
 
   RateSolution solution;
   RateModel model;
-  RateIteration::Moved moved;
+  RateIteration::SensorErrorDerivatives moved;
 };
 
 /// Repeats the optimisation with readings corrected by the previous sensor errors, and finally applies a linear

@@ -12,7 +12,7 @@ void members(Self& s, Visitor& visit) {
   visit("plausibility.reading", s.reading);
   visit("plausibility.repeated_s", s.repeated_s);
   visit("plausibility.longest_s", s.longest_s);
-  visit("plausibility.changing_s", s.changing_s);
+  visit("plausibility.changing_duration_s", s.changing_duration_s);
   visit("plausibility.frozen_s", s.frozen_s);
 }
 
@@ -34,8 +34,8 @@ void members(Self& s, Visitor& visit) {
   visit("plausibility.force_rotation_rad2", s.force_rotation_rad2);
   visit("plausibility.gyro_rotation_rad2", s.gyro_rotation_rad2);
   visit("plausibility.rotated_windows", s.rotated_windows);
-  visit("plausibility.all_force_rad2", s.all_force_rad2);
-  visit("plausibility.all_gyro_rad2", s.all_gyro_rad2);
+  visit("plausibility.total_force_rotation_rad2", s.total_force_rotation_rad2);
+  visit("plausibility.total_gyro_rotation_rad2", s.total_gyro_rotation_rad2);
   visit("plausibility.last_time_ns", s.last_time_ns);
   visit("plausibility.started", s.started);
 }

@@ -26,15 +26,15 @@ class Aligner {
 
   /// Registers a sweep with all points and few iterations. If the full registration does not converge, stages with
   /// fewer points continue at lower cost.
-  void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
-               Registration::Result& found);
+  void align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                             Registration::Result& found);
   /// Registers a sweep with some of the points until convergence, then with all points from the converged pose.
-  void to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
-                      Registration::Result& found);
+  void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                            Registration::Result& found);
   /// Registers a sweep from an initial pose that may be far away: coarsely with few points, then to convergence if the
   /// coarse stage succeeds. A wrong initial pose therefore costs only a fraction of a registration.
-  void from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
-                 SweepTrajectory& trajectory, Registration::Result& found);
+  void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
+                            SweepTrajectory& trajectory, Registration::Result& found);
 
   /// Returns the Registration object that computes the variance of a lidar return.
   const Registration& registration() const { return full_; }

@@ -19,8 +19,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 
 /// Returns the variance of the velocity change over the segment that accelerometer saturation causes, in frame W. The
 /// saturation deficit of the specific force is assumed constant while the saturation lasts.
-Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
-                                         std::span<const MotionSample> samples);
+Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
+                                          const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
 
 /// Computes the state at rest at the start of the first sample's window, at the origin of W with yaw 0. The mean
 /// specific force of the samples within `rest_s` levels the attitude. Returns `degenerate` if the mean specific force

@@ -56,7 +56,7 @@ class LocalMap {
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
   /// Removes the points of `first_sweep` and of all later sweeps from the map. Cost: O(number of points). The removal
   /// changes the indices of map points.
-  void withdraw(std::uint32_t first_sweep);
+  void remove_sweeps_since(std::uint32_t first_sweep);
 
   /// Removes distant map points after the sensor has moved far enough. Returns whether map points were removed, which
   /// changes their indices.
@@ -72,14 +72,14 @@ class LocalMap {
 
  private:
   /// Checks each map point against the free space that a sweep observed.
-  void look_through(const SightGrid& sight);
+  void check_free_space(const FreeSpaceGrid& sight);
 
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;  // sensor position per sweep that contributed points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
   std::vector<Eigen::Vector3f> levers_W_m_;
-  SightGrid sight_;
+  FreeSpaceGrid free_space_;
 };
 
 }  // namespace tumble::mapping

@@ -13,9 +13,9 @@ struct MotionWindow;
 struct Prediction;
 
 /// motion_prior.hpp defines types of information about a sweep's motion, in addition to the previous sweeps. Each type
-/// of information has a function `impose` or `weigh`. The function `impose` replaces the state at the start of the
-/// sweep, before the sweep's noise is added. The function `weigh` fuses a measurement with the prediction, after all
-/// noise has been added.
+/// of information has a function `apply_velocity_prior` or `weigh`. The function `apply_velocity_prior` replaces the
+/// state at the start of the sweep, before the sweep's noise is added. The function `weigh` fuses a measurement with
+/// the prediction, after all noise has been added.
 
 /// InertialPrior adds no information: the IMU propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
@@ -29,7 +29,7 @@ struct KnownVelocity {
 
 /// ConstantVelocity assumes a constant velocity, with the uncertainty of impacts, if the accelerometer is absent or
 /// always saturated. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples like those of a gap
-/// (InertialTrack::exclude_accelerometer), so it has neither `impose` nor `weigh`.
+/// (InertialTrack::exclude_accelerometer), so it has neither `apply_velocity_prior` nor `weigh`.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
@@ -37,20 +37,20 @@ using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, 
 /// MotionNoise is the process noise covariance of position, attitude and velocity within a sweep.
 using MotionNoise = Eigen::Matrix<double, 9, 9>;
 
-void impose(const KnownVelocity& prior, Prediction& prediction);
-inline void impose(const MotionPrior& prior, Prediction& prediction) {
-  if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) impose(*velocity, prediction);
+void apply_velocity_prior(const KnownVelocity& prior, Prediction& prediction);
+inline void apply_velocity_prior(const MotionPrior& prior, Prediction& prediction) {
+  if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) apply_velocity_prior(*velocity, prediction);
 }
 
 /// Updates the prediction of a sweep by an odometer reading from within the sweep, see mapping.md (R34) to (R37).
 /// `within` is a part of the sweep's process noise. The function ignores an unusable reading, and a reading outside of
 /// the motion window.
-void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
-                   const MotionNoise& within, Prediction& prediction);
+void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
+                  const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction) {
   if (const auto* const reading = std::get_if<OdometerReading>(&prior))
-    weigh_reading(*reading, boundary, window, within, prediction);
+    fuse_reading(*reading, boundary, window, within, prediction);
 }
 
 }  // namespace tumble::mapping

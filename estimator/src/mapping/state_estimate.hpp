@@ -27,12 +27,12 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
 /// Computes F P F^T into `out`; `out` and P must be different matrices. The function needs 32 KiB of stack, so callers
 /// should keep matrices on the heap.
-void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
+void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
 /// Returns the blocks of the product F errors F^T that involve the pose or the mounting. F is the transition matrix of
 /// unknowns_at(). All other blocks of the result are zero. The returned blocks equal those of the full product bit for
 /// bit, at a third of the cost. The cost matters because this function runs for each pose of a recording.
-Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
+Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// MotionErrors is the covariance of the errors of position, attitude and velocity in frame W.
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
@@ -47,14 +47,14 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
 
 /// Propagates the estimate to the end of the segment at time `end_ns`. `trajectory` is the motion of the estimate's
 /// mean.
-void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
-            TimeNs end_ns, StateEstimate& end);
+void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
+            const Registration::Matrix& end_start_jacobian, TimeNs end_ns, StateEstimate& end);
 
 /// Returns the derivative of the IMU's pose error with respect to mounting errors for an exact lidar pose, at the given
 /// attitude. The derivative is the matrix K of mapping.md (R54).
-Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
+Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
-/// Returns the covariance with small variances in place of zeros, so that the matrix is invertible.
-Registration::Matrix invertible(const Registration::Matrix& covariance);
+/// Returns the covariance with small variances in place of zeros, so that the matrix is make_invertible.
+Registration::Matrix make_invertible(const Registration::Matrix& covariance);
 
 }  // namespace tumble::mapping

@@ -26,11 +26,11 @@ inline constexpr Block<Registration::kCalibrationStart + 3, 3> mounting_translat
 inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
 inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
-/// kLeastVariance is the variance of an exactly known unknown; it is above 0 so that the prior can be inverted.
-inline constexpr double kLeastVariance = 1e-12;
-/// kAgrees is the largest squared Mahalanobis distance at which a sweep's motion agrees with its prior, mapping.md
-/// (R25), (R71). kAgrees is the 95 % quantile of chi-square with nine degrees of freedom.
-inline constexpr double kAgrees = 16.9;
+/// kMinVariance is the variance of an exactly known unknown; it is above 0 so that the prior can be inverted.
+inline constexpr double kMinVariance = 1e-12;
+/// kAgreementChi2Max is the largest squared Mahalanobis distance at which a sweep's motion agrees with its prior,
+/// mapping.md (R25), (R71). kAgreementChi2Max is the 95 % quantile of chi-square with nine degrees of freedom.
+inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 
 /// Returns the index of the saturation deficit of an axis at a knot.

@@ -17,11 +17,11 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
-constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
+constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
 // A recording counts as hand-held if a larger fraction of its samples is classified as hand-held. For hand-held motion,
 // the measured fraction is at least 0.91. For thrown bodies, the measured fraction is at most 0.25 with correct axes,
 // and mostly below 0.6 with wrong axes.
-constexpr double kHeldShare = 0.8;
+constexpr double kRepeatedFraction = 0.8;
 
 double largest_rate_rad_s(std::span<const ImuSample> samples) {
   double largest = 0.0;
@@ -85,8 +85,8 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 }
 
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {
-  return std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeRight &&
-         plausibility.rotation_agreement(state) > kSlopeAgreed;
+  return std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeTolerance &&
+         plausibility.rotation_agreement(state) > kSlopeAgreementMin;
 }
 
 void ImuFindings::add(const ImuFindings& other) {
@@ -123,7 +123,7 @@ ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samp
   FlightSignCheck::Params params;
   params.lever_arm_m = imu.lever_arm_I_m;
   params.gyro_range_rad_s = imu.gyro_range_rad_s;
-  const bool thrown = carried_share && *carried_share < kHeldShare;
+  const bool thrown = carried_share && *carried_share < kRepeatedFraction;
   params.body = thrown ? FlightSignCheck::Body::thrown : FlightSignCheck::Body::may_be_hand_held;
   const FlightSignCheck sense(params);
   FlightSignCheck::State state;

@@ -58,13 +58,14 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
                Force known = Force::read);
 
 /// Returns the nominal trajectory, extrapolated by readings that are not processed yet.
-RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);
+RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
+                                   const RollingNominal& nominal);
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
 /// GapUncertainty is the uncertainty of one piece of a gap, with interpolated rate and unknown force.
 struct GapUncertainty {
-  double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
+  double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
 ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                     GapUncertainty& uncertainty);
@@ -84,8 +85,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
 /// Updates the slope of the floor for a change of the contact mode. The slope is a random walk while the contact mode
 /// lasts. When the contact point stops again, the slope is reset to level or unknown. `h_s` is the duration of the
 /// node.
-void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                  const RollingNominal& nominal, Vector& x, Covariance& P);
+void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
+                           const RollingNominal& nominal, Vector& x, Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity if the velocity is unknown, and nothing otherwise.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);

@@ -36,7 +36,8 @@ Vector3d normals(Stream& chance) {
   return {chance.normal(), chance.normal(), chance.normal()};
 }
 
-/// Returns rays of which some are along the axes of the world, where they run along the sides of an unturned box.
+/// Returns rays of which some are along the axes of the world, where they run along the sides of an has_unknown_rate
+/// box.
 EightRays random_rays(Stream& chance) {
   EightRays rays;
   for (std::size_t i = 0; i < kShapeLanes; ++i) {

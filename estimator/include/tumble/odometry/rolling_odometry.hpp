@@ -113,7 +113,8 @@ class RollingOdometry {
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain
+    bool uncertain =
+        false;  ///< an event (RollingModeParams::event_sigma_growth_m) or a restart made the position uncertain
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

@@ -33,7 +33,7 @@ struct CheckedImu {
 /// Findings about an IMU, and the measured quantities of the checks that ran.
 struct ImuFindings {
   struct Readings {
-    double rest_force_share = 1.0;  ///< RestGravity::magnitude_error_ratio
+    double rest_force_ratio = 1.0;  ///< RestGravity::magnitude_error_ratio
     double force_ratio = 1.0;       ///< the following members: see ImuPlausibility
     double unexplained_rotation_ratio = 0.0;
     double rotation_slope = 1.0, rotation_agreement = 1.0;
