@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The gyro as it is: reads IMU.csv (columns of a sensor_msgs/Imu), writes a rate per sample. Put your method into `rate`."""
+"""Reads IMU.csv (columns of a sensor_msgs/Imu) and writes the unchanged gyro readings. Write your own method in `rate`."""
 import csv
 import sys
 
 
 def rate(gyro_rad_s, specific_force_m_s2):
-    """Angular velocity of the IMU in its own axes."""
+    """Returns the angular velocity of the IMU in IMU axes."""
     return gyro_rad_s
 
 
