@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who may use whom: every #include and every link of the tree against the table of the design. The checker is a
-// function of (folder, include), so that its negative controls run beside the real scan.
+// Checks every #include and every link of the tree against the dependency table of the design. The checker is a
+// function of (folder, include), so that negative controls can call it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Rule {
-  std::string folder;                  // sources below this folder of the tree
+  std::string folder;                  // applies to sources in this folder of the tree
   std::vector<std::string> forbidden;  // regular expressions on the text of an include
 };
 
@@ -55,21 +55,21 @@ const std::vector<Rule>& rules() {
         "^thread$", "^hdf5", "^yaml-cpp", "^SQLiteCpp", "^nlohmann", "^fmt/"}},
       {"scenarios", {"mujoco", "embree", "^sim/engine/", "^sim/compose", "^estimator/src/", "^tools/", "osmesa"}},
       {"tools", {"mujoco", "embree", "^sim/engine/", "^sim/compose", "^estimator/src/", "osmesa", "^tests/"}},
-      // the package for Python has the library and nothing of the harness
+      // the Python package depends on the library, but not on the harness
       {"python/bindings",
        {"^sim/", "^scenarios/", "^tools/", "^estimator/", "^pcl/", "mujoco", "embree", "^hdf5", "^yaml-cpp", "^sqlite",
         "^SQLiteCpp", "^nlohmann", "^fmt/", "^iostream$", "^fstream$", "^thread$"}},
-      // the ROS 2 package has the library's public headers; ROS only in its nodes
+      // the ROS 2 package uses public headers of the library; only its nodes use ROS
       {"ros",
        {"^sim/", "^scenarios/", "^tools/", "^estimator/", "^tumble/.*detail/", "^pcl/", "mujoco", "embree", "^hdf5",
         "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^fmt/", "^thread$"}},
       {"ros/include", {"^rclcpp", "_msgs/", "_srvs/", "^tf2", "^iostream$", "^fstream$", "^filesystem$"}},
       {"ros/src", {"^rclcpp", "_msgs/", "_srvs/", "^tf2", "^iostream$", "^fstream$", "^filesystem$"}},
-      // what goes between evalio and the package has neither's code but their headers and Python
+      // the glue code between evalio and the package uses only the headers of both, and Python
       {"python/evalio/bindings",
        {"^sim/", "^scenarios/", "^tools/", "^estimator/", "^tumble/", "^pcl/", "mujoco", "embree", "^hdf5", "^fmt/",
         "^iostream$", "^fstream$", "^thread$"}},
-      // the page is a function of results and of files beside them: nothing there simulates, estimates or draws
+      // the report page uses only results and files next to them: it does not simulate, estimate or draw
       {"tools/report",
        {"^sim/", "^tumble/", "^scenarios/(draw|methods|recordings|processes)/",
         "^scenarios/sweep/(sweep|draw_process|evaluate|run_situation|recorded_draw)\\.hpp", "^tools/tumble/",
@@ -78,7 +78,7 @@ const std::vector<Rule>& rules() {
   return all;
 }
 
-/// Headers of sim that others include must not bring mujoco.h, Embree or OSMesa with them.
+/// Headers of sim that are included elsewhere must not include mujoco.h, Embree or OSMesa.
 const std::vector<std::string> kPublicSimHeaders = {
     "sim/parameters.hpp",        "sim/built_situation.hpp", "sim/situation.hpp",       "sim/recording.hpp",
     "sim/simulate.hpp",          "sim/random/stream.hpp",   "sim/lidar/surface.hpp",   "sim/render/renderer.hpp",
@@ -101,7 +101,7 @@ bool is_below(const std::string& path, const std::string& folder) {
   return path.rfind(folder + "/", 0) == 0;
 }
 
-/// The rule that a file at `path` breaks by including `include`; empty when it breaks none.
+/// Returns the rule that a file at `path` breaks by including `include`; empty if it breaks none.
 std::string broken_rule(const std::string& path, const std::string& include) {
   for (const Rule& rule : rules()) {
     if (!is_below(path, rule.folder)) continue;
@@ -133,7 +133,7 @@ std::string path_in_tree(const fs::path& path) {
   return fs::relative(path, tumble::test::source_dir()).generic_string();
 }
 
-/// Private headers of a module may be reached from inside the module alone: follow the includes of a public header.
+/// Only a module itself may include its private headers. The test follows the includes of each public header.
 void collect_reachable(const std::string& header, std::vector<std::string>& seen) {
   if (std::find(seen.begin(), seen.end(), header) != seen.end()) return;
   seen.push_back(header);
@@ -142,7 +142,7 @@ void collect_reachable(const std::string& header, std::vector<std::string>& seen
   for (const std::string& include : includes_of(file)) collect_reachable(include, seen);
 }
 
-/// Of this build, from the program's place in it.
+/// Returns the build folder, from the path of the program.
 fs::path build_dir() {
   return tumble::test::program().parent_path().parent_path();
 }
@@ -217,11 +217,11 @@ TEST(Architecture, PublicSimHeadersDoNotBringTheEngine) {
       << "negative control: the private header does include the engine";
 }
 
-/// What a library must not leave for others to supply: names that its undefined symbols may not hold.
+/// Names that the undefined symbols of a library must not contain, because the library must not depend on them.
 struct Links {
-  const char* library;  // below the build folder
+  const char* library;  // path in the build folder
   const char* forbidden;
-  const char* control;  // a symbol that the pattern must find
+  const char* control;  // a symbol that the pattern must find (negative control)
 };
 
 const std::array kLinks = {
@@ -256,7 +256,7 @@ TEST(Architecture, EveryLibraryLinksAsTheTableSays) {
     const std::string control = "                 U " + std::string(links.control) + "\n";
     EXPECT_TRUE(std::regex_search(control, forbidden)) << "negative control of " << links.library;
     const fs::path library = build_dir() / links.library;
-    if (!fs::exists(library)) continue;  // a build of some targets
+    if (!fs::exists(library)) continue;  // this build has only some targets
     ++looked_at;
     const std::string undefined = output_of("nm -C --undefined-only " + library.string());
     ASSERT_NE(undefined.find("U "), std::string::npos) << "nm printed nothing to judge";
@@ -268,9 +268,9 @@ TEST(Architecture, EveryLibraryLinksAsTheTableSays) {
   EXPECT_GE(looked_at, 1u);
 }
 
-/// Folders that use each other, directly or by way of others, each with one of those ("a b", a before b). A folder and
-/// one within it may: the outer one holds what all inner ones share, and joins them. The estimator's headers and
-/// sources of one name are one folder.
+/// Returns pairs of folders that include each other, directly or through other folders ("a b", a before b). A folder
+/// and its subfolder may include each other, because the outer folder contains shared code. Headers and sources of the
+/// estimator with the same folder name count as one folder.
 std::set<std::string> mutual_folders(const std::vector<std::pair<std::string, std::string>>& uses) {
   std::map<std::string, std::set<std::string>> reached;
   for (const auto& [from, to] : uses) {
@@ -303,7 +303,8 @@ std::string folder_of(const std::string& path) {
   return std::regex_replace(folder, std::regex("^estimator/(include/tumble|src)"), "estimator");
 }
 
-/// The header that an include of this file means, in the tree; of a test it may be named from its folder or from tests.
+/// Returns the header in the tree that an include of this file means. Tests may name headers relative to their folder
+/// or to tests.
 std::string header_of(const fs::path& file, const std::string& include) {
   if (include.starts_with("../")) return path_in_tree((file.parent_path() / include).lexically_normal());
   if (include.starts_with("tumble/")) return "estimator/include/" + include;
@@ -315,7 +316,7 @@ std::string header_of(const fs::path& file, const std::string& include) {
   return "tests/" + include;
 }
 
-/// (folder, folder that one of its files includes from), of these files.
+/// Returns pairs of a folder and a folder from which it includes a file, for these files.
 std::vector<std::pair<std::string, std::string>> folder_uses(const std::vector<fs::path>& files) {
   std::vector<std::pair<std::string, std::string>> uses;
   for (const fs::path& file : files) {
@@ -329,7 +330,7 @@ std::vector<std::pair<std::string, std::string>> folder_uses(const std::vector<f
   return uses;
 }
 
-/// (folder of tests, folder of tests whose source one of its executables compiles as well).
+/// Returns pairs of test folders in which an executable of the first compiles a source of the second.
 std::vector<std::pair<std::string, std::string>> borrowed_sources() {
   std::vector<std::pair<std::string, std::string>> uses;
   for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / "tests")) {
@@ -363,7 +364,7 @@ TEST(Architecture, NoFoldersOfTestsUseEachOther) {
   ASSERT_FALSE(borrowed.empty());
   uses.insert(uses.end(), borrowed.begin(), borrowed.end());
   EXPECT_EQ(mutual_folders(uses), std::set<std::string>{});
-  // negative control: what is found is enough to see a fault, however its header is named
+  // negative control: the check sees enough files to find a fault, for every file ending of a header
   const std::string shared = "tests/scenarios/methods", user = "tests/scenarios/sweep";
   ASSERT_TRUE(std::count(uses.begin(), uses.end(), std::pair(user, shared)) > 0);
   uses.emplace_back(shared, user);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sources cite the equations of docs/maths as "mapping.md (R5)" or "mapping.md (R5), (R7)": every such equation stands
-// there once, under its number, at the end of an indented line; every note is cited by the code that it derives. The
-// files that CONTRIBUTING names are there.
+// Sources cite the equations of docs/maths as "mapping.md (R5)" or "mapping.md (R5), (R7)". Every cited equation must
+// exist once, with its number at the end of an indented line. Code must cite every note. The files that CONTRIBUTING
+// names must exist.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using tumble::test::text_of;
 
-/// Name of a note -> the numbers of the equations that it defines.
+/// Equation numbers that a note defines, by name of the note.
 using Notes = std::map<std::string, std::set<std::string>>;
 
 struct Citation {
   std::string note, equation;
 };
 
-/// Lines of prose that end in a number mention an equation; those of the note's equations are indented.
+/// Unindented lines that end in a number only mention an equation; definitions are indented.
 std::multiset<std::string> definitions_in(const std::string& text) {
   static const std::regex number(R"(^    .*\(([A-Z]{1,2}[0-9]+[a-z]?)\)\s*$)");
   std::multiset<std::string> out;
@@ -43,7 +43,7 @@ std::set<std::string> defined_in(const std::string& text) {
   return {all.begin(), all.end()};
 }
 
-/// Numbers that stand under two equations.
+/// Returns the numbers that two equations share.
 std::set<std::string> defined_twice(const std::string& text) {
   const std::multiset<std::string> all = definitions_in(text);
   std::set<std::string> out;
@@ -52,7 +52,7 @@ std::set<std::string> defined_twice(const std::string& text) {
   return out;
 }
 
-/// Comments run over lines: the marks at their beginnings are no part of a citation.
+/// Removes comment marks at the start of lines, because a citation may continue on the next line.
 std::vector<Citation> cited_in(const std::string& source) {
   static const std::regex line_break(R"(\s*\n\s*(///<?|//)?\s*)"), number(R"(\(([A-Z]{1,2}[0-9]+[a-z]?)\))");
   static const std::regex citation(R"(\b([a-z_]+\.md) ((?:\([A-Z]{1,2}[0-9]+[a-z]?\)(?:, | and | to )?)+))");
@@ -66,7 +66,7 @@ std::vector<Citation> cited_in(const std::string& source) {
   return out;
 }
 
-/// What is wrong with a citation; empty when nothing is.
+/// Returns what is wrong with a citation; empty if it is correct.
 std::string complaint(const Citation& citation, const Notes& notes) {
   const auto note = notes.find(citation.note);
   if (note == notes.end()) return "there is no docs/maths/" + citation.note;
@@ -110,7 +110,7 @@ TEST(Citations, EveryCitedEquationIsThereAndEveryNoteIsCited) {
   }
 }
 
-/// Files with a folder before them that a text names in backticks and the tree does not have.
+/// Returns the paths with a folder that a text names in backticks, and that do not exist in the tree.
 std::vector<std::string> absent_files(const std::string& text) {
   static const std::regex named(R"(`([A-Za-z0-9_.]+/[A-Za-z0-9_./]+\.(cpp|hpp|md|yaml|txt|py|csv|sh)(:[0-9]+)?)`)");
   static const std::regex stands_for_a_name(R"([A-Z]{4,})");  // NAME, KIND, DEVICE
@@ -118,7 +118,7 @@ std::vector<std::string> absent_files(const std::string& text) {
   std::vector<std::string> out;
   for (std::sregex_iterator it(text.begin(), text.end(), named), end; it != end; ++it) {
     const std::string name = (*it)[1];
-    // a header of the library is named as it is included, a module of the package as it is imported
+    // a text names headers of the library as in an #include, and modules of the package as in an import
     if (!std::regex_search(name, stands_for_a_name) && !fs::exists(root / name) &&
         !fs::exists(root / "estimator" / "include" / name) && !fs::exists(root / "python" / "src" / name))
       out.push_back(name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library knows no robot and no draw of the harness: no number of models/*.xml or of a data sheet there, no device
-// that these robots carry and no seed stands in its defaults, code or comments. The sheets of devices
-// (odometry/imu_sheet, lidar_sheet) are presets that a user names, and excepted.
+// The library must not contain values of the harness's robots and draws. Its defaults, code and comments must not
+// contain numbers from models/*.xml or from data sheets, names of devices on these robots, or seeds of draws. The
+// presets of devices (odometry/imu_sheet, lidar_sheet) are exempt, because a user selects them by name.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::vector<std::string> all_of(const std::string& text, const char* pattern) {
 
 const char* const kNumber = R"((?:^|[^\w.])([0-9]+\.?[0-9]*(?:e-?[0-9]+)?)(?![\w.]))";
 
-/// Digits without sign, point, exponent and zeros at either end: 3 of 0.0145.
+/// Returns the significant digits of a number, without sign, decimal point, exponent, and leading or trailing zeros.
 std::string digits_of(const std::string& number) {
   std::string out = std::regex_replace(number.substr(0, number.find_first_of("eE")), std::regex("[^0-9]"), "");
   out.erase(0, out.find_first_not_of('0'));
@@ -38,8 +38,8 @@ std::string digits_of(const std::string& number) {
   return out;
 }
 
-/// Numbers that somebody measured on a robot or read in a data sheet: of three digits and more, except gravity and
-/// powers of two, which are sizes of arrays too.
+/// Selects numbers that come from a measurement or a data sheet: three or more digits. Excludes gravity and powers of
+/// two, which are also sizes of arrays.
 std::set<double> distinctive(const std::vector<std::string>& numbers) {
   constexpr double kGravity_m_s2 = 9.80665;
   std::set<double> out;
@@ -53,9 +53,9 @@ std::set<double> distinctive(const std::vector<std::string>& numbers) {
 
 struct Known {
   std::set<double> numbers;
-  std::vector<std::vector<double>> places;  ///< of sensors and parts
-  std::regex names;                         ///< of the devices that the robots carry
-  std::regex draws;                         ///< "hill 3004"
+  std::vector<std::vector<double>> places;  ///< positions of sensors and parts
+  std::regex names;                         ///< names of the devices on the robots
+  std::regex draws;                         ///< for example "hill 3004"
 };
 
 Known known() {
@@ -90,7 +90,7 @@ Known known() {
   return out;
 }
 
-/// What a source of the library says of the robots and draws of the harness.
+/// Returns values and names of the harness's robots and draws in a source of the library.
 std::vector<std::string> told_by(const std::string& source, const Known& known) {
   std::vector<std::string> out;
   const std::string code = std::regex_replace(source, std::regex("//[^\n]*"), "");

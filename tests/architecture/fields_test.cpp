@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each number of a `Params` of the estimator is a field of it (tumble/common/parameters.hpp): what is no field has no
-// bound, no place in a method's table and no effect on a command line.
+// Each number in a `Params` of the estimator must be one of its fields (tumble/common/parameters.hpp). A number that is
+// not a field has no bounds, is missing in the method's table, and cannot be set on the command line.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -24,7 +24,7 @@ std::string code_of(const fs::path& file) {
   return std::regex_replace(out.str(), std::regex("//[^\n]*"), "");
 }
 
-/// What stands between the brace at or after `from` and the one that closes it.
+/// Returns the text between the first brace at or after `from` and its closing brace.
 std::string braced(const std::string& text, std::size_t from) {
   const std::size_t open = text.find('{', from);
   std::size_t at = open, depth = 0;
@@ -35,7 +35,7 @@ std::string braced(const std::string& text, std::size_t from) {
   return text.substr(open + 1, at - open - 1);
 }
 
-/// Bodies of the structs whose heads match.
+/// Returns the bodies of the structs whose heads match.
 std::vector<std::string> structs_in(const std::string& header, const char* head) {
   const std::regex begin(head);
   std::vector<std::string> out;
@@ -48,19 +48,19 @@ bool has_fields(const std::string& body) {
   return body.find("static void fields(") != std::string::npos;
 }
 
-/// Bodies of the structs that declare `fields`.
+/// Returns the bodies of the structs that declare `fields`.
 std::vector<std::string> params_in(const std::string& header) {
   std::vector<std::string> out = structs_in(header, R"(struct \w+ \{)");
   std::erase_if(out, [](const std::string& body) { return !has_fields(body); });
   return out;
 }
 
-/// Members of a struct that are numbers.
+/// Returns the members of a struct that are numbers.
 std::set<std::string> numbers_in(const std::string& body) {
   static const std::regex member(R"(^\s*(?:double|int|bool|std::size_t|Eigen::Vector3d) ([^;]*?)(?:\{[^;]*)?;)"),
       name(R"((?:^|,\s*)(\w+)\s*(?==|$|,))");
   std::set<std::string> out;
-  // a declaration on several lines is one
+  // joins declarations on several lines
   const std::string declared_in = body.substr(0, body.find("template <class Self"));
   std::istringstream lines(std::regex_replace(declared_in, std::regex(",\\s*\n\\s*"), ", "));
   for (std::string line; std::getline(lines, line);) {
@@ -72,7 +72,7 @@ std::set<std::string> numbers_in(const std::string& body) {
   return out;
 }
 
-/// Numbers of the struct that its `fields` does not visit.
+/// Returns the numbers of the struct that its `fields` does not visit.
 std::vector<std::string> forgotten(const std::string& body) {
   std::vector<std::string> out;
   for (const std::string& number : numbers_in(body)) {
@@ -105,7 +105,7 @@ TEST(Fields, NameEachNumberOfAParams) {
   EXPECT_GT(numbers, 350u);
 }
 
-/// Params that no method's user sets, checked by hand: what others derive them from has the fields.
+/// Params that users of methods do not set, checked by hand. They are derived from structs that have the fields.
 const std::set<std::string> kDerived = {"hand_held_model.hpp", "force_errors.hpp", "rate_recovery.hpp"};
 
 TEST(Fields, EveryParamsHasThem) {
@@ -118,13 +118,13 @@ TEST(Fields, EveryParamsHasThem) {
   EXPECT_EQ(without, kDerived);
 }
 
-/// Fields and groups of a struct, but for those under its `expert`, where the ones beyond ten belong.
+/// Returns fields and groups of a struct without those in its `expert`, which contains all fields beyond ten.
 std::size_t own_options(const std::string& body) {
   static const std::regex visited(R"re(visit(?:\.group)?\(\s*(?:"[^"]*",\s*)?p\.(?!expert\b))re");
   return static_cast<std::size_t>(std::distance(std::sregex_iterator(body.begin(), body.end(), visited), {}));
 }
 
-/// The structs with fields that a public header offers to a user: its `Params`, not what few need.
+/// Returns the structs with fields in public headers that are meant for all users: the `Params`, without expert groups.
 std::vector<std::string> offered_in(const std::string& header) {
   std::vector<std::string> out = structs_in(header, R"(struct (?!\w*Expert(?:Params)? \{)\w+ \{)");
   std::erase_if(out, [](const std::string& body) { return !has_fields(body); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An estimate's health is for people: what one stage of a method tells the next is a typed member or an argument.
+// Only people read an estimate's health. Stages of a method must pass data by typed members or arguments.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lines of a source that ask an estimate's health for a row. It is for people: what one stage tells the next is typed.
+/// Returns the lines of a source that read an entry of an estimate's health.
 std::vector<std::string> reads_of_health(const std::string& source) {
   static const std::regex asks(R"(health\s*\.\s*(contains|find|at|count)\s*\(|health\[[^\]]*\]\s*[;,)<>!&|?*/])");
   std::vector<std::string> out;
@@ -26,7 +26,7 @@ std::vector<std::string> reads_of_health(const std::string& source) {
   return out;
 }
 
-/// Sources of the harness, by their place in the tree.
+/// Returns the sources of the harness with their paths in the tree.
 std::vector<std::string> harness_sources() {
   std::vector<std::string> out;
   for (const char* folder : {"scenarios", "tools"}) {
@@ -45,7 +45,7 @@ std::string text_of_source(const std::string& file) {
   return text.str();
 }
 
-/// The rows that a doubt makes, or what they end in.
+/// Keys of health findings, or their endings.
 std::vector<std::string> rows_of_doubts(const std::string& source) {
   static const std::regex row("return \"([a-z_]+)\";");
   std::vector<std::string> out;
@@ -54,7 +54,7 @@ std::vector<std::string> rows_of_doubts(const std::string& source) {
   return out;
 }
 
-// Written by hand such a row would be no doubt, and nothing would say it.
+// A finding that code writes as a plain key would not count as a finding.
 TEST(Health, RowsOfDoubtsAreWrittenByDoubtsAlone) {
   const std::string own = "scenarios/methods/findings.cpp";
   const std::vector<std::string> rows = rows_of_doubts(text_of_source(own));

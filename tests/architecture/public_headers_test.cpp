@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using tumble::test::text_of;
 using Names = std::set<std::string>;
 
-/// What the first group of a pattern finds.
+/// Returns the text that the first group of a pattern matches.
 Names found_in(const std::string& text, const char* pattern) {
   const std::regex wanted(pattern);
   Names out;
@@ -29,7 +29,7 @@ Names found_in(const std::string& text, const char* pattern) {
   return out;
 }
 
-/// Headers that the README lists.
+/// Returns the headers that the README lists.
 Names listed(const std::string& readme) {
   return found_in(readme, R"(`((?:[a-z_0-9]+/)?[a-z_0-9]+\.hpp)`)");
 }
@@ -41,7 +41,7 @@ std::vector<fs::path> public_headers() {
   return out;
 }
 
-/// Headers that stand outside of folders called detail.
+/// Returns the headers outside of folders called detail.
 Names open_headers() {
   Names out;
   for (const fs::path& header : public_headers()) {
@@ -51,7 +51,7 @@ Names open_headers() {
   return out;
 }
 
-/// Includes of a user's program that are none of his business: of detail, or of no header there is.
+/// Returns the includes that a user's program must not have: of detail headers, or of missing headers.
 Names unlisted_includes(const std::string& source, const Names& list) {
   Names out;
   for (const std::string& header : found_in(source, R"re(#\s*include\s*[<"]tumble/([^>"]+)[>"])re"))
@@ -68,7 +68,8 @@ TEST(PublicHeaders, AreThoseThatTheReadmeLists) {
   EXPECT_EQ(listed("| `tumble.hpp` `common/imu.hpp` |"), (Names{"tumble.hpp", "common/imu.hpp"}));
 }
 
-/// Largest number of lines of code in a public header. Documentation does not count: a limit would shorten it.
+/// Largest number of lines of code in a public header. Documentation does not count, so that the limit does not shorten
+/// it.
 constexpr std::ptrdiff_t kCodeLinesMax = 150;
 
 std::ptrdiff_t code_lines(const std::string& text) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is added by a file and a line of registration: the line that was forgotten. Each function that a header of such
-// a list declares is called where the list is made.
+// Some parts are added by a file and a line of registration. Each function that a header of such a list declares must
+// be called in the source with the list.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,10 +14,10 @@
 namespace {
 
 struct Registry {
-  std::string header, returns;  ///< functions of this result
-  std::string arguments;        ///< and of these arguments: one that takes more makes entries for others
-  std::string list;             ///< the source that has to name each of them
-  std::size_t least;            ///< so many there are at least, or they are not found
+  std::string header, returns;  ///< functions with this return type
+  std::string arguments;        ///< functions with these arguments; others create entries for other lists
+  std::string list;             ///< the source that must name each function
+  std::size_t least;            ///< lower bound of the number of functions, so that the search cannot fail silently
 };
 
 std::vector<std::string> declared(const std::string& text, const std::string& returns, const std::string& arguments) {
@@ -56,7 +56,7 @@ TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
   }
 }
 
-/// Names of the files of a folder of the tree.
+/// Returns the names of the files in a folder of the tree.
 std::vector<std::string> stems_in(const std::string& folder) {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(tumble::test::source_dir() / folder))
@@ -73,7 +73,8 @@ TEST(Registration, TheDesignNamesEveryScenarioAndDevice) {
   EXPECT_EQ(left_out(devices, design), std::vector<std::string>());
 }
 
-/// The package for evalio cannot ask the program when its data sets are listed: they are those of the rig with a lidar.
+/// The evalio package cannot call the program to list its data sets. Its list must be the scenarios of the rig with a
+/// lidar.
 TEST(Registration, EvalioHasEveryScenarioOfTheRig) {
   const std::string adapter =
       tumble::test::text_of(tumble::test::source_dir() / "python/src/tumble/evalio/recordings.py");

@@ -8,7 +8,7 @@
 
 namespace tumble::test {
 
-/// All of a file; empty where it cannot be read.
+/// Returns the contents of a file; empty if it cannot be read.
 inline std::string text_of(const std::filesystem::path& file) {
   std::ostringstream out;
   out << std::ifstream(file).rdbuf();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names and words that the field's terms have replaced do not return: names anywhere in the tree, words in the
-// documents that users read first.
+// Replaced names and words must not return: names anywhere in the tree, words in the documents that users read first.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using tumble::test::text_of;
 
-/// Words that no name may contain. docs/glossary.md has the field's terms.
+/// Words that no name may contain. docs/glossary.md lists the terms of the field.
 constexpr std::array kReplaced = {"companion", "excess", "stretch", "stretches", "surprise", "thrust"};
 
 /// Names that may not appear anywhere.
@@ -30,7 +29,7 @@ constexpr std::array kReplacedNames = {"CarriedWay", "GravityTurn", "GravityTurn
                                        "kVoid",      "PartialLoss", "PublishedTraps",       "SeedMapper",
                                        "SeedParams", "SensorPlace", "TurnWindows",          "TurnHypotheses"};
 
-/// Words with a private meaning, which a new reader does not understand.
+/// Project-private words, which a new reader does not understand.
 const std::regex kPrivateWords(
     R"(\b(anew|whoever|somebody|anybody|dearest|mended|bears? out|borne out|told|tells|hears?|heard|doubted|believed|begins anew|of which|by itself|of its own|so many|the like|last word|carried body|is none|are none|nobody|the door)\b)",
     std::regex::icase);
@@ -39,7 +38,7 @@ bool is_of_a_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// All names of a text, of comments and strings too.
+/// Returns all names in a text, including comments and strings.
 std::set<std::string> names_in(const std::string& text) {
   std::set<std::string> out;
   for (auto at = text.begin(); at != text.end();) {
@@ -50,7 +49,7 @@ std::set<std::string> names_in(const std::string& text) {
   return out;
 }
 
-/// The words of a name: kOldWord_rad_s is k, old, word, rad, s.
+/// Splits a name into words: kOldWord_rad_s becomes k, old, word, rad, s.
 std::set<std::string> words_of(const std::string& name) {
   std::set<std::string> out;
   std::string word;
@@ -67,10 +66,10 @@ std::set<std::string> words_of(const std::string& name) {
   return out;
 }
 
-enum class Text { prose, script, source };  ///< a script's strings are its comments too
+enum class Text { prose, script, source };  ///< strings of a script count like its comments
 
-/// Replaced names in a text. A replaced word counts as a part of a name only: in comments and strings it is a plain
-/// word.
+/// Returns the replaced names in a text. A replaced word counts only as a part of a name, because comments and strings
+/// may contain it as a plain word.
 std::vector<std::string> replaced_names(const std::string& text, Text kind) {
   static const std::regex comment(R"(//[^\n]*|#[^\n]*)"), string(R"("([^"\\\n]|\\.)*")");
   std::set<std::string> out;
@@ -125,7 +124,7 @@ TEST(Vocabulary, AReplacedNameIsFound) {
   EXPECT_EQ(replaced_names("int outstretched = stretched_to;", Text::source), Words{});
 }
 
-/// Lines of a document with a private word. Code blocks are left out.
+/// Returns the lines of a document with a private word. Code blocks are skipped.
 std::vector<std::string> private_words(const std::string& text) {
   std::vector<std::string> out;
   std::istringstream lines(text);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Attitude filters, one sample on one core [ns]: a body that turns, shakes and rests, 250 Hz. Bounds of the project:
-// 200 for the simple filters, 2000 for tumble. Where the reference C++ of VQF was found (VQF_SOURCE_DIR), it runs
-// beside.
+// Time of attitude filters for one sample on one core [ns], for a body that rotates, shakes and rests, at 250 Hz. The
+// project's bounds are 200 ns for the simple filters and 2000 ns for tumble. The reference C++ code of VQF runs too, if
+// VQF_SOURCE_DIR contains it.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

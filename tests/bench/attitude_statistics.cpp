@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // attitude_statistics SCENARIO|RECORDING.h5 FIRST LAST [--method NAME]... [--set M.NAME=VALUE]... [--keep FOLDER]
-// [--each]: simulates the draws without lidar (or takes one recording), runs methods of kind `attitude` and prints per
-// method, over the draws whose gyro never clips, over those whose gyro does and over all: median and mean of the
-// inclination's rms in motion, of the whole attitude's, and of the draws that are better than with the first method;
-// where a covariance is reported, the mean normalised square of the tilt's error per degree of freedom in motion and
-// the shares of samples within one and within three of its deviations (39.3 % and 98.9 % of a normal one in two
-// dimensions). FOLDER keeps recordings. Not a test: 2 to 3 s of one core a draw.
+// [--each]: simulates the draws without lidar (or reads one recording) and runs methods of kind `attitude`. Prints
+// statistics per method for three groups: draws without clipping, draws with clipping, all draws.
+// Statistics: median and mean of the rms inclination error and rms attitude error in motion, and the number of draws
+// that are better than with the first method. For methods with covariance: mean NEES of the tilt in motion, and the
+// shares of samples within one and three standard deviations (39.3 % and 98.9 % for a normal distribution in two
+// dimensions).
+// --keep stores the recordings in FOLDER. This program is not a test; it takes 2 to 3 s of one core per draw.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -77,14 +78,14 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// What one method made of one draw.
+/// Results of one method on one draw.
 struct Run {
   double inclination_rad = std::numeric_limits<double>::infinity();
   double attitude_rad = std::numeric_limits<double>::infinity();
   bool clips = false;
 };
 
-/// Of all draws.
+/// Statistics of all draws.
 struct Pool {
   std::string name;
   std::vector<Run> runs;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // carried_statistics [--wand FILE.h5]... [--broad NUMBER]... [--attitude NUMBER]... [--method NAME]... [--set
-// NAME=VALUE]...
-// [--flags]: carried bodies with clipped gyros. FILE.h5 is an imported recording with an optical reference, scored as
-// `tumble score` does; NUMBER a trial of BROAD ("05"), 40 s about its peak, each axis clipped at a third of that peak
-// (with --flags the device says where), held to the gyro as it was; --attitude runs the attitude method of the same
-// parameters over whole trials as they are. Prints errors at clipped samples, median / 90 % / 99 %, the share of the
-// raw error taken off and of errors within three deviations. Not a test: some seconds of one core a recording.
+// NAME=VALUE]... [--flags]: errors for hand-held bodies with clipped gyros.
+// FILE.h5 is an imported recording with an optical reference, scored as by `tumble score`. NUMBER is a trial of BROAD
+// ("05"): 40 s around its peak rate, with each axis clipped at a third of this peak; the unclipped gyro is the
+// reference. With --flags, the readings have clip flags. --attitude runs the attitude method with the same parameters
+// on whole, unclipped trials.
+// Prints the errors at clipped samples (median, 90 %, 99 %), the reduction of the raw error in percent, and the share
+// of errors within three standard deviations. This program is not a test; it takes some seconds of one core per
+// recording.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]: the
-// same draws with IMUs of other rates, and with other numbers of a data sheet (`gyro_range_rad_s=8.7`; SCENARIO may be
-// the path of a file, with other devices). A line per method and rate: how many draws have a figure; the error (rate:
-// median at clipped samples; attitude: inclination; position: at the end; slam: ate_m), median and mean over the draws;
-// both against the scenario's own rate; pair by pair, the median over the draws of a draw's error against its own at
-// that rate, with its 95 % interval (BCa, statistics.md (S1) to (S4)); the same median of the oracle of that kind,
-// where it is among the methods: what the sensor allows; the share within three deviations (slam: of the draws whose
-// last pose lies within the 99.7 % of its NEES), that of the worst draw, and the CPU time against the length of the
-// recording. FOLDER keeps the recordings (of one set of numbers); --draws prints a line a draw too. Not a test: 2 to
-// 10 s a draw and rate.
+// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]: runs
+// the same draws with other IMU rates, and with other values of the data sheet (`gyro_range_rad_s=8.7`). SCENARIO may
+// be the path of a file with other devices. Prints a line per method and rate with:
+// - the number of draws with an error;
+// - median and mean error (rate: median at clipped samples; attitude: inclination; position: at the end; slam: ate_m);
+// - median and mean relative to the scenario's own rate;
+// - median over the draws of the ratio to the draw's error at the scenario's rate, with its 95 % interval (BCa,
+// statistics.md (S1) to (S4)), and the same median of the oracle of this kind, if the oracle is among the methods;
+// - share of errors within three standard deviations (slam: share of draws whose last pose has an NEES within the 99.7
+// % bound), and the share of the worst draw;
+// - CPU time divided by the length of the recording.
+// --keep stores the recordings (for one set of values) in FOLDER. --draws also prints a line per draw. This program is
+// not a test; it takes 2 to 10 s per draw and rate.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -34,14 +37,14 @@ namespace scenarios = tumble::scenarios;
 namespace sim = tumble::sim;
 using scenarios::Kind;
 
-constexpr double kPoseNees = 20.06 / 6.0;  // 99.73 % of chi-square with six degrees, per degree
+constexpr double kPoseNees = 20.06 / 6.0;  // 99.73 % quantile of chi-square with six degrees of freedom, per degree
 
 struct Request {
   std::string scenario;
   std::uint64_t first = 0, last = 0;
   std::vector<std::string> methods;
   std::vector<double> rates_hz = {50, 100, 125, 250, 500, 1000, 2000, 4000, 8000};
-  std::vector<std::pair<std::string, double>> changes;  ///< of the numbers of the IMUs whose rate changes
+  std::vector<std::pair<std::string, double>> changes;  ///< changed values of the IMUs whose rate changes
   std::filesystem::path keep;
   bool draws = false;
 };
@@ -79,7 +82,8 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// The draw with the primary IMU's rate and numbers, those of a sphere's others too; 0: as the scenario has it.
+/// Returns the draw with this rate and these values of the primary IMU; of a sphere, all IMUs change. 0: the scenario's
+/// rate.
 scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request& request, std::uint64_t seed,
                                  double rate_hz, bool lidar) {
   scenarios::SimulatedDraw draw;
@@ -113,9 +117,9 @@ Metrics metrics_of(Kind kind) {
   return {"ate_m", "pose_nees"};
 }
 
-/// One method at one rate, over the draws.
+/// Results of one method at one rate, over the draws.
 struct Pool {
-  std::map<std::uint64_t, double> error_of;  ///< by seed: of the draws that have one
+  std::map<std::uint64_t, double> error_of;  ///< by seed, for draws with an error
   std::vector<double> coverage;
   double cpu_s = 0.0, length_s = 0.0;
   int failed = 0;
@@ -127,7 +131,7 @@ std::vector<double> errors(const Pool& pool) {
   return out;
 }
 
-/// Of each draw that has an error at both rates, the one against the other; median with its interval.
+/// Returns the ratios of errors for draws that have an error at both rates, and their median with its interval.
 scenarios::Interval paired(const Pool& pool, const Pool& own) {
   std::vector<double> ratios;
   for (const auto& [seed, error] : pool.error_of) {
@@ -172,7 +176,7 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
   std::printf("\n");
 }
 
-/// `oracle`: the oracle's median of pairs, NaN where there is none.
+/// `oracle`: the median ratio of the oracle, or NaN without an oracle.
 void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own, double oracle) {
   const std::vector<double> error = errors(pool), own_error = errors(own);
   const double median = scenarios::quantile(error, 0.5);

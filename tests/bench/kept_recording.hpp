@@ -12,8 +12,8 @@
 
 namespace tumble::bench {
 
-/// The recording `folder`/`name`.h5 where it is kept; else what `situation` gives, simulated, and kept if `folder` is
-/// not empty.
+/// Returns the recording `folder`/`name`.h5 if the file exists. Otherwise simulates `situation`, and stores the
+/// recording if `folder` is not empty.
 sim::Recording kept_recording(const scenarios::DataRoot& data, const std::filesystem::path& folder,
                               const std::string& name, const std::string& scenario, std::uint64_t seed,
                               const std::function<sim::Situation()>& situation);

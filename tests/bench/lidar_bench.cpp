@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lidar points a second on one core, beside the engine's own rays in the same run, over a height field of 400 x 400
-// cells with 40 rocks, 40 trunks and a cage of 12 struts.
-//   engine    mj_ray and mj_multiRay on a sample of the very rays of cast/rs16_*
-//   build     the mirror of the world that rays are cast against, once a recording
-//   cast      sweeps after that: each firing from its own pose, errors, intensity, surface id, exact hit
-//   simulate  simulate_lidar as a whole: build, cast and a recording of 10 s written to memory
-// `returns` counts finished points (what a recording holds), `firings` the beams sent out: on the open hill half of
-// them go to the sky; in the hall (the same ground under a roof, within walls) nearly all return. Rates are of
-// processor time.
+// Simulated lidar points per second on one core, compared with the physics engine's own rays in the same run. The world
+// is a height field of 400 x 400 cells with 40 rocks, 40 trunks and a cage of 12 struts.
+//   engine    mj_ray and mj_multiRay on a sample of the rays of cast/rs16_*
+//   build     builds the copy of the world for ray casting, once per recording
+//   cast      casts sweeps: each firing from its own pose, with errors, intensity, surface id and exact hit
+//   simulate  the whole function simulate_lidar: build, cast and writing a recording of 10 s to memory
+// `returns` counts the points in the recording, `firings` the emitted beams. On the open hill, half of the beams hit
+// nothing. In the hall (the same ground with a roof and walls), nearly all beams return. Rates refer to processor time.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
@@ -26,7 +25,7 @@ using Eigen::Vector3d;
 
 enum class Site { hill, hall };
 
-/// Relief of some decimetres; the hill falls towards +x at 25 degrees.
+/// Ground with a relief of some decimetres; the hill falls towards +x at 25 degrees.
 double ground_m(Site site, double x_m, double y_m) {
   const double relief_m = 1.0 + 0.4 * std::sin(0.7 * x_m) * std::cos(0.5 * y_m) + 0.1 * std::sin(4.0 * x_m + 3.0 * y_m);
   return site == Site::hill ? relief_m + 0.466 * (20.0 - x_m) : relief_m;
@@ -83,7 +82,7 @@ struct Motion {
   std::vector<Eigen::Quaterniond> q_WB;
 };
 
-/// Ten metres down the hill at 12 rad/s, a metre and a half above the ground.
+/// Moves ten metres down the hill, 1.5 m above the ground, and rotates at 12 rad/s.
 Motion tumbling(Site site, double duration_s) {
   Motion motion;
   for (int i = 0; i <= static_cast<int>(duration_s * 2000); ++i) {
@@ -155,7 +154,7 @@ struct Beam {
   double origin_m[3], direction[3];
 };
 
-/// A column of the very rays that cast() sends out, from each of its sweeps in turn.
+/// Returns a column of the rays that cast() casts, from each of its sweeps in turn.
 std::vector<Beam> beams_of(const Setup& s) {
   const SpinningPattern pattern(s.sensor.values);
   TrackCursor track(s.track(), Eigen::Isometry3d::Identity());
@@ -192,7 +191,7 @@ void engine_mj_ray(benchmark::State& state, Site site) {
       benchmark::Counter(static_cast<double>(state.iterations() * beams.size()), benchmark::Counter::kIsRate);
 }
 
-/// The same by mj_multiRay, whose rays share an origin: a column at a time.
+/// Casts the same rays with mj_multiRay, whose rays have a common origin: one column per call.
 void engine_mj_multi_ray(benchmark::State& state, Site site) {
   constexpr std::size_t kColumn = 16;
   const Setup s = setup("spinning_lidar", site, 1.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sweeps of 28 800 points through the odometry on one core, everything included, in a tumble at 15 rad/s: one of them
-// again and again (the odometry is copied from a saved state before each run, outside of the time taken), all of them
-// with median and worst; the parts; and ten minutes of small sweeps, whose cost and memory must not grow.
+// Time of the odometry for sweeps of 28 800 points on one core, in a tumble at 15 rad/s. Measures one sweep repeatedly
+// (each run starts from a copy of a saved state, which is not timed), all sweeps (median and worst), and the parts.
+// Also measures ten minutes of small sweeps, whose time and memory must not grow.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using tumble::LidarInertialOdometry;
 constexpr int kSweeps = 14;
 constexpr int kColumns = 1800;
 
-/// An odometry that has seen kSweeps sweeps and the IMU of the next, and that next sweep.
+/// An odometry that has processed kSweeps sweeps and the IMU samples of the next sweep, and this next sweep.
 struct Saved {
   LidarInertialOdometry odometry;
   std::vector<tumble::LidarPoint> next;
@@ -71,7 +71,7 @@ void sweep_of_28800_points(benchmark::State& state) {
 }
 BENCHMARK(sweep_of_28800_points)->Arg(25)->Arg(50)->Unit(benchmark::kMillisecond)->ArgName("voxel_cm");
 
-/// The state of an odometry as bytes, and back.
+/// Converts the state of an odometry to bytes, and back.
 void map_saved_and_loaded(benchmark::State& state) {
   const LidarInertialOdometry::Params params;
   const Saved saved(params);
@@ -97,19 +97,19 @@ void map_saved_and_loaded(benchmark::State& state) {
 }
 BENCHMARK(map_saved_and_loaded)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->ArgName("load");
 
-/// Of the processor, which a busy machine does not lengthen.
+/// Returns processor time, which does not depend on other load of the machine.
 double since_ms(std::clock_t start) {
   return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-/// Median of all, for a copy that it may reorder.
+/// Returns the median of a copy, which is reordered.
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-/// The method's own setting: saturation deficits of clipped axes and the calibration are unknowns too.
+/// Returns the settings of the method: saturation deficits of clipped axes and the calibration are unknowns too.
 LidarInertialOdometry::Params all_unknowns() {
   LidarInertialOdometry::Params params;
   params.expert.rails.estimate_deficit = true;
@@ -162,7 +162,7 @@ void tumble_of_28800_points_a_sweep(benchmark::State& state) {
 }
 BENCHMARK(tumble_of_28800_points_a_sweep)->Arg(0)->Arg(1)->Iterations(2)->Unit(benchmark::kMillisecond)->ArgName("all");
 
-/// A sensor that was taken elsewhere in the middle of a tumble: every sweep is searched for in the map, in vain.
+/// A sensor that was moved elsewhere during a tumble: every sweep is searched for in the map without success.
 void search_of_28800_points_a_sweep(benchmark::State& state) {
   constexpr int kKnown = 12, kCount = 32;
   const LidarInertialOdometry::Params params = all_unknowns();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// motion_distribution SCENARIO FIRST LAST: simulates the draws without lidar and prints a line each and how they are
-// spread, to be held against the published campaign. Not a test: it takes minutes.
+// motion_distribution SCENARIO FIRST LAST: simulates the draws without lidar. Prints a line per draw and the
+// distribution over the draws, for comparison with the published campaign. This program is not a test; it takes
+// minutes.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,11 +26,11 @@ using tumble::scenarios::MotionSummary;
 struct Spread {
   std::vector<MotionSummary> draws;
   std::vector<double> cpu_s;
-  std::map<std::string, int> touching;  ///< draws that touch a kind of surface
+  std::map<std::string, int> touching;  ///< number of draws that touch a kind of surface
   int rejected = 0;
 };
 
-/// Kinds of the surfaces that were touched: their names without the number.
+/// Returns the kinds of the touched surfaces, which are their names without the number.
 std::set<std::string> touched(const tumble::sim::Truth& truth) {
   std::set<std::string> kinds;
   for (const tumble::sim::ContactTruth& contact : truth.contacts) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double kRadius_m = 0.25, kHeight_m = 1.75, kSpeed_m_s = 1.2;
 constexpr std::array<double, 3> kCircle_m = {2.5, 4.0, 6.0};
 
-/// Centres of the people at an instant.
+/// Returns the centres of the people at a time.
 std::array<Eigen::Vector2d, 3> people_at(double t_s, const Eigen::Vector3d& start_W_m) {
   std::array<Eigen::Vector2d, 3> out;
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -25,7 +25,7 @@ std::array<Eigen::Vector2d, 3> people_at(double t_s, const Eigen::Vector3d& star
   return out;
 }
 
-/// Where along a ray, as a share of its length, it meets an upright cylinder.
+/// Returns where a ray meets an upright cylinder, as a share of the ray's length.
 std::optional<double> meets(const Eigen::Vector3d& from, const Eigen::Vector3d& ray, const Eigen::Vector2d& centre,
                             double floor_m) {
   const Eigen::Vector2d away = from.head<2>() - centre, d = ray.head<2>();

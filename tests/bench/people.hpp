@@ -5,10 +5,9 @@
 
 namespace tumble::bench {
 
-/// Puts three people into a recording's lidar returns: upright cylinders of 0.5 m by 1.75 m that walk at 1.2 m/s on
-/// circles about the place where the robot starts, from the ground that is level with it. What a ray meets on them
-/// takes the place of what it met behind; the noise of the range stays. The truth is not changed: they are no surface
-/// of a map.
+/// Adds three people to a recording's lidar returns: upright cylinders of 0.5 m by 1.75 m. They walk at 1.2 m/s on
+/// circles around the start of the robot, on level ground. If a ray meets a cylinder, its return moves there with the
+/// same range noise. The truth is unchanged, because people are not a surface of the map.
 void let_people_walk(const sim::Truth& truth, sim::Sensors& sensors);
 
 }  // namespace tumble::bench

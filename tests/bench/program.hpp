@@ -7,11 +7,11 @@
 
 #include "sim/simulate.hpp"
 
-/// What the programs of this folder that are called by hand have in common.
+/// Common code of the programs in this folder that are called by hand.
 namespace tumble::bench {
 
-/// Reads the words of the command line into a Request and runs it; wrong words print how it is used, what is thrown is
-/// printed. Returns the exit status: 2 for both of these.
+/// Parses the command line to a Request and runs it. Prints the usage for wrong arguments, and the message of an
+/// exception. Returns the exit status, which is 2 for both.
 template <typename Request>
 int run_program(int count, char** words, const char* usage, bool (*parse)(int, char**, Request&),
                 int (*run)(const Request&)) {
@@ -28,8 +28,7 @@ int run_program(int count, char** words, const char* usage, bool (*parse)(int, c
   }
 }
 
-/// `work(seed)` for each seed, both ends included; a draw that the simulation rejects is left out with a line that says
-/// so.
+/// Calls `work(seed)` for each seed from first to last. A draw that the simulation rejects is skipped with a message.
 template <typename Work>
 void for_each_draw(std::uint64_t first, std::uint64_t last, Work&& work) {
   for (std::uint64_t seed = first; seed <= last; ++seed) {

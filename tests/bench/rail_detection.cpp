@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_detection [--no-flags] FILE...: what ClippingFinder makes of simulated recordings (.h5), of the first IMU's gyro
-// and accelerometer: elements that lost more than 1 % of the stated range to their rail, how many of them are called
-// clipped, how many of all called lost anything, and what it calls when it is given the unclipped twin, which has no
-// rail. Not a test.
+// rail_detection [--no-flags] FILE...: tests ClippingFinder on simulated recordings (.h5), for the first IMU's gyro and
+// accelerometer. Prints how many elements lost more than 1 % of the stated range to saturation, how many of these are
+// classified as clipped, how many of all classified elements lost anything, and the classifications for the unclipped
+// readings of the same draw. This program is not a test.
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +23,7 @@ struct Count {
   std::size_t deep = 0, found = 0, called = 0, right = 0, false_alarms = 0;
 };
 
-// Largest share of a range that is no loss: rounding, and the digits of the device.
+// Largest loss, as a share of the range, that rounding and quantisation can explain.
 constexpr double kNothing = 2e-5, kDeep = 0.01;
 
 Eigen::Matrix3d rows_of(const std::vector<Eigen::Vector3d>& elements) {

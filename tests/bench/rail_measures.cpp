@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_measures AXIS RAIL FILE...: what a gyro does at its rail of RAIL rad/s on AXIS (x, y, z), a line a file: share
-// of rows that repeat the readings before; of the gyro's own readings those at the rail; how long they stay there; the
-// true rate there; how far the readings of one sign, inside of segments, scatter there, before and after a plane
-// through them. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is the cameras'. Not a test.
+// rail_measures AXIS RAIL FILE...: measures the behaviour of a gyro at its saturation limit of RAIL rad/s on AXIS (x,
+// y, z), with a line per file. Prints the share of repeated rows, the share of original gyro readings at the limit, the
+// duration at the limit, and the true rate there. Also prints the scatter of the readings of one sign within segments,
+// before and after a plane is fitted. FILE is a simulated recording (.h5) or a RepoIMU file (.csv), whose reference
+// rate comes from cameras. This program is not a test.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace tumble;
 
-/// The gyro's own readings, and the true rates beside them.
+/// Original readings of the gyro, and the true rates at the same times.
 struct Readings {
   std::vector<double> time_s;
   std::vector<Vector3d> gyro, rate;
@@ -51,9 +52,9 @@ Readings simulated(const std::string& file) {
   return out;
 }
 
-/// The import leaves repeated readings out; how many there were the file tells.
+/// The import removes repeated readings, so their number is counted in the file.
 Readings real(const std::string& file) {
-  constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // columns
+  constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // indices of columns
   std::ifstream stream(file);
   std::vector<std::string> accel, gyro;
   std::string line;
@@ -77,11 +78,12 @@ Readings real(const std::string& file) {
   return out;
 }
 
-/// The plane of readings of one sign at the rail of `axis`.
+/// Plane through the readings of one sign at the saturation limit of `axis`.
 struct Plane {
   std::size_t readings = 0;
-  double before = std::nan(""), after = std::nan("");  ///< standard deviation of the axis, about its mean and the plane
-  double slope_1 = std::nan(""), slope_2 = std::nan("");  ///< against the next axis and the one after
+  double before = std::nan(""), after = std::nan("");  ///< against the next two axes
+  double slope_1 = std::nan(""),
+         slope_2 = std::nan("");  ///< slopes relative to the next axis, and to the axis after it
 };
 
 Plane fit(const std::vector<Vector3d>& readings, int axis) {
@@ -105,8 +107,8 @@ Plane fit(const std::vector<Vector3d>& readings, int axis) {
   return out;
 }
 
-/// The plane of both signs: readings within 0.05 rad/s of it, between others of its sign that are, fitted until they
-/// stay the same. scenarios/certificate/real_rails.cpp has what it says of real gyros.
+/// Fits the planes of both signs to readings within 0.05 rad/s of them whose neighbours also are, until the selection
+/// is constant. scenarios/certificate/real_rails.cpp contains the results for real gyros.
 void print_both_signs(const std::vector<Vector3d>& gyro, int axis, double rail_rad_s) {
   constexpr double kFirst_rad_s = 0.15, kSlab_rad_s = 0.05, kLeastShare = 0.9;
   const auto row = [&](std::size_t k) {
@@ -151,7 +153,8 @@ void print_both_signs(const std::vector<Vector3d>& gyro, int axis, double rail_r
 }
 
 void print(const std::string& file, const Readings& readings, int axis, double rail_rad_s) {
-  constexpr double kNear_rad_s = 0.3;  // elements' scale, offset and tilt move the rail by about so much
+  // scale, offset and tilt of the elements move the saturation limit by about this much
+  constexpr double kNear_rad_s = 0.3;
   std::vector<double> rates, segments_s;
   std::vector<Vector3d> inside[2];
   std::size_t at_rail = 0, run = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The smoother of angular velocity on one core, beside a general sparse solver on the same normal equations. Times are
-// per sample and iteration (batch, solvers) and per sample (streaming, 0.2 s of lag at 100 Hz).
+// Time of the angular-velocity smoother on one core, compared with a general sparse solver of the same normal
+// equations. Times are per sample and iteration (batch, solvers) and per sample (stream, lag of 0.2 s at 100 Hz).
 #include <benchmark/benchmark.h>
 
 #include <Eigen/SparseCholesky>
@@ -63,7 +63,7 @@ void streaming(benchmark::State& state) {
 }
 BENCHMARK(streaming)->Unit(benchmark::kMillisecond);
 
-// A chain of positive definite blocks with a border, as one iteration has it.
+// A chain of positive definite blocks with a border, as in one iteration.
 struct Problem {
   std::vector<arrow::Block> blocks;
   arrow::Corner corner;
@@ -130,7 +130,7 @@ void per_sample(benchmark::State& state) {
       static_cast<double>(kSamples), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-// Factorisation and solution in place; the copy of the blocks is timed with it.
+// Factorises and solves in place; the time includes copying the blocks.
 void solve_arrow(benchmark::State& state) {
   const Problem problem(kSamples);
   const Eigen::VectorXd want =
@@ -151,14 +151,14 @@ void solve_arrow(benchmark::State& state) {
       step = arrow::back_substitute(blocks[k], k + 1 < blocks.size() ? &step : nullptr, border);
     }
     benchmark::DoNotOptimize(step);
-    // both solve the same problem
+    // both solvers solve the same problem
     if (!good || (step - want.head<arrow::kBlockSize>()).norm() > 1e-9 * want.norm()) state.SkipWithError("wrong");
   }
   per_sample(state);
 }
 BENCHMARK(solve_arrow)->Unit(benchmark::kMillisecond);
 
-// Eigen's sparse Cholesky with its own ordering; the analysis of the pattern is made once, outside of the time.
+// Eigen's sparse Cholesky factorisation with its own ordering; the analysis of the pattern is made once and not timed.
 void solve_sparse(benchmark::State& state) {
   const Problem problem(kSamples);
   const Eigen::SparseMatrix<double> matrix = problem.matrix();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_contact SCENARIO FIRST LAST: what a model of the contact could tell of the rate of a tumbling rig. From the
-// truth, for every IMU sample in contact with a clipped gyro: the torque about the centre of mass and the force, both
-// means over the window, and how well the torque is foretold by (a) nothing, (b) a force through one point, at right
-// angles to it, (c) a force through the point that the sample before gives, (d) through the best single point of the
-// whole impact. Prints what is left of the torque as a share of it, and how long contacts last. Not a test: 2 s a draw.
+// rate_contact SCENARIO FIRST LAST: measures how well a contact model could predict the torque on a tumbling rig. For
+// every IMU sample with contact and a clipped gyro, it takes the true torque about the centre of mass and the true
+// force, as means over the window. It predicts the torque by (a) zero, (b) a force through one point, perpendicular to
+// it, (c) a force through the point of the previous sample, (d) a force through the best single point of the whole
+// impact. Prints the remaining share of the torque, and the duration of contacts. This program is not a test; it takes
+// 2 s per draw.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ Matrix3d cross(const Vector3d& v) {
   return out;
 }
 
-// Inertia about the centre of mass over the mass, body axes [m^2].
+// Inertia about the centre of mass, divided by the mass, in body axes [m^2].
 Matrix3d inertia_per_mass(const sim::Situation& situation) {
   const sim::Values& robot = situation.robot.values;
   const double x = robot.at("inertia_x_kg_m2") / robot.at("mass_kg");
@@ -41,10 +42,10 @@ Matrix3d inertia_per_mass(const sim::Situation& situation) {
 }
 
 struct Wrench {
-  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();  // per mass
+  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();  // divided by the mass
 };
 
-// Mean over the physics samples (first, last].
+// Returns the mean over the physics samples (first, last].
 Wrench mean_wrench(const sim::Truth& truth, const Matrix3d& J, std::size_t first, std::size_t last) {
   Wrench out;
   const double dt_s = 1e-9 * static_cast<double>(truth.period_ns);
@@ -58,7 +59,7 @@ Wrench mean_wrench(const sim::Truth& truth, const Matrix3d& J, std::size_t first
   return {out.force / count, out.torque / count};
 }
 
-// The point nearest to the centre of mass through which the forces give the torques best.
+// Returns the point nearest to the centre of mass from which the forces explain the torques best.
 Vector3d best_point(const std::vector<Wrench>& wrenches) {
   Matrix3d H = 1e-6 * Matrix3d::Identity();
   Vector3d g = Vector3d::Zero();
@@ -72,7 +73,7 @@ Vector3d best_point(const std::vector<Wrench>& wrenches) {
 
 struct Shares {
   std::vector<double> across, last_point, one_point, arm_m;
-  std::vector<double> length;  // samples of contact in a row that hold a clipped one
+  std::vector<double> length;  // lengths of contacts in samples, for contacts with a clipped sample
   std::size_t clipped = 0, clipped_contact = 0;
 };
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]: what real
-// devices do besides clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a
-// gyro's window too long, a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together
-// (`hill_consumer`). Prints for each method of kind `rate` the error at clipped samples, the same against the first
-// row, the share of clipped axes within three reported deviations (all draws, the worst draw), their mean squared error
-// over variance, and of the elements from which the rail took more than 0.1 rad/s the share that the method calls
-// clipped, and of those it calls so the share from which it took anything. FOLDER keeps recordings; --draws prints a
-// line a draw too;
-// --ablation takes `hill_consumer` with one of its errors switched off at a time instead; with --learnt methods start
-// from what they have learnt in another tumble of the same rig and device, those that learn alone. Not a test: 2 to 3 s
-// of one core a draw and row.
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]: effects of
+// real devices other than clipping, on the same draws of `hill` without lidar. Each row has one effect: a late
+// accelerometer, a long gyro window, a low-pass, scale errors, g-sensitivity, repeated readings. The last row has all
+// effects (`hill_consumer`).
+// Prints for each method of kind `rate`: the error at clipped samples, and its ratio to the first row; the share of
+// clipped axes within three reported standard deviations (all draws, worst draw); the mean squared error divided by the
+// variance; the share of elements with a saturation deficit above 0.1 rad/s that the method classifies as clipped; the
+// share of classified elements with any deficit.
+// --keep stores the recordings in FOLDER. --draws also prints a line per draw. --ablation takes `hill_consumer` and
+// switches off one effect per row. With --learnt, methods with calibration start from the calibration of another tumble
+// of the same rig and device. This program is not a test; it takes 2 to 3 s of one core per draw and row.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -38,7 +38,7 @@ using bench::RatePool;
 
 struct Row {
   std::string title, scenario;
-  std::vector<std::pair<std::string, double>> changes;  ///< of the primary IMU's numbers
+  std::vector<std::pair<std::string, double>> changes;  ///< changed values of the primary IMU
 };
 
 const std::vector<Row>& rows() {
@@ -56,7 +56,7 @@ const std::vector<Row>& rows() {
   return kRows;
 }
 
-// `hill_consumer` with one of its errors switched off at a time.
+// Returns `hill_consumer` with one error switched off per row.
 const std::vector<Row>& ablations() {
   using Changes = std::vector<std::pair<std::string, double>>;
   static const Changes kScale = {{"gyro_scale_error", 0.0}, {"accel_scale_error", 0.0}};
@@ -141,7 +141,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-// Draw `seed`; with `other`, its rig and device on the way of another draw.
+// Returns draw `seed`; with `other`, its rig and device with the motion of another draw.
 sim::Recording recording_of(const scenarios::DataRoot& data, const Row& row, std::size_t index, std::uint64_t seed,
                             const std::string& prefix, const std::filesystem::path& keep, bool other = false) {
   constexpr std::uint64_t kOther = 1'000'000;
@@ -172,7 +172,7 @@ double within(const std::vector<double>& normalised, std::size_t first = 0) {
   return static_cast<double>(count) / static_cast<double>(normalised.size() - first);
 }
 
-// Elements at their rails, as the truth and as a method has them.
+// Elements at their saturation limits, according to the truth and to a method.
 struct Rails {
   static constexpr double kDeep_rad_s = 0.1;
   double deep = 0.0, found = 0.0, called = 0.0, right = 0.0;
@@ -202,13 +202,13 @@ struct Rails {
   double right_share() const { return called > 0.0 ? right / called : 1.0; }
 };
 
-// One method over all draws of a row.
+// Results of one method over all draws of a row.
 struct Figures {
   double median = 0.0, p99 = 0.0, free = 0.0, share = 0.0, worst = 1.0, nees = 0.0, us = 0.0;
   Rails rails;
 };
 
-// What a method tells of a draw; `other`: in which it learns first, null where it does not.
+// Runs a method on a draw. `other`: recording from which the method calibrates first, or null.
 scenarios::Estimate estimate_of(const scenarios::Method& method, const sim::Recording& recording,
                                 const sim::Recording* other) {
   if (other == nullptr)

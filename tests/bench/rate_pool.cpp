@@ -53,7 +53,7 @@ bool converged(const scenarios::Estimate& estimate) {
   return true;
 }
 
-// Of the segment that is being read.
+// Data of the current segment.
 struct Sum {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
   double contact = 0.0, accel = 0.0, variance = 0.0;

@@ -13,8 +13,8 @@
 
 namespace tumble::bench {
 
-/// Errors of one method of kind `rate`, over many runs. Clipped, segment and contact as the scores define them
-/// (ClippingTruth; samples in a row with a clipped axis; any contact within the window of the sample).
+/// Errors of one method of kind `rate` over many runs. Clipping, segments and contact are defined as for the scores
+/// (ClippingTruth). A segment is a sequence of samples with a clipped axis. A sample has contact if its window does.
 class RatePool {
  public:
   struct Segment {
@@ -31,24 +31,24 @@ class RatePool {
     std::uint64_t seed = 0;
     double clipped_mean_rad_s = 0.0, free_mean_rad_s = 0.0, noise_rad_s = 0.0;
     std::size_t clipped = 0;
-    bool converged = true;  ///< of every descent that says so
+    bool converged = true;  ///< every optimisation that reports convergence has converged
   };
 
   explicit RatePool(std::string name) : name_(std::move(name)) {}
 
-  /// Adds a run; samples that the estimate leaves out count as failed, with an infinite error.
+  /// Adds a run. Samples without an estimate count as failed, with an infinite error.
   void add(std::uint64_t seed, const sim::Recording& recording, const scenarios::Estimate& estimate, double cpu_s);
 
   const std::string& name() const { return name_; }
   std::span<const double> clipped_rad_s() const { return clipped_; }
   std::span<const double> free_rad_s() const { return free_; }
-  /// The same, parted by whether the body touches the ground within the window of the sample.
+  /// Errors, separately for samples with and without ground contact within their window.
   std::span<const double> flight_rad_s() const { return flight_; }
   std::span<const double> contact_rad_s() const { return contact_; }
-  /// Squared errors of clipped axes over their reported variances.
+  /// Squared errors of clipped axes, divided by their reported variances.
   std::span<const double> normalised_flight() const { return normalised_flight_; }
   std::span<const double> normalised_contact() const { return normalised_contact_; }
-  /// Clipped samples that are neither called clipped nor doubted.
+  /// Clipped samples that the method classifies neither as clipped nor as suspect.
   std::size_t called_measured() const { return called_measured_; }
   std::span<const Segment> segments() const { return segments_; }
   std::span<const Run> runs() const { return runs_; }
@@ -63,16 +63,16 @@ class RatePool {
   double cpu_s_ = 0.0;
 };
 
-/// Quantiles of the pooled errors, and the median against that of the first pool.
+/// Prints quantiles of the pooled errors, and the ratio of the median to that of the first pool.
 void print_errors(std::span<const RatePool> pools);
-/// Errors of clipped samples in flight and in contact.
+/// Prints errors of clipped samples in flight and in contact.
 void print_contact(std::span<const RatePool> pools);
-/// Coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
+/// Prints the coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
 void print_honesty(std::span<const RatePool> pools);
-/// Runs worse than the first pool by more than the gyro's noise, offsets of segments, and every error as a multiple
-/// of that of the pool `tumble`.
+/// Prints the runs that are worse than in the first pool by more than the gyro's noise, the offsets of segments, and
+/// each error as a multiple of the error of the pool `tumble`.
 void print_runs(std::span<const RatePool> pools);
-/// The segments with the largest offsets.
+/// Prints the segments with the largest offsets.
 void print_worst(const RatePool& pool, std::size_t count);
 
 }  // namespace tumble::bench

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rate_statistics SCENARIO FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] [--exact-mounting] [--learnt]:
-// simulates the draws without
-// lidar, runs methods of kind `rate` and prints their errors pooled over all clipped samples of all draws, coverage and
-// normalised squared error in flight and in contact, and the worst clipped segments. The first method is what the
-// others are held against; where `tumble` is among them, the last part holds all to it. FOLDER keeps recordings, so
-// that a second call need not simulate. With --exact-mounting methods are given the true lever arm; with --learnt
-// `tumble` and `tumble_lag` start from what `tumble` learns in another tumble of the same rig. Not a test: 2 to 3 s of
-// one core a draw.
+// simulates the draws without lidar and runs methods of kind `rate`. Prints their errors pooled over all clipped
+// samples of all draws, coverage and normalised squared error in flight and in contact, and the worst clipped segments.
+// The other methods are compared with the first method. If `tumble` is among the methods, the last part compares all
+// methods with it. --keep stores the recordings in FOLDER for later calls. With --exact-mounting, methods get the true
+// lever arm. With --learnt, `tumble` and `tumble_lag` start from the calibration that `tumble` estimates in another
+// tumble of the same rig. This program is not a test; it takes 2 to 3 s of one core per draw.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -75,7 +74,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-// Draw `seed`; with `other`, its rig on the way of another draw.
+// Returns draw `seed`; with `other`, its rig with the motion of another draw.
 sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Scenario& scenario, std::uint64_t seed,
                             const std::filesystem::path& keep, bool other = false) {
   constexpr std::uint64_t kOther = 1'000'000;
@@ -83,7 +82,7 @@ sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Sc
   return bench::kept_recording(data, keep, name, scenario.name, seed, [&] {
     sim::Situation own = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
     if (!other) return own;
-    // its own seed too: the sensing elements of a device are drawn from it
+    // the seed also changes, because it determines the sensing elements of the device
     const sim::Situation far = scenarios::without_lidars(scenarios::draw(data, scenario, seed + kOther));
     own.world = far.world;
     own.motion = far.motion;
@@ -95,7 +94,7 @@ const scenarios::Method& method_of(const std::string& name) {
   return *scenarios::find_methods("rate/" + name).front();
 }
 
-// What the batch learns of a rig in one recording.
+// Returns the calibration of a rig that the batch smoother estimates from one recording.
 scenarios::RigCalibrationUse learn(const sim::Recording& recording) {
   scenarios::RigCalibrationUse learning;
   (void)scenarios::calibrating_method(method_of("tumble"), learning).run(recording.sensors, {}, {});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Position of a rolling sphere, one sample on one core, 250 Hz, along an L with a spell of slip: the live filter, the
-// same as the online example runs it (text in, text out), and the smoother with a lag. `held_bytes` is what one
-// instance holds once it runs, `allocations` what the samples after the first asked for.
+// Time of the position filter of a rolling sphere for one sample on one core, at 250 Hz, along an L with slip. Measures
+// the live filter, the live filter in the online example (text input and output), and the smoother with a lag.
+// `held_bytes` is the memory of one running instance, `allocations` the number of allocations after the first sample.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -20,7 +20,7 @@ namespace {
 std::size_t allocations = 0, held = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// not inlined, so that the compiler does not report a mismatched pair of new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   held += size;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scoring_cost SCENARIO FIRST LAST METHOD...: seconds of processor, user and system, that the verdict and the scores of
-// an estimate take, beside those of the estimate itself, a line a draw and method, the medians and the mean in all. The
-// digest of the scores tells two builds whether they scored the same bits. A method's name as `tumble run` takes it.
+// scoring_cost SCENARIO FIRST LAST METHOD...: measures the processor time (user and system) of checking and scoring an
+// estimate, and the time of the estimate. Prints a line per draw and method, and medians and the mean over all. The
+// digest of the scores shows whether two builds compute identical scores. METHOD has a name as for `tumble run`.
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -38,7 +38,7 @@ struct Cost {
   double estimate_s = 0, scoring_s = 0;
 };
 
-/// Of the verdict and the scores alone, bit by bit.
+/// Returns a digest of the verdict and the scores.
 std::string digest_of(const scenarios::Outcome& outcome, std::size_t first) {
   std::vector<std::string> lines = {to_string(outcome.status)};
   for (std::size_t k = first; k < outcome.scores.size(); ++k) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// simulation_cost SCENARIO FIRST LAST: seconds of processor, user and system, that building and simulating a draw
-// takes without its lidars and with them, a line a draw and the medians. The digest behind each tells two builds
-// whether they simulated the same bits. Threads: one.
+// simulation_cost SCENARIO FIRST LAST: measures the processor time (user and system) to build and simulate a draw,
+// without its lidars and with them. Prints a line per draw and the medians. The digests show whether two builds
+// simulate identical data. The program uses one thread.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

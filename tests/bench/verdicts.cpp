@@ -44,7 +44,7 @@ using tumble::RateState;
 
 constexpr double kWrongDeviations = 5.0;
 constexpr double kWrongShare = 0.2, kWrongTilt_rad = 0.5;
-constexpr std::string_view kPeople = "people";  // about the start: what they hide depends on the truth
+constexpr std::string_view kPeople = "people";  // people walk around the start, so their effect depends on the truth
 
 bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate) {
   if (outcome.status != scenarios::OutcomeStatus::ok) return true;
@@ -52,12 +52,12 @@ bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate
   return has_finding({About::place}, estimate) || has_finding({About::readings}, estimate);
 }
 
-/// How far off a run is, in its deviations: by the covariances that it reports, by those before it told of trouble, and
-/// of a pose of slam by the root of all of its chi-square.
+/// Error of a run in standard deviations, by three measures: the reported covariance, the covariance before it was
+/// increased, and for a slam pose the root of the whole chi-square.
 struct Judgement {
-  double error = std::nan("");  ///< [m]; of rates as a share of the rate, of attitudes the tilt [rad]
+  double error = std::nan("");  ///< [m]; for rates a share of the rate, for attitudes the tilt [rad]
   double deviations = std::nan(""), before = std::nan(""), root_chi2 = std::nan("");
-  bool gross = false;  ///< off by so much that no covariance excuses it
+  bool gross = false;  ///< so large that no covariance excuses it
 };
 
 double quantile(std::vector<double>& values, std::size_t tenths) {
@@ -70,8 +70,8 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-// Of the samples in which the body turns: the deviations that a tenth exceeds, and the median of the error as a share
-// of the rate.
+// For the samples in which the body rotates: the number of standard deviations that a tenth of them exceed, and the
+// median error as a share of the rate.
 Judgement judge_rates(const sim::Recording& recording, const std::vector<RateState>& before,
                       const scenarios::Estimate& estimate) {
   constexpr double kTurns_rad_s = 1.0;
@@ -89,7 +89,8 @@ Judgement judge_rates(const sim::Recording& recording, const std::vector<RateSta
   return out;
 }
 
-// Of the samples in which the body moves: the deviations of the tilt that a tenth exceeds, and its median.
+// For the samples in which the body moves: the tilt error in standard deviations that a tenth of them exceed, and its
+// median.
 Judgement judge_attitudes(const sim::Recording& recording, const scenarios::Estimate& estimate) {
   const scenarios::TruthTrack truth(recording.truth, estimate.frame);
   std::vector<double> deviations, tilts;
@@ -115,7 +116,7 @@ Judgement judge_poses(const scenarios::Estimate& estimate, const std::vector<sce
   if (std::isnan(out.error)) out.error = value_of(scores, "ate_m");
   out.deviations = std::isnan(nees) ? out.error / sigma_m : std::sqrt(nees);
   out.before = out.deviations;
-  out.root_chi2 = std::isnan(nees) ? out.deviations : std::sqrt(6.0 * nees);  // it is divided by six
+  out.root_chi2 = std::isnan(nees) ? out.deviations : std::sqrt(6.0 * nees);  // chi-square is divided by six
   return out;
 }
 
@@ -126,7 +127,7 @@ Judgement judgement_of(const scenarios::Method& method, const sim::Recording& tr
   return judge_rates(truth, scenarios::testing::rates_before_doubt(estimate), estimate);
 }
 
-/// Leaves of rows at the times of `all_ns` those at the times of `kept_ns`, which are some of them in their order.
+/// Returns the rows at the times `kept_ns`, which are a subsequence of `all_ns`.
 template <class Row>
 void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::int64_t>& kept_ns,
                std::vector<Row>& rows) {
@@ -137,14 +138,14 @@ void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::i
   rows.resize(kept);
 }
 
-/// The two rates of a classifier, as counts.
+/// Counts of a classifier, from which its two rates follow.
 struct Tally {
   int wrong = 0, wrong_told = 0, good = 0, good_told = 0;
 
   void add(bool is_wrong, bool says, bool as_it_is) {
     if (is_wrong) {
       ++wrong, wrong_told += says;
-    } else if (as_it_is) {  // a wrong input that did no harm is told rightly
+    } else if (as_it_is) {  // a report about a harmless wrong input is correct
       ++good, good_told += says;
     }
   }
@@ -158,7 +159,8 @@ struct Tallies {
   Tally reported, before, root_chi2;
 };
 
-/// What to score an answer to `given` by: of samples that are missing there the truth is missing too.
+/// Returns the truth for scoring an answer to `given`. Samples that are missing in `given` are missing in the truth,
+/// too.
 scenarios::SimulatedDraw scored_at_kept(const scenarios::SimulatedDraw& draw, const scenarios::SimulatedDraw& given) {
   scenarios::SimulatedDraw scored = scenarios::scored_by(draw, given);
   for (std::size_t i = 0; i < given.recording.sensors.imus.size(); ++i) {
@@ -221,7 +223,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       health("rest_gravity_missed_rad"), health("rest_gravity_missed_sigma_rad"), health("rest_velocity_share"),
       health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_segments"), health("pivot_scale"),
       health("pivot_scale_sigma"),
-      wrong && !says ? "  <- silently wrong" : (!wrong && says && harm == "none" ? "  <- cries wolf" : ""));
+      wrong && !says ? "  <- silently wrong" : (!wrong && says && harm == "none" ? "  <- false alarm" : ""));
   if (!estimate.status.ok()) std::printf("  %s\n", estimate.status.message().c_str());
   std::fflush(stdout);
 }

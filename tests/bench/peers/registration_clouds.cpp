@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Registration alone, on clouds that are written for a peer: a map of the analytic room, still sweeps from other poses.
+// Time of registration alone, on clouds that the program also writes for an external package: a map of an analytic
+// room, and sweeps without motion from other poses.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -38,7 +39,7 @@ void write_pose(std::ofstream& file, const Eigen::Isometry3d& T) {
   file << T.matrix() << '\n';
 }
 
-/// Best of some runs of the registration of one still sweep [ms]; the result in `found`.
+/// Returns the best time of several registrations of one sweep without motion [ms]; the result is in `found`.
 double time_ms(Registration& registration, const Registration::Prior& prior, const std::vector<SweepPoint>& points,
                const tumble::VoxelMap& map, Registration::Result& found) {
   tumble::MotionSample still;

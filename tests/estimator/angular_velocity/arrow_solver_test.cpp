@@ -21,7 +21,7 @@ struct System {
   Corner corner;
 };
 
-// Blocks as sums of outer products of random rows, so that the whole matrix is positive definite.
+// Blocks are sums of outer products of random rows, so that the whole matrix is positive definite.
 System random_system(std::size_t count, std::uint64_t seed) {
   oracles::Gaussian noise(seed);
   System s;
@@ -89,7 +89,7 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     BorderVector border;
     BorderMatrix border_covariance;
     ASSERT_TRUE(solve_corner(s.corner, border, border_covariance));
-    // condition numbers below 1e5: rounding of 1e-11 at most, measured 1e-13
+    // condition numbers below 1e5: rounding errors of at most 1e-11, measured 1e-13
     EXPECT_LE((border - want.tail(kBorderSize)).norm(), 1e-9 * want.norm());
     EXPECT_LE((border_covariance - covariance.bottomRightCorner(kBorderSize, kBorderSize)).norm(),
               1e-9 * covariance.norm());

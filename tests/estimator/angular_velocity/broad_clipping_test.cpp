@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A real recording without tumbles must not be made worse: trials of BROAD (a sensor moved by hand) where they are at
-// hand, and their stand-in everywhere, of which the gyro
-// is clipped at a third of its peak. A hand-held sensor is not in flight, so physics gives little back: the bounds and
-// the smoothness of the motion, no more.
+// Rates from a real recording without tumbles must not become worse. The test uses trials of BROAD (a sensor moved by
+// hand) if they are available, and always a synthetic stand-in. The gyro is clipped at a third of its peak. A hand-held
+// sensor does not fly, so the smoother only has the bounds and the smoothness of the motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,11 +18,11 @@
 namespace tumble {
 namespace {
 
-constexpr double kWindowS = 20.0;  // about the peak of the trial, so that the test takes seconds
+constexpr double kWindowS = 20.0;  // around the peak of the trial, so that the test takes seconds
 
 struct Clipped {
   std::vector<ImuSample> samples;
-  std::vector<Eigen::Vector3d> truth_rad_s;  // the readings before the clipping
+  std::vector<Eigen::Vector3d> truth_rad_s;  // readings before clipping
   std::vector<bool> clipped;
   double rail_rad_s = 0.0;
 };
@@ -75,13 +74,13 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   ASSERT_GT(std::count(trial.clipped.begin(), trial.clipped.end(), true), 20);
 
   RateSmoother::Params params;
-  params.model.nominal = {};  // nobody knows a centre of mass of a sensor in a hand
+  params.model.nominal = {};  // the centre of mass of a hand-held sensor is unknown
   std::vector<RateState> ours, theirs;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(trial.samples, ours, report).ok());
   ASSERT_EQ(ours.size(), trial.samples.size());
   Saave::Params published;
-  published.lever_arm_m = {-0.022, -0.085, 0.055};  // of the published rig
+  published.lever_arm_m = {-0.022, -0.085, 0.055};  // lever arm of the published rig
   published.saturation_point_rad_s = 0.999 * trial.rail_rad_s;
   ASSERT_TRUE(Saave(published).estimate(trial.samples, theirs).ok());
 
@@ -97,7 +96,8 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
                 GetParam().c_str(), name, e.median, e.mean, e.largest, f.median, f.mean);
   }
 
-  // the rail is found without anybody stating it, down to a third of the slowest peak, and none where nothing clips
+  // the smoother finds the saturation limit without a stated value, down to a third of the slowest peak; without
+  // clipping, it finds none
   double found = 0.0;
   for (int j = 0; j < 3; ++j) found = std::max(found, report.rail[static_cast<std::size_t>(j)].value_or(0.0));
   EXPECT_NEAR(found, trial.rail_rad_s, 1e-9);
@@ -106,12 +106,12 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   for (const ImuSample& sample : recorded.samples) rails.observe(sample, whole);
   for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(whole, c).has_value()) << c;
 
-  // the noise of that gyro, three axes: what "worse" must exceed
+  // noise of this gyro on three axes; a worse result must exceed it
   const double noise = params.model.gyro_noise_density * std::sqrt(3.0 * 285.714);
   EXPECT_LT(clipped.median, raw_clipped.median + noise);
   EXPECT_LT(clipped.mean, raw_clipped.mean + noise);
   EXPECT_LT(clipped.largest, 1.5 * raw_clipped.largest);
-  // against the reading itself: the bias that is taken away (0.01 rad/s, as the prior has it) and the noise
+  // comparison with the reading: the estimated bias (0.01 rad/s, from the prior) and the noise
   EXPECT_LT(free.median, 0.01 + noise);
   EXPECT_LT(free.mean, 0.02 + noise);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a stream holds open of a device's errors: the mixture against closed forms, and a RateStream of a device whose
-// errors it does not correct for and may not be silent about.
+// Tests the uncertainty of a stream about device errors: the mixture in closed form, and a RateStream whose device has
+// uncorrected errors.
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
 #include <gtest/gtest.h>
@@ -43,8 +43,8 @@ TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
   EXPECT_EQ((posterior.covariance - SensorErrors::Matrix(posterior.covariance.diagonal().asDiagonal())).norm(), 0.0);
 }
 
-// One number alone: odds, mean and variance by hand. Of what samples say of the odds three tenths are believed, of
-// where the errors lie three hundredths.
+// A mixture of scalars: weights, mean and variance by hand. The likelihood counts with a factor of 0.3 for the weights,
+// and of 0.03 for the errors.
 TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
   const SensorErrorPriors sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
@@ -120,8 +120,8 @@ void add(const TumbleRecording& recording, const RateStream::Params& params, Hel
   }
 }
 
-// Scales 1 % off and an accelerometer that says what it said a sample before: none of it corrected for. A device of
-// which the sheet is believed states too little.
+// Scale errors of 1 %, and an accelerometer that is late by one sample, both uncorrected. With a data sheet that is
+// assumed exact, the stated deviations are too small.
 TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
   Held consumer, believed, as_stated;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -140,9 +140,9 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
     add(recording, sure, believed);
   }
   ASSERT_GT(consumer.all, 5000u);
-  EXPECT_GT(consumer.share(), 0.985);                       // 0.994
-  EXPECT_GT(as_stated.share(), 0.985);                      // 0.996
-  EXPECT_LT(believed.share(), 0.75) << "negative control";  // 0.641
+  EXPECT_GT(consumer.share(), 0.985);                       // measured 0.994
+  EXPECT_GT(as_stated.share(), 0.985);                      // measured 0.996
+  EXPECT_LT(believed.share(), 0.75) << "negative control";  // measured 0.641
 }
 
 TEST(RateStreamDevices, WhatIsNoCovarianceIsRefused) {

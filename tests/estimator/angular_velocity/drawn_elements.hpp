@@ -14,7 +14,8 @@
 
 namespace tumble {
 
-/// Rows along which the elements of a drawn device sense: 1 on the diagonal, `sigma` beside it.
+/// Returns the sensing directions of a simulated device's elements: 1 on the diagonal, off-diagonal entries with
+/// deviation `sigma`.
 inline Eigen::Matrix3d drawn_rows(std::uint64_t seed, double sigma) {
   oracles::Gaussian noise(seed + 7000);
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
@@ -24,7 +25,7 @@ inline Eigen::Matrix3d drawn_rows(std::uint64_t seed, double sigma) {
   return rows;
 }
 
-/// A tumble of a gyro with such elements; without any tilt when `sigma` is 0.
+/// Returns a tumble of a gyro with such elements; `sigma` 0 means aligned elements.
 inline TumbleRecording tilted_tumble(std::uint64_t seed, double sigma) {
   TumbleOptions options;
   options.seed = seed;
@@ -32,8 +33,8 @@ inline TumbleRecording tilted_tumble(std::uint64_t seed, double sigma) {
   return make_tumble(options);
 }
 
-/// Over several drawn devices and tumbles: errors at samples in which an element hides something, and what was called
-/// clipped.
+/// Errors over several simulated devices and tumbles, at samples in which an element is clipped, and the number of
+/// elements classified as clipped.
 struct Pool {
   std::vector<double> raw, ours, free_axes;
   int within = 0, axes = 0, deep = 0, found = 0, called = 0, right = 0;
@@ -46,7 +47,7 @@ struct Pool {
         deep += is_deep;
         found += is_deep && clipped;
         called += clipped;
-        // at the rail within the noise counts as there
+        // readings within the noise of the saturation limit count as clipped
         right += clipped && (tumble.hidden[k][j] != 0.0 || std::abs(tumble.samples[k].angular_velocity_rad_s[j]) > 9.0);
       }
       if (tumble.hidden[k].isZero()) continue;

@@ -26,8 +26,8 @@ ImuSample flight_sample(int k, const Eigen::Vector3d& rate_rad_s, const Eigen::V
   return out;
 }
 
-/// A body of three unlike moments that flies without torque for a second (Euler's equations, small steps) after half a
-/// second of rest, with a sheet's noise.
+/// Returns the readings of a body with three different moments of inertia, which rests for 0.5 s and then flies without
+/// torque for 1 s (Euler's equations, small steps). The noise is that of a data sheet.
 std::vector<ImuSample> thrown_flight() {
   constexpr int kSteps = 100;
   const Eigen::Vector3d inertia(2.2, 1.6, 1.0);
@@ -53,7 +53,8 @@ std::vector<ImuSample> thrown_flight() {
   return out;
 }
 
-/// Swung about a hand, gravity left out, at 4 rad/s and more: the arm from the hand is not that from the mass centre.
+/// A body that a hand swings at 4 rad/s or more, without gravity. The lever arm from the hand differs from the lever
+/// arm from the centre of mass.
 std::vector<ImuSample> swung(const Eigen::Vector3d& arm_m) {
   std::vector<ImuSample> out;
   for (int k = 0; k < 150; ++k) {
@@ -109,7 +110,7 @@ TEST(FlightSignCheck, EachOtherSensorIsToldByItsName) {
     EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, 100.0, harm), name);
 }
 
-// The rate of the axis that clips comes of the force, and what is left of the force tells the sense.
+// The rate of the clipped axis follows from the force, and the remaining force determines the axis signs.
 TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
   constexpr double kRange_rad_s = 6.5;
   std::size_t clipped = 0;
@@ -124,8 +125,8 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
   }
 }
 
-// Swung about a point on the other side of the mass centre, or about one with x on the other side, a body feels what a
-// mirrored sensor would in flight.
+// If a hand swings the body about a point on the other side of the centre of mass, or with the other sign of x, the
+// readings are those of a mirrored sensor in flight.
 TEST(FlightSignCheck, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
   const auto nothing = [](ImuSample&) {};
   const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kSampling_s = 0.01, kGyroRail_rad_s = 5.0, kAccelRail_m_s2 = 40.0;
 
-/// Rests for two seconds, turns and is pushed for four, rests for four: readings with noise, clipped at the rails.
+/// Returns readings of a body that rests for 2 s, rotates and is pushed for 4 s, and rests for 4 s, with noise, clipped
+/// at the rails.
 std::vector<ImuSample> moving_body() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
@@ -45,7 +46,7 @@ std::vector<ImuSample> clipped_samples(std::vector<ImuSample> samples) {
 }
 
 struct Found {
-  std::string first;  ///< verdict when it was no longer ok
+  std::string first;  ///< first verdict other than ok
   TimeNs told_ns = 0;
   FrozenAxes::State state;
 };
@@ -90,7 +91,8 @@ TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel y"), std::string::npos);
 }
 
-// The body lies still at the end, and the axis goes on to read its rail: no body rests that turns so.
+// The body is at rest at the end, but the axis continues to read its saturation limit. A body at rest does not rotate
+// at this rate.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
     std::vector<ImuSample> samples = clipped_samples(moving_body());
@@ -100,7 +102,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
     ASSERT_NE(at_rail, samples.end());
     for (auto sample = at_rail; sample != samples.end(); ++sample) sample->angular_velocity_rad_s.z() = kGyroRail_rad_s;
     EXPECT_NE(watch_axes(samples, params).first.find("gyro z"), std::string::npos);
-    // and so from the beginning
+    // the axis reads this value from the start
     for (ImuSample& sample : samples) sample.angular_velocity_rad_s.z() = -kGyroRail_rad_s;
     EXPECT_NE(watch_axes(samples, params).first.find("gyro z"), std::string::npos);
   }
@@ -109,14 +111,15 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel x"), std::string::npos);
 }
 
-// A pendulum never lies still: what its axis goes on to read is its rail, and no swing lasts so long.
+// A pendulum never rests. An axis that continues to read one value reads its saturation limit, but no swing lasts this
+// long.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
   const auto swinging = [](double railed_s, double reading = kGyroRail_rad_s) {
     std::mt19937 random(2);
     std::normal_distribution<double> noise;
     std::vector<ImuSample> out;
     for (int k = 1; k <= 3000; ++k) {
-      const double t = k * kSampling_s, read_t = kSampling_s * (k - k % 3);  // read every third time
+      const double t = k * kSampling_s, read_t = kSampling_s * (k - k % 3);  // one new reading per three samples
       ImuSample sample;
       sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
       sample.angular_velocity_rad_s = {2.0 * std::sin(4.0 * read_t), std::cos(3.0 * read_t), 6.0 * std::sin(2.0 * t)};
@@ -135,7 +138,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
       << "beside axes that are held";
 }
 
-// The element meets its rail and is flagged, while what is read out stays at another value.
+// The element is at its saturation limit and flagged, while the output remains at another value.
 TEST(FrozenAxes, AFlagMakesNoRailOfAReadingThatIsFarFromIt) {
   std::vector<ImuSample> samples = clipped_samples(moving_body());
   for (std::size_t k = 205; k < samples.size(); ++k) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A gyro that is slower than its log: its readings are means over its own period, and old when they are said.
+// Tests a gyro that is slower than the log. A reading is the mean over the gyro's own period, and its time stamp is
+// late.
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
 #include <gtest/gtest.h>
@@ -19,13 +20,13 @@ using Eigen::Vector3d;
 
 constexpr double kPeriod_s = 0.01;
 
-/// Rates with a bend of `jerk` that never changes, read every `period` samples of the log, the mean over that time;
-/// each reading is taken half a sample before the log says it first.
+/// Returns rates with a constant angular jerk. The gyro has a reading per `period` samples of the log, the mean over
+/// this time. The reading ends half a sample before its first time stamp.
 struct Bent {
   double jerk_rad_s3 = 40.0;
 
   double rate(double s) const { return 1.0 + 2.0 * s + 0.5 * jerk_rad_s3 * s * s; }
-  /// Over a window that ends at `end_s`.
+  /// Mean over a window that ends at `end_s`.
   double mean(double end_s, double window_s) const {
     return rate(end_s - 0.5 * window_s) + jerk_rad_s3 * window_s * window_s / 24.0;
   }
@@ -45,8 +46,8 @@ struct Bent {
   }
 };
 
-// What is asked for is the mean over the sample's own window. A cubic has the parabola exactly but for what the mean
-// over the longer window adds to it, which is stated as a deviation.
+// The result is the mean over the sample's own window. A cubic interpolates the parabola exactly, except for the effect
+// of the longer window, which the stated deviation covers.
 TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
   const Bent motion;
   for (const std::size_t period : {2u, 3u, 4u}) {
@@ -59,7 +60,7 @@ TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
       const double truth = motion.mean(kPeriod_s * static_cast<double>(k), kPeriod_s);
       EXPECT_NEAR(found->rate_rad_s.x() - truth, hidden, 1e-9) << k;
       EXPECT_GT(found->variance_rad2_s2.x(), hidden * hidden);
-      // the reading itself is as late as its window is
+      // the reading alone is late by its window
       EXPECT_GT(std::abs(window[k].observation.sample.angular_velocity_rad_s.x() - truth), 4.0 * hidden) << k;
     }
   }
@@ -68,16 +69,17 @@ TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
 TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   const Bent motion;
   std::vector<RateStreamKnot> window = motion.window(24, 3);
-  EXPECT_FALSE(rate_between_readings(window, 23, kPeriod_s).has_value());  // the next one has not come
+  EXPECT_FALSE(rate_between_readings(window, 23, kPeriod_s).has_value());  // the next reading is missing
   EXPECT_TRUE(rate_between_readings(window, 10, kPeriod_s).has_value());
   for (std::size_t k = 12; k < 15; ++k) window[k].observation.clipping.gyro = 2;
-  EXPECT_FALSE(rate_between_readings(window, 10, kPeriod_s).has_value());  // 12 is the first at or after it
+  // sample 12 is the first at or after this time
+  EXPECT_FALSE(rate_between_readings(window, 10, kPeriod_s).has_value());
   for (RateStreamKnot& knot : window) knot.repeats = false, knot.repeated = {};
-  EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has its own
+  EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has a reading
 }
 
-// Forces along a line come back at the middle of the sample's own window, but for what the search leaves of the clock;
-// as said they are later by the reading's age and by its longer window.
+// Forces that grow linearly are moved to the middle of the sample's own window, within the error of the estimated
+// clock. The raw forces are later by the reading's age and the longer window.
 TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   constexpr std::size_t kEach = 4;
   constexpr double kSlope_m_s3 = 10.0;
@@ -87,10 +89,10 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
     samples[k].angular_velocity_rad_s = Vector3d(1.0 + 1e-3 * static_cast<double>(k), 0.0, 0.0);
     samples[k].specific_force_m_s2 = Vector3d(kSlope_m_s3 * kPeriod_s * (static_cast<double>(k) - 0.5), 0.0, 1.0);
   }
-  EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has its own
+  EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has a reading
   all = samples;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    // taken half a sample before it is said; the middle of a window of half the period
+    // half a sample before its stamp, plus the middle of a window of half the period
     const double taken = static_cast<double>(k - k % kEach) - 0.5, middle = taken - 0.25 * kEach;
     samples[k].specific_force_m_s2.x() = kSlope_m_s3 * kPeriod_s * middle;
   }
@@ -103,7 +105,7 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   }
 }
 
-/// A tumble of 100 Hz whose gyro gives the mean over each `window` thousandths of a second.
+/// A tumble of 100 Hz whose gyro readings are means over `window` milliseconds.
 TumbleRecording slow_gyro(std::uint64_t seed, std::size_t window) {
   constexpr std::size_t kFine = 10;
   TumbleOptions options;
@@ -131,7 +133,7 @@ TumbleRecording slow_gyro(std::uint64_t seed, std::size_t window) {
   return out;
 }
 
-/// How late the rates of samples without a clipped axis are: least squares over the true acceleration.
+/// Returns the delay of the rates at samples without a clipped axis, by least squares on the true acceleration.
 double late_s(const TumbleRecording& recording, const std::vector<RateState>& rates) {
   double product = 0.0, square = 0.0;
   for (std::size_t k = 1; k + 1 < rates.size(); ++k) {
@@ -143,9 +145,9 @@ double late_s(const TumbleRecording& recording, const std::vector<RateState>& ra
   return product / square;
 }
 
-// Means over tumbles: what is open of the gyro's clock makes one late or early by as much where an impact outweighs all
-// others. Measured 11.1 ms as read, 0.9 of the batch, 2.1 live: until it has seen 30 samples in motion a stream does
-// not know that readings repeat, and the push lies there.
+// Means over several tumbles, because a residual clock error makes single tumbles early or late if one impact
+// dominates. Measured: 11.1 ms for raw readings, 0.9 ms for the batch, 2.1 ms live. A stream detects repeated readings
+// only after 30 samples in motion, which contain the push.
 TEST(HeldRates, BatchAndStreamAreInTime) {
   double read = 0.0, batch = 0.0, live = 0.0;
   constexpr double kTumbles = 8.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readings that are free, but whose windows may have met the rail.
+// Tests readings below the saturation limit whose windows may have been partly clipped.
 #include "estimator/src/angular_velocity/near_rails.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kRail_rad_s = 7.3, kWindow_s = 0.01, kTolerance_rad_s = 0.01;
 
-// The rail of element x, seen on both sides; the row leans on z.
+// The saturation plane of element x, seen on both sides; its row has a z component.
 RailPlanes planes(double slope = -0.02) {
   RailPlane plane;
   plane.row = Vector3d(1.0, 0.0, slope);
@@ -29,10 +29,11 @@ RailPlanes planes(double slope = -0.02) {
 
 struct Twirl {
   std::vector<ImuSample> samples;
-  std::vector<double> expected_deficit_rad_s;  // what the window of each lost
+  std::vector<double> expected_deficit_rad_s;  // saturation deficit of each window
 };
 
-// Means over windows of a rate about x that swings with `amplitude` at so many Hz; each `times` said.
+// Means over windows of a rate about x that oscillates with `amplitude` and this frequency in Hz; each mean repeats
+// `times` times.
 Twirl twirl(double amplitude_rad_s, double hz, int times = 1) {
   constexpr int kParts = 200;
   constexpr double kTwoPi = 6.283185307179586;
@@ -54,7 +55,7 @@ Twirl twirl(double amplitude_rad_s, double hz, int times = 1) {
   return out;
 }
 
-// A window that met the rail in a part lost something and reads short of it: each of them is told, and few besides.
+// Windows that were partly clipped read too little. The function finds all of them, and few other windows.
 TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
   for (const double hz : {0.7, 1.3, 2.9, 5.3}) {
     for (const int times : {1, 2}) {
@@ -72,20 +73,20 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
       }
       EXPECT_GT(in_part, 0u) << hz;
       EXPECT_EQ(told, in_part) << hz;
-      // two at most on either side of a segment, of which there are two in each swing
+      // at most two windows on either side of a segment; each swing has two segments
       EXPECT_LE(besides, static_cast<std::size_t>(4.0 * times * (2.0 * hz * 4.0 + 1.0))) << hz;
     }
   }
 }
 
-// What turns about well below the rail, or slowly close to it, was measured.
+// A rate well below the limit, or slow near the limit, counts as measured.
 TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
   const auto none = [](const std::vector<std::uint8_t>& near) {
     return std::all_of(near.begin(), near.end(), [](std::uint8_t bits) { return bits == 0; });
   };
   EXPECT_TRUE(none(may_meet_rails(twirl(0.96 * kRail_rad_s, 2.9).samples, planes())));
   EXPECT_TRUE(none(may_meet_rails(twirl(0.98 * kRail_rad_s, 0.2).samples, planes())));
-  // control: fast, and as high
+  // control: a fast rate of the same size
   EXPECT_FALSE(none(may_meet_rails(twirl(0.98 * kRail_rad_s, 2.9).samples, planes())));
 }
 
@@ -104,7 +105,7 @@ TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
   EXPECT_GT(positive, 0);
 }
 
-// The distance is that to the plane, not to an upright rail: motion beside moves it.
+// The distance to the tilted plane counts, not to an upright rail, so rates about other axes change it.
 TEST(NearRails, TheRailIsThePlane) {
   std::vector<ImuSample> samples(3);
   for (std::size_t k = 0; k < samples.size(); ++k)

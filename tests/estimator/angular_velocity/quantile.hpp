@@ -10,7 +10,7 @@
 
 namespace tumble::testing {
 
-/// The value below which `share` of them lie.
+/// Returns the value below which `share` of the values lie.
 inline double quantile(std::vector<double> values, double share) {
   EXPECT_FALSE(values.empty());
   if (values.empty()) return std::numeric_limits<double>::infinity();

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// x swings slowly beyond the rail, y stays inside, z is still; noise of an MTi-30
+// x oscillates slowly beyond the saturation limit, y remains below it, z is still; noise of an MTi-30
 std::vector<ImuSample> swinging_run(double amplitude, double rail) {
   oracles::Gaussian noise(5);
   std::vector<ImuSample> run(600);
@@ -67,7 +67,7 @@ TEST(RailDetector, NoisyPeaksAreNoPlateau) {
   for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(state, c).has_value()) << c;
 }
 
-// of the swing with the noise and the digits of a device
+// readings of the oscillation with noise and quantisation of a device
 std::optional<double> rail_of(double amplitude, double rail, double noise_rad_s, double digit_rad_s) {
   oracles::Gaussian noise(7);
   const RailDetector rails({});
@@ -92,7 +92,7 @@ TEST(RailDetector, FindsAPlateauAtAnyLevel) {
   }
 }
 
-// the tops of slow swings are flat in coarse digits, and an axis that stands still is flat all along
+// coarse quantisation makes the tops of slow oscillations flat, and an axis at rest is always flat
 TEST(RailDetector, WhatIsFlatByNatureIsNoPlateau) {
   for (const double amplitude : {0.03, 0.1, 0.5, 0.95}) {
     for (const double digit : {0.0, 1e-3, 5e-3}) {
@@ -110,14 +110,14 @@ TEST(RailDetector, WhatIsFlatByNatureIsNoPlateau) {
 }
 
 TEST(RailDetector, ThePlateauOverrulesTheStatedRange) {
-  for (double stated : {7.854, 12.0}) {  // below what was read, and above the plateau
+  for (double stated : {7.854, 12.0}) {  // below the largest reading, and above the plateau
     const RailDetector rails({.stated_gyro_rad_s = stated});
     RailDetector::State state;
     const std::vector<ImuSample> run = swinging_run(15.0, 10.5);
     classify(rails, run, state);
     EXPECT_EQ(rails.rail(state, 0).value_or(0.0), 10.5);
     EXPECT_TRUE(rails.disagrees(state, 0));
-    EXPECT_EQ(rails.rail(state, 2).value_or(0.0), 10.5);  // the still axis goes by its sibling
+    EXPECT_EQ(rails.rail(state, 2).value_or(0.0), 10.5);  // the axis at rest uses the limit of the other axis
     EXPECT_FALSE(rails.disagrees(state, 2));
   }
   const RailDetector right({.stated_gyro_rad_s = 10.5});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one judgement of rails: accelerometers with tilted elements, other IMUs on the body, families that keep upright
-// rails.
+// Tests the common classification of saturation: accelerometers with tilted elements, additional IMUs on the body, and
+// estimators that assume upright rails.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -28,15 +28,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kRail_m_s2 = 19.6;  // 2 g, as the pendulum of RepoIMU has: the turning alone passes it
+constexpr double kRail_m_s2 = 19.6;  // 2 g, as on RepoIMU's pendulum: the centripetal force alone exceeds it
 
 struct Tumble {
   TumbleRecording recording;
-  std::vector<Vector3d> hidden_m_s2;  // what each element of the accelerometer lost, signed
+  std::vector<Vector3d> hidden_m_s2;  // saturation deficit of each accelerometer element, signed
   Matrix3d rows;
 };
 
-// A tumble whose accelerometer clips along tilted elements.
+// A tumble with an accelerometer that clips along tilted elements.
 Tumble railed_tumble(std::uint64_t seed, double tilt, double rail_m_s2 = kRail_m_s2) {
   TumbleOptions options;
   options.seed = seed;
@@ -88,14 +88,14 @@ TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
     }
   }
   ASSERT_GT(seen.deep, 300);
-  // measured: 0.864; elements that clip together leave a slope untold, and the plane misses readings elsewhere
+  // measured: 0.864; elements that clip together do not determine a slope, and the plane misses readings elsewhere
   EXPECT_GE(seen.found, 0.85 * seen.deep);
   EXPECT_GE(all.right, 0.98 * all.called);
-  // measured: 0.744; the others lie on elements and signs that met their rail in a few samples of impacts
+  // measured: 0.744; the others are at elements and signs that clip in only a few samples of impacts
   EXPECT_GE(all.found, 0.7 * all.deep);
 }
 
-// Negative control: what never met a rail has none, rest and gravity included.
+// Negative control: without clipping, no saturation limit is found, even with rest and gravity.
 TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.02, 1e4);
@@ -105,8 +105,8 @@ TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
   }
 }
 
-/// A wand that is swung to and fro about x, beyond its rail: an element without a tilt, whose offset the device takes
-/// off behind it, so that the rails of the two signs differ.
+/// A wand that swings about x beyond its saturation limit. The element is not tilted. The device subtracts its offset
+/// after clipping, so the limits of the two signs differ.
 std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) {
   constexpr double kSwungRail_rad_s = 7.44;
   oracles::Gaussian noise(5);
@@ -186,10 +186,10 @@ ErrorsAtRails errors_with(Params params, double distance_min) {
 
 TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
   ErrorsAtRails ours = errors_with(with_lever_arm<RateSmoother::Params>(), 15.0);
-  // negative control: the same smoother that knows no planes believes forces that are none
+  // negative control: the same smoother without planes accepts wrong forces
   ErrorsAtRails blind = errors_with(with_lever_arm<RateSmoother::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
-  // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, within 0.990 and 0.938
+  // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, share within three deviations 0.990 and 0.938
   EXPECT_LT(ours.mean(), 0.6 * blind.mean());
   EXPECT_LT(ours.quantile(0.9), 0.3 * blind.quantile(0.9));
   EXPECT_GT(ours.within, 0.97 * ours.axes);
@@ -210,7 +210,8 @@ TumbleRecording tilted_gyro() {
   return make_tumble(options);
 }
 
-// What an auxiliary IMU with tilted elements says of free ones is true while another clips; axis by axis it is not.
+// While one element of an auxiliary IMU with tilted elements clips, the other elements are correct, but the output axes
+// are not.
 TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found found = ClippingFinder({}).find(tumble.samples);
@@ -237,7 +238,7 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code, ErrorCode::too_few);
 }
 
-// Published with the upright rail of each axis, judged by planes on demand.
+// The published method, with upright rails or with planes.
 TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
   std::vector<RateState> upright, planes;
@@ -253,17 +254,17 @@ TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
     by_planes.add(tumble.hidden[k], planes[k].clipped_axes);
   }
   ASSERT_GT(by_planes.deep, 20);
-  EXPECT_LT(by_rails.found, 0.3 * by_rails.deep);  // measured: 0.22, readings that happen to repeat the largest
+  EXPECT_LT(by_rails.found, 0.3 * by_rails.deep);  // measured: 0.22; repeated readings happen to be the largest
   EXPECT_GT(by_planes.found, 0.95 * by_planes.deep);
 }
 
-// The first readings, at rest as a rule, tell the noise however much is forgotten after them.
+// The noise is estimated from the first readings, usually at rest, even if many readings are discarded later.
 TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   for (const int readings_max : {64, 1024}) {
     const StreamingClippingFinder watch({.clipping = {}, .readings_max = readings_max});
     StreamingClippingFinder::State state = watch.start();
     const auto reading = [](int k) {
-      // a slow wobble near one level: none of it is dull
+      // a slow oscillation near one level: no reading is at a limit
       return Vector3d(9.0 + 0.3 * std::sin(0.7 * k) + 1e-6 * k, 0.1 * std::cos(0.3 * k), 1e-3 * k);
     };
     constexpr int kSamples = 3000;
@@ -284,8 +285,8 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   }
 }
 
-// What stands before a segment at a rail, and met the rail in a part of its window, is told by the sample after it.
-// With the rails learnt the stream judges as the batch does.
+// A reading before a segment at the limit whose window was partly clipped is detected at the next sample. With known
+// limits, stream and batch agree.
 TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found batch = ClippingFinder({}).find(tumble.samples);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rails of real gyros (RepoIMU) and none where a real gyro does not clip (BROAD): the published files where they are at
-// hand, their stand-ins everywhere.
+// Tests the saturation limits of real gyros (RepoIMU), and that a gyro without clipping has none (BROAD). Uses the
+// published files if they are available, and always synthetic stand-ins.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@
 namespace tumble {
 namespace {
 
-// Columns separated by ';': time, four of a quaternion, specific force, rate, field; two lines of headings.
+// Columns separated by ';': time, quaternion, specific force, rate, magnetic field; two header lines.
 std::vector<ImuSample> read_repoimu(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::vector<ImuSample> out;
@@ -46,8 +46,8 @@ struct Known {
   test::DataFolder folder;
   const char* file;
   int axis;
-  double distance, offset, first_slope, second_slope;  // along (axis + 1) % 3 and (axis + 2) % 3
-  int samples;                                         // at the rail, counted by hand
+  double distance, offset, first_slope, second_slope;  // slopes along (axis + 1) % 3 and (axis + 2) % 3
+  int samples;                                         // samples at the limit, counted by hand
 };
 
 class RealRails : public ::testing::TestWithParam<Known> {};
@@ -60,10 +60,10 @@ TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
   for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(planes.element[j].has_value(), j == axis) << j;
   ASSERT_TRUE(planes.element[axis].has_value());
   const RailPlane& rail = *planes.element[axis];
-  // 0.3 %: how far the fits by hand, which took windows that met the rail in a part for clipped, are below
+  // 0.3 %: the manual fits are below by this much, because they include partly clipped windows
   EXPECT_NEAR(rail.distance_rad_s, GetParam().distance, 0.003 * GetParam().distance);
   EXPECT_NEAR(rail.offset_rad_s, GetParam().offset, 0.01);
-  // as much as such fits differ from one recording of a device to the next
+  // such fits differ by this much between recordings of one device
   EXPECT_NEAR(rail.row[(GetParam().axis + 1) % 3], GetParam().first_slope, 0.008);
   EXPECT_NEAR(rail.row[(GetParam().axis + 2) % 3], GetParam().second_slope, 0.008);
   int clipped = 0;

@@ -26,13 +26,13 @@ std::vector<ImuSample> samples_of(const std::vector<Vector3d>& rates) {
   return out;
 }
 
-// A rate of several sines, `scale` its size; smooth, as a hand moves it.
+// A smooth rate, like a hand's motion: a sum of sines with amplitude `scale`.
 Vector3d waving(double t, double scale) {
   return scale * Vector3d(std::sin(3.1 * t) + 0.4 * std::sin(11.3 * t + 1.0), 0.7 * std::sin(4.3 * t + 0.5),
                           0.6 * std::sin(2.3 * t) + 0.3 * std::sin(7.9 * t));
 }
 
-// What a device with elements along `rows` and `offset` makes of rates: clipped at `rail`.
+// Returns the readings of a device with elements along `rows`, `offset` and saturation limit `rail`.
 std::vector<Vector3d> clipped_along(const std::vector<Vector3d>& rates, const Eigen::Matrix3d& rows,
                                     const Vector3d& offset, double rail) {
   std::vector<Vector3d> out;
@@ -54,7 +54,7 @@ RailPlanes find(const std::vector<Vector3d>& rates) {
   return RailPlaneFinder({}).find(samples_of(rates));
 }
 
-// How many samples at a rail were found, of how many, and how many of those called are none.
+// Counts samples at a limit, those that were found, and false detections.
 struct Score {
   int deep = 0, found = 0, wrong = 0;
   void add(const std::vector<ImuSample>& samples, const std::vector<Vector3d>& hidden) {
@@ -79,7 +79,7 @@ TEST(RailPlanes, ThePlaneOfAKnownDeviceComesBack) {
   for (int j = 0; j < 3; ++j) {
     ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
     const RailPlane& rail = *planes.element[static_cast<std::size_t>(j)];
-    // the element's offset comes off after the clip, so the planes stand at +-7.3 less the offset
+    // the device subtracts the offset after clipping, so the planes are at +-7.3 minus the offset
     EXPECT_NEAR((rail.row - rows.row(j).transpose()).norm(), 0.0, 1e-3) << j;
     EXPECT_NEAR(rail.distance_rad_s, 7.3, 2e-3) << j;
     EXPECT_NEAR(rail.offset_rad_s, -offset[j], 2e-3) << j;
@@ -112,7 +112,8 @@ TEST(RailPlanes, NothingIsFoundWhereNothingClips) {
   }
 }
 
-// What misled first tries. A spin is a constant rate that begins and ends with an impact; a top turns around slowly.
+// Motions that could mislead the fit: a spin has a constant rate between two impacts; the rate of a top reverses
+// slowly.
 TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     oracles::Gaussian noise(seed);
@@ -121,7 +122,7 @@ TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
     for (int k = 0; k < 1000; ++k) {
       const double t = 0.01 * k;
       const Vector3d error = 0.005 * noise.vector();
-      // torque-free, wobbling by a little about its axis
+      // torque-free, with a small wobble about its axis
       const Vector3d flight(0.3 * std::cos(5.0 * t), 0.3 * std::sin(5.0 * t), rate);
       spin.push_back((k < 300 || k > 380 ? Vector3d(0.2 * std::sin(3.0 * t), 0.3, 0.1) : flight) + error);
       top.push_back(Vector3d(std::sin(t), std::cos(2.0 * t), 8.0 - curve * std::pow(std::fmod(t, 1.0) - 0.5, 2)) +
@@ -149,7 +150,7 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
     ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
     EXPECT_NEAR((planes.element[static_cast<std::size_t>(j)]->row - rows.row(j).transpose()).norm(), 0.0, 3e-3) << j;
   }
-  // negative control: the same, never clipped
+  // negative control: the same motion without clipping
   std::vector<Vector3d> free;
   const std::vector<Vector3d> smooth = waved(18.0, 20.0, 0.004, 5);
   for (std::size_t k = 0; k < smooth.size(); ++k) {
@@ -158,8 +159,8 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   EXPECT_FALSE(find(free).any());
 }
 
-// A stated range speaks against a rail far below it, but a range may have been set otherwise: many segments outweigh
-// it.
+// A stated range is evidence against a limit far below it. However, the range may be set to another value, so many
+// segments outweigh the stated range.
 TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
   const Eigen::Matrix3d rows = drawn_rows(1, 0.03);
   const std::vector<ImuSample> many =

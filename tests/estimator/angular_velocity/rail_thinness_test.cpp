@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNoise = 1e-3, kLevel = 8.7;
 
-// A spin that swells to 8.7 rad/s on y, stays there for 40 samples and ebbs away, while the other axes turn gently:
-// `scatter` of the readings at the top.
+// A spin that grows to 8.7 rad/s on y, remains there for 40 samples and decays, while the other axes rotate slowly.
+// `scatter` is the scatter of the readings at the top.
 std::vector<ImuSample> one_segment(double scatter) {
   oracles::Gaussian noise(5);
   std::vector<ImuSample> out(200);
@@ -29,7 +29,8 @@ std::vector<ImuSample> one_segment(double scatter) {
   return out;
 }
 
-// Noise belongs to a rate: a single segment that has none is a rail, the same with noise may be a spin.
+// A measured rate has noise. A single segment without noise is therefore a saturation limit, but with noise it may be a
+// spin.
 TEST(RailThinness, OneSegmentIsEnoughWhereItHasNoNoise) {
   const RailPlaneFinder finder{{}};
   const RailPlanes rail = finder.find(one_segment(1e-4)), spin = finder.find(one_segment(kNoise));
@@ -41,7 +42,7 @@ TEST(RailThinness, OneSegmentIsEnoughWhereItHasNoNoise) {
   EXPECT_LT(of_spin, rail.element[1]->log_odds - 10.0);
 }
 
-// A reading said twice has the neighbours of the first time.
+// A repeated reading has the neighbours of its first occurrence.
 TEST(OtherReadings, StepOverRepeats) {
   std::vector<ImuSample> samples(5);
   const double rates[] = {1.0, 2.0, 2.0, 3.0, 3.0};

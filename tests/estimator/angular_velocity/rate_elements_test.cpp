@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The smoother on gyros whose elements clip along their own axes, without flags and without a stated range.
+// Tests the smoother with gyros whose elements clip along their own axes, without flags and without a stated range.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -40,12 +40,12 @@ TEST(RateElements, ATiltedRailIsReadAsWellAsAnUprightOne) {
   EXPECT_LT(quantile(tilted.ours, 0.5), 1.3 * quantile(upright.ours, 0.5));
   EXPECT_LT(quantile(steep.ours, 0.5), 1.5 * quantile(upright.ours, 0.5));
   EXPECT_LT(quantile(tilted.ours, 0.99), 1.3 * quantile(upright.ours, 0.99));
-  // what the elements that clip hide on the axes beside them is given back: 2 % of several rad/s, uncorrected
+  // a clipped element distorts the other axes: 2 % of several rad/s without correction
   EXPECT_LT(quantile(tilted.free_axes, 0.5), 0.02);
 }
 
 TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
-  // measured at 5 %: 0.983; what is missing lies in impacts, and in a few samples of elements whose rail nobody saw
+  // measured at 5 %: 0.983; the rest is in impacts, and in a few samples of elements with an unknown limit
   for (const double tilt : {0.02, 0.05}) {
     const double share = smoothed(tilt).share_within();
     EXPECT_GT(share, 0.98) << tilt;
@@ -53,7 +53,7 @@ TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
   }
 }
 
-// Negative control: the same smoother without the planes and sure of upright rails believes the readings.
+// Negative control: the same smoother with certain upright rails and without planes accepts the readings.
 TEST(RateElements, WithoutPlanesItWouldBeSilentlyWrong) {
   auto params = with_lever_arm<RateSmoother::Params>();
   params.expert.planes.distance_min_rad_s = 1000.0;
@@ -90,7 +90,8 @@ TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   EXPECT_TRUE(report.clips_after_compensation);
 }
 
-// A rate about y that rises and falls along straight lines and is cut at a level; another element's rail is known.
+// A rate about y that increases and decreases linearly and is clipped at a level; the limit of another element is
+// known.
 std::vector<RateObservation> cut_tops(double level_rad_s, double up_rad_s, double down_rad_s, int sign) {
   std::vector<RateObservation> out(60);
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -111,7 +112,7 @@ RailPlanes plane_of_x(double distance_rad_s) {
   return out;
 }
 
-// The top of straight lines has hidden 2 rad/s; half a step at either end is what whole samples leave open.
+// The triangle exceeds the limit by 2 rad/s. Whole samples leave an uncertainty of half a step at both ends.
 TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
@@ -121,7 +122,7 @@ TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
       EXPECT_EQ(tops[30].suspect, 2u);
       EXPECT_EQ(tops[5].suspect, 0u);
       EXPECT_EQ(tops[30].expected_deficit_sigma_rad_s.x(), 0.0);
-      // neither clipped nor measured, as the stream has it
+      // neither clipped nor measured, as in the stream
       EXPECT_EQ(rate_source(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::bounded_only);
       EXPECT_EQ(rate_source(tops[5], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::measured);
     }
@@ -136,7 +137,7 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
   EXPECT_TRUE(suspect(plane_of_x(8.7), top));
   EXPECT_FALSE(suspect({}, top));
-  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a rail 6 % away is another's
+  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a limit that differs by 6 % belongs to another element
   RailPlanes own = plane_of_x(8.7);
   own.element[1] = own.element[0];
   EXPECT_FALSE(suspect(own, top));
@@ -145,16 +146,17 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   EXPECT_FALSE(suspect(plane_of_x(8.7), flagged));
 }
 
-// A rail of 0.06 of tilt lies no lower than 9.5 - 0.06 * 2 where 9.5 was read beside 2; a reading of 8.5 beside 0.5 is
-// at most at one of 8.53.
+// A reading of 9.5 beside a rate of 2 bounds a limit with tilt 0.06: it is at least 9.5 - 0.06 * 2. A reading of 8.5
+// beside 0.5 is at most at a limit of 8.53.
 TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
   MinSaturationLevels least;
   least.add({2.0, 9.5, 0.0});
   EXPECT_TRUE(least.rules_out({0.5, 8.5, 0.0}, 1));
   EXPECT_FALSE(least.rules_out({0.5, 9.4, 0.0}, 1));
-  EXPECT_FALSE(least.rules_out({13.0, 8.5, 0.0}, 1));  // a tilt makes more of so much motion beside
-  EXPECT_FALSE(least.rules_out({0.5, -8.5, 0.0}, 1));  // nothing was read on that side
-  EXPECT_FALSE(least.rules_out({8.5, 0.5, 0.0}, 0));   // nor of that element
+  // the tilt changes the limit more for large rates about other axes
+  EXPECT_FALSE(least.rules_out({13.0, 8.5, 0.0}, 1));
+  EXPECT_FALSE(least.rules_out({0.5, -8.5, 0.0}, 1));  // there are no readings of this sign
+  EXPECT_FALSE(least.rules_out({8.5, 0.5, 0.0}, 0));   // there are no readings of this element
 
   for (const bool beyond : {false, true}) {
     std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);

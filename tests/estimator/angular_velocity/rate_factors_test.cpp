@@ -54,7 +54,7 @@ Derivative numeric(const Factor& factor, const Point& p) {
   return d;
 }
 
-// The checker of the tests below: largest difference relative to the largest entry.
+// Checker of the tests below: returns the largest difference relative to the largest entry.
 double disagreement(const Derivative& a, const Derivative& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
@@ -73,7 +73,7 @@ TEST(RateFactors, DerivativesAreThoseOfTheResiduals) {
   for (const Factor& factor : factors()) {
     for (int i = 0; i < 20; ++i) {
       const Point p = random_point(noise);
-      // the residuals are quadratic at most in each unknown: central differences are exact but for rounding, 1e-9
+      // residuals are at most quadratic in each unknown, so central differences are exact up to rounding, 1e-9
       EXPECT_LT(disagreement(analytic(factor, p), numeric(factor, p)), 1e-7);
     }
   }
@@ -86,7 +86,7 @@ TEST(RateFactors, TheCheckerSeesAWrongSignInAnyNonZeroEntry) {
     const Derivative right = analytic(factor, p), reference = numeric(factor, p);
     int checked = 0;
     for (Eigen::Index i = 0; i < right.size(); ++i) {
-      // entries below a thousandth of the largest hardly matter to the solution
+      // entries below a thousandth of the largest entry hardly affect the solution
       if (std::abs(right.reshaped()[i]) < 1e-3 * reference.cwiseAbs().maxCoeff()) continue;
       Derivative wrong = right;
       wrong.reshaped()[i] *= -1.0;
@@ -114,12 +114,12 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
     EXPECT_LT(gyro_factor(knot, rig, gyro).residual.norm(), 1e-12);
     EXPECT_LT(flight_factor(knot, rig, accel).residual.norm(), 1e-12);
     EXPECT_LT(euler_factor(knot, rig).residual.norm(), 1e-10);
-    EXPECT_GT(euler_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would turn otherwise
+    EXPECT_GT(euler_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would rotate differently
   }
 }
 
-// What lever and inertia leave of a gyro's scale in flight: rate_smoother.md (R46), (R47). Nothing of a spin about a
-// principal axis.
+// Lever arm and inertia leave a part of a gyro scale error unobservable in flight: rate_smoother.md (R46), (R47). The
+// whole scale error is unobservable for a spin about a principal axis.
 TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
   constexpr double k = 0.01;
   const Vector3d moments(2.0, 2.4, 3.0);
@@ -140,7 +140,7 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
       if (start.x() == 0.0) {
         EXPECT_LT(of_force.norm() + of_torque.norm(), 1e-9);
       } else {
-        // without the other lever and inertia it would show plainly
+        // with fixed lever arm and inertia, the scale error would be clearly observable
         EXPECT_GT(flight_factor(scaled, rig, body.specific_force(t, rig.lever_arm_m)).residual.norm(),
                   3.0 * of_force.norm());
       }
@@ -158,7 +158,7 @@ TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   EXPECT_EQ(RigConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
 }
 
-// Torque-free rotation by some time, fourth order in small steps.
+// Torque-free rotation over some time, of fourth order in small steps.
 RateKnot turned(RateKnot knot, const RigConstants& rig, double time_s) {
   const Eigen::Matrix3d J = rig.inertia_matrix();
   const auto slope = [&](const Vector3d& w) -> Vector3d { return -J.inverse() * w.cross(Vector3d(J * w)); };
@@ -186,7 +186,8 @@ TEST(LateFlight, DerivativesAreThoseOfTheResidual) {
     const Factor factor = [&](const RateKnot& k, const RigConstants& r) {
       return delayed_flight_factor(k, r, kReading, delay_s, nullptr);
     };
-    // a polynomial of low degree in all but the inertia: differences err by the step's square
+    // a polynomial of low degree in all unknowns except the inertia, so the error of differences is quadratic in the
+    // step
     EXPECT_LT(disagreement(analytic(factor, p), numeric(factor, p)), 1e-5);
     Vector3d jacobian_delay;
     (void)delayed_flight_factor(p.knot, p.rig, kReading, delay_s, &jacobian_delay);
@@ -213,12 +214,12 @@ TEST(LateFlight, IsTheFlightOfTheEarlierInstant) {
                         flight_factor(p.knot, p.rig, kReading).residual)
                            .norm();
     EXPECT_LT(off(0.002), 0.1 * now);
-    // what is left is of second order: the change of the angular jerk
+    // the remainder is of second order: the change of the angular jerk
     EXPECT_NEAR(off(0.001) / off(0.0005), 4.0, 0.5);
   }
 }
 
-// weighing and moving a sample are about one residual
+// weighting and shifting a sample affect one residual
 TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
   oracles::Gaussian noise(13);
   for (const double delay_s : {0.0, 5e-4, 3e-3}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bad and odd input of the batch smoother: a status, or a finite and bounded answer.
+// Invalid and unusual input of the batch smoother must give a status, or a finite and bounded answer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ std::vector<RateState> sound_rates(const std::vector<ImuSample>& samples, RateRe
     EXPECT_LT(state.w_WI_I_rad_s.norm(), 100.0);
     EXPECT_TRUE(state.covariance_rad2_s2.allFinite());
     EXPECT_GT(state.covariance_rad2_s2.diagonal().minCoeff(), 0.0);
-    EXPECT_LT(state.covariance_rad2_s2.diagonal().maxCoeff(), 2500.1);  // the bound on rates, squared
+    EXPECT_LT(state.covariance_rad2_s2.diagonal().maxCoeff(), 2500.1);  // square of the bound on rates
   }
   return out;
 }
@@ -82,7 +82,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
     samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
     const bool clipped = k >= 100 && k < 500;
     samples[k].angular_velocity_rad_s = clipped ? Vector3d(10.5, -10.5, 10.5) : Vector3d(1.0, -1.0, 1.0);
-    samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // outwards: no rotation makes that
+    samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // the force points outwards, which no rotation causes
   }
   RateReport report;
   const std::vector<RateState> out = sound_rates(samples, report);
@@ -90,7 +90,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
   EXPECT_GT(report.bounded_only, 300u);
   EXPECT_GT(out[300].w_WI_I_rad_s.x(), 10.3);
   EXPECT_LT(out[300].w_WI_I_rad_s.y(), -10.3);
-  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far from the softness of the bound
+  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far larger than the softness of the bound
 }
 
 TEST(RateSmootherInput, ADeadAxis) {
@@ -108,7 +108,7 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
   TumbleRecording tumble = make_tumble(options);
   std::size_t flips = 0;
   for (std::size_t k = 1; k < tumble.samples.size(); ++k) {
-    // every third reading at the rail after another one overflows
+    // every third reading at the limit overflows after another reading
     Vector3d& reading = tumble.samples[k].angular_velocity_rad_s;
     for (int j = 0; j < 3; ++j) {
       const double before = tumble.samples[k - 1].angular_velocity_rad_s[j];
@@ -130,7 +130,7 @@ TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrongAndWhenForcesLookLikeG) {
   options.seed = 13;
   TumbleRecording tumble = make_tumble(options);
   auto params = with_lever_arm<RateSmoother::Params>();
-  params.rails.stated_gyro_rad_s = 7.854;  // the data sheet of a device that clips at 10.5
+  params.rails.stated_gyro_rad_s = 7.854;  // stated range of a device that clips at 10.5
   std::vector<RateState> out;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(tumble.samples, out, report).ok());

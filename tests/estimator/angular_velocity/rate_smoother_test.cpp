@@ -86,7 +86,7 @@ TEST(RateSmoother, CoverageInFlight) {
     options.mounting_seed = seed;
     options.roll = false;
     RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.02, seed);
-    params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = 0.0;  // nor has the sensor any
+    params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = 0.0;  // the sensor has none either
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
       const Vector3d error = run.states[k].w_WI_I_rad_s - run.recording.truth[k];
@@ -101,13 +101,13 @@ TEST(RateSmoother, CoverageInFlight) {
   }
   ASSERT_GT(inside, 1500u);
   ASSERT_GT(inside_impact, 50u);
-  // 99.73 % are expected; neighbouring samples err together, so the count is worth about a tenth of its size
+  // 99.73 % are expected; errors of neighbouring samples are correlated, so the effective sample size is about a tenth
   EXPECT_GT(static_cast<double>(inside) / static_cast<double>(inside + outside), 0.99);
-  // measured 0.05: the model grants a real device a drifting clock, drag, a joint that gives; nothing of it is drawn
-  // here
+  // measured 0.05: the model allows for clock drift, drag and flexible joints of a real device, which the simulation
+  // does not contain
   EXPECT_GT(normalised / static_cast<double>(inside + outside), 0.02);
   EXPECT_LT(normalised / static_cast<double>(inside + outside), 1.5);
-  // no torque or force of an impact is modelled: 95 % of the axes measured
+  // the model contains no torque or force of an impact: 95 % of the axes measured
   EXPECT_GT(static_cast<double>(inside_impact) / static_cast<double>(inside_impact + outside_impact), 0.9);
 }
 
@@ -116,8 +116,8 @@ struct Consistency {
   double normalised = 0.0;  // mean squared error over reported variance
 };
 
-// Of clipped axes in flight, sensors with matrices of scale and misalignment of `sigma` an entry, the smoother told
-// `stated`.
+// Statistics of clipped axes in flight. The sensors have random matrices of scale and misalignment with deviation
+// `sigma` per entry, and the smoother assumes `stated`.
 Consistency consistency_with_matrices(double sigma, double stated) {
   std::size_t inside = 0, all = 0;
   double normalised = 0.0;
@@ -126,7 +126,7 @@ Consistency consistency_with_matrices(double sigma, double stated) {
     TumbleOptions options;
     options.seed = options.mounting_seed = seed;
     options.roll = false;
-    options.flights = 2;  // many are a calibration of their own
+    options.flights = 2;  // many flights calibrate the gyro
     for (double& entry : options.gyro_error.reshaped()) entry = sigma * noise();
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
     RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.01, seed);
@@ -153,11 +153,11 @@ TEST(RateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
   constexpr double kSigma = 3e-3;
   const Consistency honest = consistency_with_matrices(kSigma, kSigma);
   EXPECT_GT(honest.coverage, 0.99);
-  // the same sensors taken for perfect ones, or for much worse ones: the check sees it
+  // the check detects the same sensors if they are assumed to be perfect, or much worse
   const Consistency perfect = consistency_with_matrices(kSigma, 0.0),
                     rough = consistency_with_matrices(kSigma, 10.0 * kSigma);
   EXPECT_LT(perfect.coverage, 0.95);
-  // twenty draws of matrices: 1, but for what each run learns of its own; measured 0.62, 4.1, 0.01
+  // twenty random matrices: 1, less what each run calibrates; measured 0.62, 4.1, 0.01
   EXPECT_GT(honest.normalised, 0.4);
   EXPECT_LT(honest.normalised, 1.5);
   EXPECT_GT(perfect.normalised, 1.5);
@@ -177,11 +177,12 @@ TEST(RateSmoother, ARunWithoutClippingReturnsTheGyro) {
     EXPECT_EQ(run.states[k].source, RateSource::measured);
   }
   EXPECT_EQ(run.report.clipped, 0u);
-  EXPECT_LT(ours, 1.02 * gyro);  // as good as the gyro or better
+  EXPECT_LT(ours, 1.02 * gyro);  // at least as good as the gyro
 }
 
 TEST(RateSmoother, IsEquivariantToARotatedMounting) {
-  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitZ()).toRotationMatrix();  // rails stay on axes
+  // saturation limits remain on the axes
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitZ()).toRotationMatrix();
   TumbleOptions options;
   options.seed = 3;
   TumbleRecording turned = make_tumble(options);
@@ -199,7 +200,7 @@ TEST(RateSmoother, IsEquivariantToARotatedMounting) {
   ASSERT_TRUE(RateSmoother(params).estimate(turned.samples, states, report).ok());
   std::size_t same = 0;
   for (std::size_t k = 0; k < states.size(); ++k) {
-    // the start goes by the published method, which treats the axes in order: only its solution is compared
+    // the start uses the published method, which depends on the order of the axes, so only its solution is compared
     same += (states[k].w_WI_I_rad_s - R * run.states[k].w_WI_I_rad_s).norm() < 1e-3;
   }
   EXPECT_GT(static_cast<double>(same), 0.97 * static_cast<double>(states.size()));

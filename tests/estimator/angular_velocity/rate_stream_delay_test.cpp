@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stream whose accelerometer speaks later than its gyro: the delay told by strokes against closed forms and against
-// the batch, taken, carried on, and not found where there is none.
+// Tests a stream whose accelerometer is later than its gyro. The delay is estimated from impacts (strokes), compared
+// with closed forms and the batch, stored, continued, and not found without a delay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,14 +22,15 @@ using Eigen::Vector3d;
 
 constexpr double kStrokePeriod_s = 0.01;
 
-// Struck every tenth interval, the accelerometer `late` eighths of a sample behind: turns that go with the force.
+// A body that is struck at every tenth interval. The accelerometer is late by `late` eighths of a sample, and the
+// rotation follows the force.
 ImpactSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0) {
   ImpactSums out;
   for (int k = 0; k < intervals; ++k) {
     ImpactSums::DelayGrid force;
     const auto at = [&](double eighth) {
       const double since = std::fmod(8.0 * k + eighth + 800.0, 80.0);
-      const double phase = std::min(since, 80.0 - since) / 8.0;  // samples from the nearest stroke
+      const double phase = std::min(since, 80.0 - since) / 8.0;  // samples since the nearest stroke
       return between_m_s2 + 100.0 * std::exp(-0.5 * phase * phase);
     };
     for (int i = 0; i < ImpactSums::kDelayCount; ++i) force[i] = at(i - ImpactSums::kDelayMax - late);
@@ -38,7 +39,7 @@ ImpactSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0
   return out;
 }
 
-// The accelerometer says what it said `samples` before, or, of a negative number, what it will say; from `from` on.
+// Delays the accelerometer by `samples` samples, starting at `from`; a negative number makes it early.
 void delay_force(int samples, std::size_t from, TumbleRecording& recording) {
   const std::vector<ImuSample> in_time = recording.samples;
   const auto size = static_cast<std::ptrdiff_t>(in_time.size());
@@ -53,7 +54,7 @@ TumbleRecording long_late_tumble(std::uint64_t seed, int late) {
   TumbleOptions options;
   options.seed = options.mounting_seed = seed;
   options.flights = 30;
-  options.speed_low_rad_s = 3.0;  // strokes that the gyro reads
+  options.speed_low_rad_s = 3.0;  // strokes that the gyro can measure
   options.speed_high_rad_s = 14.0;
   TumbleRecording out = make_tumble(options);
   delay_force(late, 0, out);
@@ -80,14 +81,14 @@ TEST(ImpactSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
   EXPECT_EQ(struck_every_tenth(8, 200, 10.0).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
       << "never without a force";
   EXPECT_EQ(struck_every_tenth(36, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
-  // what is forgotten counts for less of each, and for the same delay
+  // old strokes have a lower weight, but give the same delay
   ImpactSums half = struck_every_tenth(8, 200);
   half.decay(0.5);
   EXPECT_NEAR(half.intervals, 100.0, 1e-12);
   EXPECT_NEAR(half.estimate_delay(kStrokePeriod_s, kStrokePeriod_s).delay_s, kStrokePeriod_s, 1e-9);
 }
 
-// Two Gaussians and their shares, by hand.
+// Two Gaussians and their weights, computed by hand.
 TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
   const SensorErrorPriors sizes;
   const double sigma_s = 1.5e-3;
@@ -103,7 +104,7 @@ TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
   EXPECT_LT(DeviceUncertainty(sizes, 0.3).data_sheet_odds(6e-3, sigma_s), 0.05);
 }
 
-// One number alone: of what readings say three hundredths are believed, and strokes are entered to be believed in full.
+// Scalar case: readings count with a factor of 0.03, and strokes are entered so that they count fully.
 TEST(RateStreamDelay, AFurtherDelayIsTheWeightedMean) {
   SensorErrorEvidence told;
   const double of_readings_s = 2e-4, of_strokes_s = 1.5e-3, reach_s = 0.04;
@@ -140,7 +141,7 @@ TEST(RateStreamDelay, IsThatOfTheBatch) {
   EXPECT_GE(found, 4);
 }
 
-// Negative controls: in time, and of a device whose sheet is believed.
+// Negative controls: an accelerometer without delay, and a device whose data sheet is assumed exact.
 TEST(RateStreamDelay, IsNotFoundWhereThereIsNone) {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
     const RateStream method(looking()), believes(looking(false));
@@ -157,7 +158,7 @@ TEST(RateStreamDelay, IsNotFoundWhereThereIsNone) {
   }
 }
 
-// A clock that is none: late, and early from the middle on. At the end it is held for what it was last, or for none.
+// An inconsistent clock: late, and early after the middle. At the end, the estimate is the last delay or none.
 TEST(RateStreamDelay, OneThatChangesItsSignIsFollowedOrDropped) {
   int dropped = 0;
   for (const std::uint64_t seed : {2u, 3u, 5u}) {
@@ -179,7 +180,7 @@ TEST(RateStreamDelay, OneThatChangesItsSignIsFollowedOrDropped) {
   EXPECT_GE(dropped, 2);
 }
 
-// After it was found, in the next run from its start: errors as of an accelerometer in time.
+// If the delay was found, the next run starts with it. Its errors are those of an accelerometer without delay.
 TEST(RateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
   double unknown = 0.0, carried = 0.0, in_time = 0.0;
   std::size_t inside = 0, all = 0, found = 0;
@@ -217,7 +218,7 @@ TEST(RateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
   EXPECT_GE(static_cast<double>(inside), 0.97 * static_cast<double>(all));
 }
 
-// Split about the sample at which it is found, and long after; a state that differs in it differs.
+// The run is split at the sample where the delay is found, and much later; states with different delays are not equal.
 TEST(RateStreamDelay, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = long_late_tumble(3, 1).samples;
   const RateStream method(looking());
@@ -256,8 +257,8 @@ TEST(RateStreamDelay, SplittingAnywhereChangesNothing) {
   EXPECT_STREQ(method.check_state(other).field, "delay.in_use_s");
 }
 
-// A delay that is stated is where readings are taken from the start on: forces stand beside the rates of their
-// instants, in the newest sample too. A gyro that is late says the rate of a sample some time after.
+// With a stated delay, the stream shifts readings from the start. Forces then belong to the times of the rates, even in
+// the newest sample. If the gyro is late, the rate of a sample is available some time later.
 TEST(RateStreamDelay, AStatedOneIsTakenFromTheStart) {
   for (const int late : {2, -2}) {
     double stated = 0.0, ignored = 0.0;
@@ -265,7 +266,7 @@ TEST(RateStreamDelay, AStatedOneIsTakenFromTheStart) {
       TumbleRecording recording = long_late_tumble(seed, 0);
       if (late > 0) {
         delay_force(late, 0, recording);
-      } else {  // readings of the gyro come late
+      } else {  // readings of the gyro are late
         const std::vector<ImuSample> in_time = recording.samples;
         for (std::size_t k = 2; k < in_time.size(); ++k)
           recording.samples[k].angular_velocity_rad_s = in_time[k - 2].angular_velocity_rad_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stream on gyros whose elements clip along their own axes, without flags and without a stated range.
+// Tests the stream with gyros whose elements clip along their own axes, without flags and without a stated range.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
   ASSERT_GT(tilted.ours.size(), 800u);
   for (const Pool* pool : {&tilted, &steep}) {
     EXPECT_LT(quantile(pool->ours, 0.5), 0.05 * quantile(pool->raw, 0.5));
-    // measured up to 2.9 times: six constants more, to be told by the tumble that needs them
+    // measured up to 2.9 times: the tumble must determine six additional constants that it needs at the same time
     EXPECT_LT(quantile(pool->ours, 0.5), 3.3 * quantile(upright.ours, 0.5));
     EXPECT_GE(pool->found, 0.98 * pool->deep);
     EXPECT_GE(pool->right, 0.99 * pool->called);
@@ -49,7 +49,7 @@ TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
   }
 }
 
-// Negative control: with rails that are not looked for as planes the stream believes the readings.
+// Negative control: without a search for planes, the stream accepts the readings.
 TEST(RateStreamElements, WithoutPlanesItWouldBeSilentlyWrong) {
   auto params = with_lever_arm<RateStream::Params>();
   params.expert.planes.distance_min_rad_s = 1000.0;
@@ -63,7 +63,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
     for (std::uint64_t seed = 3; seed <= 4; ++seed) {
       const TumbleRecording tumble = tilted_tumble(seed, tilt);
       auto params = with_lever_arm<RateStream::Params>();
-      params.lag_s = 9.0;  // nothing leaves the window
+      params.lag_s = 9.0;  // so that all samples remain in the window
       params.expert.inflation.covariance = 0.0;
       const RateStream method(params);
       RateStream::State state = method.start();
@@ -84,7 +84,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
         apart.push_back((live[k].w_WI_I_rad_s - batch[k].w_WI_I_rad_s).cwiseQuotient(sigma).norm());
       }
       ASSERT_GT(apart.size(), 50u);
-      // edges of segments: what stands before one is judged anew with each rail that becomes known
+      // edges of segments: when a limit is found, the stream classifies the readings before the segment again
       EXPECT_LE(judged_apart, 5) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.5), 0.3) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.9), 1.5) << tilt << " " << seed;
@@ -133,7 +133,7 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
   }
 }
 
-/// A body that is swung to and fro about x, faster from 4 s on, its x element at a tilted rail of 7.4 rad/s then.
+/// A body that swings about x, faster after 4 s; its x element then clips at a tilted limit of 7.4 rad/s.
 struct Swing {
   std::vector<ImuSample> samples;
   std::vector<Vector3d> truth;
@@ -155,7 +155,7 @@ struct Swing {
   }
 };
 
-/// Of what was given out at the rail before it was known.
+/// Statistics of samples that the stream reported while the limit was unknown.
 struct Believed {
   int clipped = 0, within = 0, measured = 0;
 };
@@ -182,14 +182,15 @@ Believed believed(const RateStream::Params& params) {
   return out;
 }
 
-// A rail is seen some samples after it was first met, and the lag is over before: until then it is doubted.
+// A limit is detected some samples after the first clipping, when the lag is already over. Until then, readings are
+// suspect.
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
   params.calibrated_errors =
-      std::make_shared<KnownSensorErrors>();  // a device that is as on its sheet: its rail alone is in doubt
+      std::make_shared<KnownSensorErrors>();  // a device that agrees with its data sheet: only the limit is uncertain
   const Believed suspect = believed(params);
-  // negative control: axes that turn slower than this are believed
+  // negative control: the stream accepts axes that rotate slower than this
   params.expert.planes.distance_min_rad_s = 1000.0;
   const Believed trusted = believed(params);
   std::printf("of %d within %d, measured %d; believed: within %d, measured %d\n", suspect.clipped, suspect.within,
@@ -197,12 +198,12 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   ASSERT_GT(suspect.clipped, 12);
   EXPECT_EQ(suspect.measured, 0);
   EXPECT_GT(trusted.measured, 0.9 * trusted.clipped);
-  // not all of them: a stream that knows flight and contact alone is sure of more than it can know of a swing
+  // not all samples: a stream that only models flight and contact is overconfident for a swing
   EXPECT_GT(suspect.within, 0.4 * suspect.clipped);
   EXPECT_LT(trusted.within, 0.05 * trusted.clipped);
 }
 
-/// Of the samples at the rail once it is known: how many, and within three deviations.
+/// Number of samples at the limit after it is known, and share within three deviations.
 std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
   int clipped = 0, within = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -220,7 +221,7 @@ std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
   return {clipped, within};
 }
 
-// Nothing holds a swing to flight or to a push: what its slopes hide is open.
+// Neither flight nor a push constrains a swing, so the rate between the measured slopes is uncertain.
 TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
   auto params = with_lever_arm<RateStream::Params>();
   const auto [clipped, within] = within_at_known_rail(params);
@@ -233,19 +234,20 @@ TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
   EXPECT_LT(believed, 0.9 * clipped);
 }
 
-// With the rail of x known, y stays at about that height, is doubted, and then is read far beyond it within the lag.
+// The limit of x is known. y remains at a similar rate and is suspect, and then reads a much larger value within the
+// lag.
 TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed, 800).samples;
-    constexpr std::size_t kTop = 752;  // x passes zero at 7.54 s
+    constexpr std::size_t kTop = 752;  // x crosses zero at 7.54 s
     const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 7.2, 8.2, 9.0, 9.6, 9.6, 8.6, 7.0, 5.0, 3.0};
     for (std::size_t i = 0; i < std::size(steps); ++i) {
-      // equal readings would be a wall
+      // equal readings would indicate a limit
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
     auto params = with_lever_arm<RateStream::Params>();
     params.calibrated_errors =
-        std::make_shared<KnownSensorErrors>();  // as above: 200 rad/s^2 would show a gyro that may be 1 ms late
+        std::make_shared<KnownSensorErrors>();  // as above; 200 rad/s^2 would reveal that the gyro may be 1 ms late
     const RateStream method(params);
     RateStream::State state = method.start();
     std::optional<RateState> rate;
@@ -267,11 +269,11 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
   }
 }
 
-// Nothing refutes that one: all of it goes out as doubted, also what is left of the run when the rest has gone.
+// Nothing contradicts this limit, so all samples are reported as suspect, also the rest of the segment at the end.
 TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed).samples;
-    constexpr std::size_t kTop = 377;  // x passes zero at 3.77 s, before it has met its rail
+    constexpr std::size_t kTop = 377;  // x crosses zero at 3.77 s, before its first clipping
     const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 6.1, 5.0, 3.5, 2.0};
     for (std::size_t i = 0; i < std::size(steps); ++i) {
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
@@ -287,7 +289,7 @@ TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
   }
 }
 
-// Readings that only look like a rail: a torque-free spin, the round top of a slow turn, creeping at one rate.
+// Motions that resemble a limit: a torque-free spin, the flat top of a slow oscillation, and a nearly constant rate.
 TEST(RateStreamElements, SpinsAndTopsAreNoRails) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     oracles::Gaussian noise(seed);

@@ -14,11 +14,11 @@
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace {
-// allocations of this program, to show that push() makes none
+// counts allocations of this program, to test that push() makes none
 thread_local std::size_t allocations = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// not inlined, so that the compiler does not report a mismatched pair of new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* memory = std::malloc(size);
@@ -75,8 +75,8 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
     of_batch.push_back(clipped_errors(recording, rates_of(batch), 10.49).median);
     close += errors.median < 0.05 && errors.median < 0.02 * raw.median;
   }
-  // measured 0.008 to 0.02 rad/s, and 0.88 with seed 2: it spins about one axis for two seconds, and all that has
-  // passed until then fits a wrong lever arm as well; the batch looks ahead
+  // measured 0.008 to 0.02 rad/s, and 0.88 with seed 2: it spins about one axis for two seconds, and the past data also
+  // agree with a wrong lever arm; the batch uses later data
   EXPECT_GE(close, 5);
   EXPECT_LT(*std::max_element(of_batch.begin(), of_batch.end()), 0.05);
 }
@@ -111,7 +111,7 @@ TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
     rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
     return model.calibration_mahalanobis(rig);
   };
-  EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // sides 3 : 2 : 2
+  EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // ratio of sides 3 : 2 : 2
   EXPECT_GT(mahalanobis({1.0, 1.0, 2.0}), params.calibration_mahalanobis_max);
   EXPECT_NEAR(mahalanobis({0.0, 1.0, 1.0}), 3.65, 0.01);
 }
@@ -126,7 +126,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
     RateStream::State state = method.start();
     std::vector<RateState> got;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (k == split) state = RateStream::State(state);  // carried over as a copy, to another object
+      if (k == split) state = RateStream::State(state);  // continues with a copy in another object
       const RateStream second(wrong_lever(3));
       ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
       if (one) got.push_back(*one);
@@ -142,7 +142,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   RateStream::State other = whole;
   other.window[3].estimate.knot.rate_rad_s.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
-  // all that a later step reads of a sample counts
+  // all parts of a sample that later steps use are compared
   other = whole;
   other.window[3].observation.subsample_saturated ^= 1;
   EXPECT_FALSE(RateStream::equal(other, whole));
@@ -158,7 +158,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   EXPECT_FALSE(RateStream::equal(other, whole));
 }
 
-/// A step that fails says nothing of the newest sample: its deviation is that of any rate, not none at all.
+/// A failed step gives no information about the newest sample: its deviation is that of an unknown rate, not zero.
 TEST(RateStream, AFailedStepStatesNoCertainty) {
   const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
   const RateStream method(wrong_lever(3));
@@ -175,14 +175,15 @@ TEST(RateStream, AFailedStepStatesNoCertainty) {
   EXPECT_GT(newest->covariance_rad2_s2.diagonal().minCoeff(), 100.0);
 }
 
-// Samples that come faster than steps are made: all of them come out, once and in order, as good as with a step each.
+// Samples arrive faster than the stream makes steps. The stream reports each sample once and in order, as accurately as
+// with a step per sample.
 TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   TumbleOptions options = options_of(2);
   options.rate_hz = 1000;
   const TumbleRecording recording = make_tumble(options);
   RateStream::Params params = wrong_lever(2);
   params.period_s = 0.001;
-  params.lag_s = 0.05;  // short: a step with each sample costs the square of it
+  params.lag_s = 0.05;  // a short lag, because the time of a step per sample grows with its square
   const auto median_of = [&](const RateStream::Params& with) {
     const RateStream method(with);
     RateStream::State state = method.start();
@@ -198,7 +199,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   params.step_s = 0.0;
   EXPECT_LT(five_ms, 1.2 * median_of(params));
 
-  // and it can be split between two steps
+  // the run can be split between two steps
   params.step_s = 0.005;
   const RateStream method(params);
   RateStream::State whole = method.start(), split = method.start();
@@ -213,7 +214,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   EXPECT_FALSE(RateStream::equal(whole, split));
 }
 
-/// Share of the recovered rates whose clipped axes lie within three stated deviations.
+/// Returns the share of recovered rates whose clipped axes are within three stated deviations.
 double share_within(const TumbleRecording& recording, const std::vector<RateState>& rates) {
   double within = 0.0, recovered = 0.0;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -227,7 +228,8 @@ double share_within(const TumbleRecording& recording, const std::vector<RateStat
   return within / recovered;
 }
 
-// what is left of the rig's doubt counts by time: twenty times as many samples of a flight do not tell more of it
+// the remaining uncertainty of the rig depends on time: twenty times as many samples of a flight contain no more
+// information
 TEST(RateStream, AFasterGyroIsNotSurerOfTheRig) {
   TumbleOptions options = options_of(4);
   options.rate_hz = 2000;
@@ -240,7 +242,7 @@ TEST(RateStream, AFasterGyroIsNotSurerOfTheRig) {
   params.lag_s = 0.1;
   const RateStream method(params);
   RateStream::State state = method.start();
-  // measured 0.990, and 0.145 counted by samples; at 100 Hz 1.000
+  // measured 0.990, and 0.145 if it depended on samples; 1.000 at 100 Hz
   EXPECT_GT(share_within(recording, streamed_rates(method, recording.samples, state)), 0.95);
 }
 
@@ -260,7 +262,7 @@ TEST(RateStream, AllocatesNothingPerSample) {
   for (const ImuSample& sample : of_planes) ASSERT_TRUE(method.push(sample, other, one).ok());
   EXPECT_EQ(allocations, between);
   EXPECT_TRUE(other.rails.known.planes.any());
-  ::operator delete(::operator new(3));  // the counter does count; a compiler may leave out what `new` asks for
+  ::operator delete(::operator new(3));  // the counter works; a compiler may remove an unused `new`
   EXPECT_EQ(allocations, between + 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A log that is faster than its sensor, told as the samples come.
+// Detects, live, a log that is faster than its sensor.
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
 
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@ namespace {
 
 struct Watched {
   RepeatDetector::State state;
-  int wrong = 0;  ///< samples after the first 200 whose being new or repeated is not told
+  int wrong = 0;  ///< misclassified samples (new or repeated) after the first 200
   double least_age = 100.0, largest_age = 0.0;
 };
 
-/// Samples of a body that turns: the gyro reads every `period` of them, a quarter of one after the first. Its rate
-/// rises by 1e-4 rad/s a sample.
+/// Samples of a rotating body. The gyro has a reading per `period` samples, the first after a quarter of a period. Its
+/// rate increases by 1e-4 rad/s per sample.
 Watched detect_frozen_units(double period, double rate_rad_s, bool clipped = false) {
   Watched out;
   const RepeatDetector holds;
@@ -47,10 +47,10 @@ TEST(RepeatDetector, TellsPeriodAndRepeats) {
     ASSERT_TRUE(gyro.is_slower_than_log()) << period;
     EXPECT_NEAR(gyro.period_samples, period, 0.01 * period);
     EXPECT_EQ(found.wrong, 0) << period;
-    // what is taken for half a sample lies within one
+    // a delay that is detected as half a sample is below one sample
     EXPECT_GE(found.least_age, 0.0);
     EXPECT_LT(found.largest_age, 1.0);
-    // the accelerometer of the same log has a reading of its own in each sample
+    // the accelerometer of the same log has a new reading in each sample
     EXPECT_FALSE(found.state.of(Triad::accelerometer).is_slower_than_log());
   }
 }
@@ -63,14 +63,16 @@ TEST(RepeatDetector, WhatIsStaleIsTheSlopeTimesTheAge) {
   EXPECT_EQ(gyro.change_since_reading().x(), 0.0);
 }
 
-// Controls: new readings each time, a body that rests, a sensor that froze.
+// Controls: new readings in each sample, a body at rest, a frozen sensor.
 TEST(RepeatDetector, SaysNothingOfOthers) {
   EXPECT_FALSE(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).is_slower_than_log());
   EXPECT_EQ(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).change_since_reading(), Eigen::Vector3d::Zero());
   EXPECT_FALSE(detect_frozen_units(3.3, 0.0).state.of(Triad::gyro).is_slower_than_log());
   EXPECT_FALSE(detect_frozen_units(1e6, 1.0).state.of(Triad::gyro).is_slower_than_log());
-  EXPECT_FALSE(detect_frozen_units(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());  // at its rails on all
-                                                                                                 // axes it repeats too
+  // at its limits on all axes
+  EXPECT_FALSE(detect_frozen_units(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());
+  // the sensor also
+  // repeats readings
 }
 
 }  // namespace

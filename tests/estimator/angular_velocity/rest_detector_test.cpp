@@ -18,7 +18,7 @@ namespace {
 
 constexpr TimeNs kPeriodNs = 10'000'000;
 
-// standing, with a bias and the noise of an MTi-30 at 100 Hz
+// at rest, with the bias and noise of an MTi-30 at 100 Hz
 std::vector<ImuSample> standing(std::size_t count, std::uint64_t seed) {
   oracles::Gaussian noise(seed);
   std::vector<ImuSample> samples(count);
@@ -38,11 +38,11 @@ std::ptrdiff_t resting(const std::vector<ImuSample>& samples) {
 }
 
 TEST(RestDetector, FindsAStandstillFromItsFirstSample) {
-  // a reading leaves the spread of 0.03 at 5.8 deviations: once in 1e8 readings
+  // a reading exceeds the limit of 0.03 at 5.8 deviations: once in 1e8 readings
   EXPECT_EQ(resting(standing(200, 1)), 200);
 }
 
-// The noise of a reading grows with the rate of the samples: at 8 kHz it is 0.047 rad/s, beyond the spread of 0.03.
+// The noise of a reading grows with the sample rate: at 8 kHz it is 0.047 rad/s, above the limit of 0.03.
 TEST(RestDetector, AFastImuRestsToo) {
   for (const int rate_hz : {250, 1000, 2000, 8000}) {
     const double louder = std::sqrt(rate_hz / 100.0);
@@ -55,9 +55,9 @@ TEST(RestDetector, AFastImuRestsToo) {
             0.01 * (j - 1) + louder * (sample.angular_velocity_rad_s[j] - 0.01 * (j - 1));
       }
     }
-    // the first sample is a reading by itself, and as loud as one
+    // the first sample is a single reading with the noise of one
     EXPECT_GE(resting(samples), static_cast<std::ptrdiff_t>(samples.size()) - 1) << rate_hz;
-    // a slow turn is none, however fast it is sampled
+    // a slow rotation is not rest, at any sample rate
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const double t_s = seconds(samples[k].time_ns);
       samples[k].angular_velocity_rad_s.x() += 0.3 * t_s;
@@ -90,7 +90,7 @@ TEST(RestDetector, ARestEndsWithItsMotion) {
   EXPECT_EQ(resting(samples), 100);
 }
 
-// A bias is what the bound of the rate is about once it is known: the same turn is rest to one who knows it for a bias.
+// If the bias is known, the bound applies to the rate minus the bias: the same reading is then rest.
 TEST(RestDetector, AKnownBiasIsNoTurn) {
   const Eigen::Vector3d bias_rad_s(0.0, 0.0, 0.2);
   std::vector<ImuSample> samples = standing(100, 5);
@@ -103,12 +103,12 @@ TEST(RestDetector, AKnownBiasIsNoTurn) {
   }
   EXPECT_TRUE(known.rests);
   EXPECT_FALSE(unknown.rests);
-  // a hundred readings of noise 0.0052: five deviations
+  // noise of a mean over a hundred readings, 0.0052 each: five deviations
   EXPECT_LT((known.mean_rate_rad_s() - bias_rad_s - Eigen::Vector3d(-0.01, 0.0, 0.01)).cwiseAbs().maxCoeff(), 0.0026);
 }
 
-// A run that remembers all of a drift ends again and again; one that forgets sooner than the bias leaves its spread
-// goes on, and its mean is that of the bias now.
+// If rest detection remembers the whole drift, it ends repeatedly. If it forgets before the bias leaves its limit, rest
+// continues, and the mean is the present bias.
 TEST(RestDetector, AMeanThatForgetsFollowsABiasThatDrifts) {
   constexpr double kDrift_rad_s2 = 0.002;
   constexpr int kCount = 3000;
@@ -124,11 +124,11 @@ TEST(RestDetector, AMeanThatForgetsFollowsABiasThatDrifts) {
   };
   EXPECT_EQ(drifting(1.0).first_ns, 0);
   EXPECT_GT(drifting(600.0).first_ns, 0);
-  // lags by the memory, 0.002 rad/s; noise of a hundred readings
+  // the lag of the memory, 0.002 rad/s; noise of a hundred readings
   EXPECT_NEAR(drifting(1.0).mean_rate_rad_s().y(), -0.03 + kDrift_rad_s2 * 29.0, 0.0026);
 }
 
-// Means over spans that somebody else has taken are readings by themselves, and their length counts.
+// Means over spans count as single readings, weighted by their length.
 TEST(RestDetector, TakesMeans) {
   constexpr TimeNs kNode_ns = 20'000'000;
   const RestDetector detector({.rest_s = 0.4, .reading_s = 1.0});
@@ -153,7 +153,7 @@ TEST(RestDetector, ForceBeyondGravityIsNoRest) {
     return std::count(found.begin(), found.end(), true);
   };
   EXPECT_EQ(rests(10.3), 100);
-  for (ImuSample& sample : samples) sample.specific_force_m_s2.z() += 0.6;  // a steady push
+  for (ImuSample& sample : samples) sample.specific_force_m_s2.z() += 0.6;  // a constant acceleration
   EXPECT_EQ(rests(10.3), 0);
 }
 
@@ -170,7 +170,7 @@ TEST(RateSmoother, StandstillTellsTheBias) {
   std::vector<RateState> out;
   RateReport report;
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(standing(300, 5), out, report).ok());
-  // 300 samples of noise 0.0052 and of tremble 0.01: a deviation of 0.0007, and 0.4 % of the way to the prior
+  // 300 samples with noise 0.0052 and oscillation 0.01: a deviation of 0.0007, and 0.4 % of the distance to the prior
   for (int j = 0; j < 3; ++j) EXPECT_NEAR(report.calibration.constants.gyro_bias_rad_s[j], 0.01 * (j - 1), 0.002) << j;
 }
 

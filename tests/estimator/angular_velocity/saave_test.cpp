@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The published figures and the published edge cases.
+// Tests the published numbers and the published edge cases.
 #include "tumble/angular_velocity/saave.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr TimeNs kPeriod = 10'000'000;
 constexpr double kRail = 10.5;
 const Vector3d kLever = {-0.022, -0.085, 0.055};
 
-// the plateau of the published device, a hair above the threshold given to the method
+// plateau of the published device, slightly above the threshold of the method
 Saave::Params params_below_rail() {
   Saave::Params params;
   params.lever_arm_m = kLever;
@@ -36,7 +36,7 @@ ImuSample sample_at(std::size_t k, const Vector3d& rate, const Vector3d& force) 
   return {static_cast<TimeNs>(k) * kPeriod, rate, force, 0};
 }
 
-// One accepted unclipped sample that sets the axis, then `second`.
+// One accepted unclipped sample, which determines the axis, then `second`.
 Saave::Recovered after_axis(const Vector3d& first_rate, const ImuSample& second, const Saave::Params& params) {
   const Saave saave(params);
   Saave::State state;
@@ -64,7 +64,7 @@ TEST(Saave, LeverArmPerAxis) {
 
 TEST(Saave, TakesTheSignOfTheReadingAndSubtractsTheOtherAxes) {
   const Vector3d w(2.0, -15.0, 1.0);
-  // axis known exactly, constant rate: the estimate is exact
+  // with a known axis and a constant rate, the estimate is exact
   const Saave::Recovered out =
       after_axis(w / 3.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
   EXPECT_LE((out.rate_rad_s - w).norm(), 1e-12);
@@ -107,7 +107,7 @@ TEST(Saave, TheThresholdIsStrictSoARailExactlyOnItIsNeverSeen) {
   EXPECT_NEAR(after_axis(5.0 * Vector3d::UnitX(), at_rail, params_below_rail()).rate_rad_s.x(), 15.0, 1e-12);
 }
 
-// Edge cases of the published code, kept as they are.
+// Edge cases of the published code, reproduced unchanged.
 
 TEST(SaaveEdge, TheIMUOnTheAxisIsRejectedAndNearItUnguarded) {
   Saave::Params params = params_below_rail();
@@ -128,7 +128,7 @@ TEST(SaaveEdge, OnlyTheFirstOfSeveralClippedAxesIsTreated) {
   EXPECT_EQ(out.rate_rad_s.y(), kRail);
   EXPECT_EQ(out.rate_rad_s.z(), kRail);
   EXPECT_EQ(out.variance_rad2_s2, Vector3d(0.2741, 2.741e-5, 2.741e-5));
-  // the clipped others are subtracted as if true: too large by exactly what they hide
+  // the other clipped axes are subtracted as if they were true, so the result is too large by exactly their deficits
   EXPECT_NEAR(out.rate_rad_s.x(), std::sqrt(w.squaredNorm() - 2.0 * kRail * kRail), 1e-12);
 }
 
@@ -142,11 +142,11 @@ TEST(SaaveEdge, ClippedAccelerometersAreBelieved) {
 }
 
 TEST(SaaveEdge, ContactIsBelieved) {
-  // resting contact: 1 g along the lever adds g / (2 r w), 3.2 rad/s
+  // resting contact: 1 g along the lever arm adds g / (2 r w), 3.2 rad/s
   const Vector3d w = 15.0 * Vector3d::UnitX(), to_axis = Vector3d(-0.022, 0, 0) - kLever;
   const Vector3d force = w.cross(w.cross(kLever)) + 9.81 * to_axis.normalized();
   const Saave::Recovered out = after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
-  EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // the figure is to first order, exact 2.94
+  EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // first-order value; the exact value is 2.94
 }
 
 TEST(SaaveEdge, DeviceFlagsAreNotUsed) {
@@ -173,7 +173,7 @@ TEST(SaaveEdge, TheVarianceOfAnEstimateDependsOnNothing) {
 }
 
 TEST(SaaveEdge, SmoothedRatesMayFallBelowTheRail) {
-  // all clipped samples are rejected: the curve between the unclipped ones is free to sag under the rail
+  // all clipped samples are rejected, so the curve between the unclipped samples may be below the limit
   std::vector<ImuSample> run;
   for (std::size_t k = 0; k < 60; ++k) {
     const bool clip = k >= 25 && k < 35;
@@ -193,7 +193,7 @@ TEST(SaaveEdge, StandstillDoesNotPoisonTheAxis) {
   EXPECT_EQ(state.axis, Vector3d::UnitZ());
 }
 
-// Torque-free bodies with the noise of the MTi-30, as in the stated study.
+// Torque-free bodies with the noise of the MTi-30, as in the cited study.
 
 struct TumbleErrors {
   double raw_median, median, maximum;
@@ -208,7 +208,7 @@ TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Sa
   std::vector<Vector3d> truth;
   for (std::size_t k = 0; k < 500; ++k) {
     const double t = static_cast<double>(k) * seconds(kPeriod);
-    // spin up over the first half second: from rest the axis is learnt while nothing is clipped
+    // the body spins up in the first half second, so that the axis is estimated before the gyro clips
     const double ramp = std::min(1.0, t / 0.5);
     const Vector3d w = ramp * motion.rate(t), gyro_noise = noise.vector(), accel_noise = noise.vector();
     truth.push_back(w);
@@ -284,7 +284,7 @@ TEST(SaaveAccuracy, ACentimetreOfLeverArmErrorAlongTheLever) {
   ASSERT_GT(e.clipped, 400u);
   const double exact = 15.0 * (1.0 - std::sqrt(kLever.norm() / (kLever.norm() + 0.01)));
   EXPECT_NEAR(e.median, exact, 1e-6);
-  EXPECT_NEAR(e.median, 0.64, 0.064);  // the stated figure, for a rate "about" 15 rad/s
+  EXPECT_NEAR(e.median, 0.64, 0.064);  // stated value, for a rate of "about" 15 rad/s
 }
 
 TEST(SaaveAccuracy, UnclippedRunsComeBackUnchanged) {

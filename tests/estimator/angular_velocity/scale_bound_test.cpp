@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run can tell of a gyro's scale, and that the smoother claims and reaches no more and no less.
+// Tests how well a run can determine the scale of a gyro, and that the smoother states and reaches exactly this
+// accuracy.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -18,11 +19,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 struct ScaleInformation {
-  double of_model = 0.0;  ///< with all else at its optimum
+  double of_model = 0.0;  ///< with all other unknowns at their optimum
   double at_most = 0.0;   ///< rate_smoother.md (R48)
 };
 
-// Of a scale that all axes of the gyro share, from an unclipped tumble of a body of these moments.
+// Accuracy of a common scale of all gyro axes, from an unclipped tumble of a body with these moments of inertia.
 ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) {
   TumbleOptions options;
   options.seed = options.mounting_seed = seed;
@@ -54,7 +55,7 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
     const double force2 = p.expert.flight.sigma_m_s2 * p.expert.flight.sigma_m_s2 + noise * noise + share * share;
     const double torque2 = std::pow(p.expert.flight.euler_sigma_rad_s2, 2) +
                            std::pow(p.expert.contact.twist_share * p.expert.contact.lever_rad_m * force, 2);
-    // contact says nothing of the shape, which then does not follow
+    // contact gives no information about the inertia, so the flights are then not used
     const Vector3d torque = estimates[k].flight_weight < 0.05
                                 ? Vector3d(J * a + 2.0 * knot.rate_rad_s.cross(Vector3d(J * knot.rate_rad_s)))
                                 : Vector3d(J * a - a);
@@ -73,17 +74,17 @@ TEST(ScaleBound, ARunTellsNoMoreOfAScaleThanItsAcceleration) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const ScaleInformation tumbling = scale_information(seed, {1.0, 1.15, 1.3});
     EXPECT_LT(tumbling.of_model, tumbling.at_most) << seed;
-    // no better than what is assumed of a device that nobody has calibrated, 1 %; measured: 0.85, 1.8, 0.97 %
+    // not better than the assumed scale error of an uncalibrated device, 1 %; measured: 0.85, 1.8, 0.97 %
     EXPECT_GT(1.0 / std::sqrt(tumbling.of_model), 0.5 * SensorErrorPriors{}.gyro_uncalibrated) << seed;
-    // a sphere turns at a constant rate whatever it is: its flights tell nothing
+    // a sphere always rotates at a constant rate, so its flights give no information
     const ScaleInformation sphere = scale_information(seed, {1.0, 1.0, 1.0});
     EXPECT_LT(sphere.of_model, sphere.at_most) << seed;
     EXPECT_LT(sphere.at_most, 0.1 * tumbling.at_most) << seed;
   }
 }
 
-// Of a device whose size of scale errors is stated as it is, the error is what the bound leaves of it: the covariance
-// is that of parameters of this size, less what of (R48) is believed.
+// If the stated size of scale errors is correct, the error agrees with the bound: the covariance is that of parameters
+// of this size, reduced by the share of (R48) that the smoother uses.
 TEST(ScaleBound, TheErrorIsThatOfTheBound) {
   double squares = 0.0, variances = 0.0, without = 0.0;
   for (const std::uint64_t seed : {2u, 3u, 5u, 6u}) {
@@ -110,7 +111,7 @@ TEST(ScaleBound, TheErrorIsThatOfTheBound) {
   }
   EXPECT_LT(squares, 1.5 * variances);
   EXPECT_GT(squares, 0.1 * variances);
-  EXPECT_GT(squares, 4.0 * without);  // what a scale leaves is no small thing
+  EXPECT_GT(squares, 4.0 * without);  // a scale error has a noticeable effect
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A tumble whose accelerometer says what it said `samples` before.
+// A tumble whose accelerometer is late by `samples` samples.
 TumbleRecording late_tumble(std::uint64_t seed, std::size_t samples) {
   TumbleOptions options;
   options.seed = options.mounting_seed = seed;
@@ -59,7 +59,7 @@ TEST(SensorErrors, ComeBackFromTheirVector) {
   EXPECT_EQ(errors.accel_delay_s, v[SensorErrors::kDelay]);
 }
 
-// What any motion explains counts by time, whatever the number of samples; all else stays: (R39).
+// Errors that any motion could explain count by time, independent of the number of samples: (R39).
 TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
   oracles::Gaussian noise(2);
   SensorErrors::Matrix root;
@@ -121,7 +121,7 @@ TEST(SensorErrors, ADelayThatIsPlainIsFoundAndAnotherIsNotMadeUp) {
   EXPECT_LT(std::abs(alike.known.errors.accel_delay_s), 5e-5);
 }
 
-// What add_errors() says each error does to the gradient, against the gradient of a model that holds the error.
+// Compares the gradients of add_errors() with the gradient of a model that contains the errors.
 TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   oracles::Gaussian noise(3);
   RateObservation o;
@@ -162,7 +162,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   }
 }
 
-// What was learnt comes back as it was, from a device as open as the one it was learnt of and without other readings.
+// A stored calibration is unchanged if it is used for a device with the same uncertainty and without new readings.
 TEST(SensorErrors, WhatWasLearntComesBack) {
   SensorErrorPriors open;
   open.gyro = open.accel = open.gyro_uncalibrated;
@@ -184,7 +184,7 @@ TEST(SensorErrors, WhatWasLearntComesBack) {
                                      (back.known.covariance - learnt.covariance) *
                                      deviation.cwiseInverse().asDiagonal();
   EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6);
-  // what is as open as before tells nothing
+  // a calibration as uncertain as the prior has no information
   const KnownSensorErrors nothing = fit_sensor_errors({}, open).known;
   EXPECT_LT(calibration_evidence(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
 }
@@ -207,7 +207,7 @@ TEST(TriadDelay, IsGuessedWhereThereIsOne) {
       EXPECT_TRUE(near || late > 0) << seed;
     }
   }
-  // measured 14: of two recordings (seeds 2 and 4) it finds neither delay
+  // measured 14: two recordings (seeds 2 and 4) determine neither delay
   EXPECT_GE(right, 14u);
 }
 
@@ -217,11 +217,12 @@ TEST(TriadDelay, IsNilWithoutMotion) {
   EXPECT_EQ(guess_triad_delay({}, {}, Vector3d::Zero()).delay_s, 0.0);
 }
 
-// An accelerometer 10 ms late: as good as in time, and honest; taken for in time it is neither.
+// If an accelerometer is 10 ms late and the smoother estimates this, accuracy and consistency are as without delay. If
+// the delay is ignored, both are worse.
 TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
   Coverage found, taken, in_time;
   double late_sum = 0.0, clean_sum = 0.0, taken_sum = 0.0;
-  for (const std::uint64_t seed : {2u, 3u, 5u, 6u, 7u}) {  // 1, 4 and 8 are taken for no flight at all, see below
+  for (const std::uint64_t seed : {2u, 3u, 5u, 6u, 7u}) {  // seeds 1, 4 and 8 are classified as contact, see below
     const TumbleRecording late = late_tumble(seed, 1), clean = late_tumble(seed, 0);
     std::vector<RateState> states;
     RateReport report;
@@ -250,8 +251,8 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
   EXPECT_LT(taken.share(), 0.9);
 }
 
-// Where the delay is not found (too few strokes to tell it) its flight passes for contact of another rig and the
-// constants are held: then it is said.
+// If there are too few strokes to find the delay, the flight is classified as contact of another rig, and the constants
+// are not updated. The smoother then reports this.
 TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
   for (const std::uint64_t seed : {1u, 4u, 8u}) {
     const TumbleRecording late = late_tumble(seed, 1);
@@ -264,7 +265,7 @@ TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
   }
 }
 
-// An error that a caller knows is assumed about: the readings are corrected for it, and it is not estimated away.
+// A sensor error that the caller states is corrected in the readings and not estimated.
 TEST(RateSmootherDevices, GivenErrorsAreKept) {
   TumbleRecording recording = late_tumble(3, 0);
   auto params = with_lever_arm<RateSmoother::Params>();
@@ -290,8 +291,8 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
   EXPECT_LT(given_sum, 0.5 * without_sum);
 }
 
-// A delay that is stated is where others are looked for: 30 ms are not doubted because devices of which nothing is
-// stated have less.
+// A search for delays starts from the stated delay. 30 ms is then accepted, although devices without a stated delay
+// have less.
 TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   const TumbleRecording late = late_tumble(3, 3);
   auto params = with_lever_arm<RateSmoother::Params>();
@@ -308,8 +309,8 @@ TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   EXPECT_GT(report.synchronous_probability, 0.5);
 }
 
-// What a run has learnt of a late accelerometer, the next begins with: it finds in its first descent what a fresh one
-// finds in its second or third, and knows it better.
+// The next run starts with the estimated delay of the accelerometer. It finds the delay in its first optimisation
+// instead of the second or third, and with a smaller deviation.
 TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 1);
   std::vector<RateState> states;
@@ -323,12 +324,12 @@ TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   EXPECT_LE(informed.error_rounds, fresh.error_rounds);
   constexpr int i = SensorErrors::kDelay;
   EXPECT_LT(informed.sensor_errors.covariance(i, i), fresh.sensor_errors.covariance(i, i));
-  // it stays a device that is not what its sheet says
+  // the device still differs from its data sheet
   EXPECT_LT(informed.synchronous_probability, 0.05);
   EXPECT_GT(informed.common_delay_sigma_s, 0.0);
 }
 
-// Negative control: what was learnt of a late device does not make another one late.
+// Negative control: the calibration of a late device does not make another device late.
 TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 0);
   std::vector<RateState> states;
@@ -343,7 +344,7 @@ TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
   EXPECT_GT(coverage.share(), 0.97);
 }
 
-// Readings of a triad that has a rate of its own.
+// Readings of a triad with a different sample rate.
 std::vector<double> hold(std::vector<ImuSample>& samples, double period_s, double phase_s) {
   const std::vector<ImuSample> exact = samples;
   std::vector<double> ages(samples.size(), 0.0);

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// All that the stream says of the samples, what its end leaves included.
+/// Returns all results of the stream for these samples, including the results at its end.
 inline std::vector<RateState> streamed_rates(const RateStream& method, const std::vector<ImuSample>& samples,
                                              RateStream::State& state) {
   std::vector<RateState> out;

@@ -19,10 +19,11 @@ using Eigen::Vector3d;
 
 constexpr double kStep_s = 5e-4;
 constexpr double kImpactTime = 0.02;
-constexpr double kLeverMax = 8.0;  // rad/m: mass times distance of the contact over a third of the trace of the inertia
+// rad/m: mass times distance of the contact, divided by a third of the trace of the inertia
+constexpr double kLeverMax = 8.0;
 
 struct Moment {
-  Vector3d rate, force_at_centre;  // IMU axes; the force of contact at the centre of mass
+  Vector3d rate, force_at_centre;  // IMU axes; contact force at the centre of mass
   Phase phase;
 };
 
@@ -30,7 +31,7 @@ Vector3d direction(oracles::Gaussian& noise) {
   return noise.vector().normalized();
 }
 
-// The whole motion at 2 kHz.
+// Simulates the whole motion at 2 kHz.
 class TumbleMotion {
  public:
   explicit TumbleMotion(const TumbleOptions& options) : options_(options), noise_(options.seed) {
@@ -58,8 +59,8 @@ class TumbleMotion {
  private:
   static constexpr double kGravity = 9.81;
 
-  // A vector of any direction and of a length between two bounds. Its direction is drawn first and in a statement of
-  // its own: of the factors of a product each compiler takes another first.
+  // Draws a vector of random direction and of a length between two bounds. The direction is drawn first, in a separate
+  // statement, because compilers evaluate factors of a product in different order.
   Vector3d within(double low, double high, double unit = 1.0) {
     const Vector3d towards = direction(noise_);
     return noise_.uniform(low, high) * unit * towards;
@@ -71,13 +72,13 @@ class TumbleMotion {
   }
   Vector3d support() const { return q_WI_.conjugate() * Vector3d(0.0, 0.0, kGravity); }
 
-  // A force through one point of the body, a half sine in time: the rate after it, within the range of the options.
+  // A force through one point of the body, a half sine in time. Limits the rate after it to the range of the options.
   Vector3d after_impact(const Vector3d& rate, Vector3d& peak_force) {
     Vector3d next;
     do {
       peak_force = within(0.33, 1.0, options_.impact_m_s2);
       const Vector3d lever = within(0.0, kLeverMax);
-      // trace of the inertia over three is the unit in which the lever is given
+      // a third of the trace of the inertia is the unit of the lever arm
       const Eigen::Matrix3d J = inertia() * 3.0 / options_.moments.sum();
       next = rate + J.inverse() * lever.cross(peak_force) * kImpactTime * 2.0 / std::numbers::pi;
     } while (next.norm() < options_.speed_low_rad_s || next.norm() > options_.speed_high_rad_s);
@@ -98,7 +99,7 @@ class TumbleMotion {
     for (int k = 1; k <= count; ++k) {
       const double s = static_cast<double>(k) / count;
       const Vector3d hold = phase == Phase::impact ? Vector3d::Zero() : support();
-      // rate by the integral of a half sine of torque, force by the half sine
+      // the rate follows from the integral of a half sine of torque, the force is the half sine
       const double share = 0.5 * (1.0 - std::cos(std::numbers::pi * s));
       add(from + share * (to - from), hold + std::sin(std::numbers::pi * s) * peak, phase);
     }

@@ -12,13 +12,13 @@
 
 namespace tumble {
 
-/// What a body does at a sample of a synthetic tumble.
+/// Motion of a body at a sample of a synthetic tumble.
 enum class Phase : std::uint8_t { rest, push, flight, impact, roll };
 
 struct TumbleOptions {
   std::uint64_t seed = 1;
-  std::uint64_t mounting_seed = 1;  ///< of the principal axes in the IMU
-  int rate_hz = 100;                ///< divides 2000
+  std::uint64_t mounting_seed = 1;  ///< orientation of the principal axes in the IMU
+  int rate_hz = 100;                ///< must divide 2000
   double gyro_rail_rad_s = 10.5;
   double accel_rail_m_s2 = 196.0;
   Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
@@ -27,22 +27,23 @@ struct TumbleOptions {
   double accel_sigma_m_s2 = 5.9e-3;
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
-  /// Scale and misalignment: readings before noise are (1 + this) times the truth.
+  /// Scale and misalignment: readings without noise are (1 + this matrix) times the truth.
   Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero(), accel_error = Eigen::Matrix3d::Zero();
-  /// Rows along which the gyro's elements sense; they clip there, and readings are brought back to the axes.
+  /// Sensing directions of the gyro's elements. Elements clip along these directions; the readings are converted back
+  /// to the axes.
   Eigen::Matrix3d gyro_rows = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d gyro_offset_rad_s = Eigen::Vector3d::Zero();  ///< of the elements, taken off after they clip
-  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;        ///< of the flights
+  Eigen::Vector3d gyro_offset_rad_s = Eigen::Vector3d::Zero();  ///< of the elements, subtracted after clipping
+  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;        ///< rates of the flights
   int flights = 8;
-  double impact_m_s2 = 150.0;  ///< peak force of an impact, drawn between a third of it and all of it
-  bool roll = true;            ///< end by a second of rolling to rest
+  double impact_m_s2 = 150.0;  ///< largest peak force of an impact; the smallest is a third of it
+  bool roll = true;            ///< the motion ends with a second of rolling to rest
 };
 
 struct TumbleRecording {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Vector3d> truth;  ///< mean of w_WI_I over the window of each sample
   std::vector<Phase> phase;
-  std::vector<Eigen::Vector3d> hidden;                ///< what each element's rail took away, signed [rad/s]
+  std::vector<Eigen::Vector3d> hidden;                ///< signed saturation deficit of each element [rad/s]
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< in IMU axes
 };
 
@@ -50,7 +51,7 @@ struct TumbleRecording {
 /// rolling, rest. Readings are means over the window of a sample, with noise, clipped after averaging.
 TumbleRecording make_tumble(const TumbleOptions& options);
 
-/// Parameters of a RateSmoother or a RateStream that know the lever arm, which has no default.
+/// Returns parameters of a RateSmoother or a RateStream with the true lever arm, which has no default.
 template <class Params>
 Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever_arm_m) {
   Params out;
@@ -58,7 +59,7 @@ Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever
   return out;
 }
 
-/// The same with a lever arm that is off by `error_m` in a direction of the seed's.
+/// Returns the parameters with an error of `error_m` in the lever arm, in a random direction from the seed.
 template <class Params>
 Params with_wrong_lever_arm(double error_m, std::uint64_t seed) {
   auto out = with_lever_arm<Params>();
@@ -68,7 +69,7 @@ Params with_wrong_lever_arm(double error_m, std::uint64_t seed) {
   return out;
 }
 
-/// Quantiles of the error norm over the samples in which at least one gyro axis was clipped.
+/// Quantiles of the error norm over the samples with at least one clipped gyro axis.
 struct ClippedErrors {
   std::size_t count = 0;
   double median = 0.0, p99 = 0.0, maximum = 0.0;

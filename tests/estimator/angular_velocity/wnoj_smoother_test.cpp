@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using Measurement = WnojSmoother::Measurement;
 using Smoothed = WnojSmoother::Smoothed;
 
-constexpr TimeNs kAnchored_ns = 10'000'000;  // 100 Hz, for which the anchors are stated
+constexpr TimeNs kAnchored_ns = 10'000'000;  // 100 Hz; the reference values apply to this rate
 constexpr double kMeasured = 2.741e-5, kEstimated = 0.2741, kAsPrinted = 3.648, kRejected = 1e6;
 
 std::vector<Measurement> constant_run(std::size_t count, double variance, TimeNs period_ns = kAnchored_ns) {
@@ -36,8 +36,8 @@ std::vector<Smoothed> smooth(const std::vector<Measurement>& run, double psd = 1
   return out;
 }
 
-// Independent reference: the full problem with the angle, as published (3 states per knot, angle locked at the first
-// knot), dense normal equations in long double.
+// Independent reference: the full problem with the angle, as published (three states per knot, the angle fixed at the
+// first knot), with dense normal equations in long double.
 struct Dense {
   Eigen::Matrix<long double, Eigen::Dynamic, 1> rate, acceleration, variance;
 };
@@ -98,7 +98,7 @@ TEST(WnojSmoother, AgreesWithTheDenseProblemThatKeepsTheAngle) {
       const Dense want = dense_reference(run, 1e6, axis);
       for (std::size_t k = 0; k < run.size(); ++k) {
         const auto i = static_cast<Eigen::Index>(k);
-        // relative to the size of the readings; the reference itself is good to about 1e-10 in long double
+        // relative to the size of the readings; the error of the reference in long double is about 1e-10
         EXPECT_NEAR(got[k].rate_rad_s[axis], static_cast<double>(want.rate[i]), 1e-8) << k;
         EXPECT_NEAR(got[k].acceleration_rad_s2[axis], static_cast<double>(want.acceleration[i]), 1e-5) << k;
         EXPECT_NEAR(got[k].variance_rad2_s2[axis] / static_cast<double>(want.variance[i]), 1.0, 1e-7) << k;
@@ -107,7 +107,7 @@ TEST(WnojSmoother, AgreesWithTheDenseProblemThatKeepsTheAngle) {
   }
 }
 
-// weight of the reading `offset` samples away on the smoothed rate in the middle of a long run
+// weight of the reading that is `offset` samples away in the smoothed rate, in the middle of a long run
 double weight(double variance, int offset) {
   std::vector<Measurement> run = constant_run(201, variance);
   run[static_cast<std::size_t>(100 + offset)].rate_rad_s.setOnes();
@@ -117,7 +117,7 @@ double weight(double variance, int offset) {
 TEST(WnojSmoother, WeightsAndDeviationAtTheVarianceOfTheCode) {
   const double want[] = {0.484, 0.255, 0.039, -0.020, -0.014};
   for (int offset = 0; offset < 5; ++offset) {
-    EXPECT_NEAR(weight(kEstimated, offset), want[offset], 5e-4) << offset;  // stated with three decimals
+    EXPECT_NEAR(weight(kEstimated, offset), want[offset], 5e-4) << offset;  // the publication states three decimals
     EXPECT_NEAR(weight(kEstimated, -offset), want[offset], 5e-4) << offset;
   }
   EXPECT_NEAR(std::sqrt(smooth(constant_run(201, kEstimated))[100].variance_rad2_s2.x()), 0.364, 5e-4);
@@ -137,7 +137,7 @@ TEST(WnojSmoother, ReturnsUnclippedReadingsUnchanged) {
     run[k].rate_rad_s = 8.0 * Vector3d(std::sin(0.1 * k), std::cos(0.2 * k), 1.0) + 0.005 * noise.vector();
   }
   const std::vector<Smoothed> got = smooth(run);
-  // (1 - 0.9996) of a noise of 0.005 rad/s and of the bend of the curve; measured 1.1e-5
+  // (1 - 0.9996) of a noise of 0.005 rad/s and of the curvature; measured 1.1e-5
   for (std::size_t k = 0; k < run.size(); ++k) EXPECT_LE((got[k].rate_rad_s - run[k].rate_rad_s).norm(), 5e-5) << k;
 }
 
@@ -150,7 +150,7 @@ TEST(WnojSmoother, DeviationInTheMiddleOfRejectedGaps) {
     std::vector<Measurement> run = constant_run(anchor.length + 200, kMeasured);
     for (std::size_t k = 100; k < 100 + anchor.length; ++k) run[k].variance_rad2_s2.setConstant(kRejected);
     const std::vector<Smoothed> got = smooth(run);
-    // stated with two digits; for an even length the middle lies between two samples
+    // the publication states two digits; for an even length, the middle is between two samples
     EXPECT_NEAR(std::sqrt(got[100 + anchor.length / 2].variance_rad2_s2.x()) / anchor.deviation, 1.0, 0.03)
         << anchor.length;
   }
@@ -171,7 +171,7 @@ TEST(WnojSmoother, FollowsAStraightRampExactly) {
   for (auto& m : run) m.rate_rad_s = Vector3d(1.0, -2.0, 3.0) * seconds(m.time_ns) + Vector3d(5.0, 0.0, -1.0);
   const std::vector<Smoothed> got = smooth(run);
   for (std::size_t k = 0; k < run.size(); ++k) {
-    EXPECT_LE((got[k].rate_rad_s - run[k].rate_rad_s).norm(), 1e-10) << k;  // a ramp needs no jerk
+    EXPECT_LE((got[k].rate_rad_s - run[k].rate_rad_s).norm(), 1e-10) << k;  // a linear rate needs no jerk
     EXPECT_LE((got[k].acceleration_rad_s2 - Vector3d(1.0, -2.0, 3.0)).norm(), 1e-7) << k;
   }
 }
@@ -183,7 +183,8 @@ TEST(WnojSmoother, ShortRuns) {
   EXPECT_EQ(smooth(run)[0].variance_rad2_s2, run[0].variance_rad2_s2);
   run = constant_run(2, kEstimated);
   run[1].rate_rad_s.setOnes();
-  EXPECT_LE((smooth(run)[0].rate_rad_s - run[0].rate_rad_s).norm(), 1e-12);  // two readings fix rate and acceleration
+  // two readings determine rate and acceleration
+  EXPECT_LE((smooth(run)[0].rate_rad_s - run[0].rate_rad_s).norm(), 1e-12);
   EXPECT_NEAR(smooth(run)[1].variance_rad2_s2.x(), kEstimated, 1e-12);
 }
 
