@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method on draws as they are and on the same with wrong inputs
-// (units, axes, signs, clocks, mountings, sensors that die, dust, people), and holds what it says of itself against
-// what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES, which is chi-square over
-// six, beyond 25; rate, attitude: a tenth of the samples that turn, or move, are off by more than five, or half of them
-// by a fifth of their rate, or by 0.5 rad of tilt, unless it says `attitude_unknown_s`). Told: the status, `localised`,
-// or a key of its health that says so. Who tells of trouble may widen the covariance with it, and then is wrong no
-// more: rates are judged by the covariance before that as well, and a pose of slam by the root of chi-square beside
-// that of its mean. Prints a line per run and the two rates of a classifier by each of these: wrong runs that say so,
-// runs with inputs as they are that cry wolf. Not a test: a minute a draw for `slam`, seconds for `position`.
+// verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method on draws with correct inputs, and on the same draws with
+// wrong inputs (units, axes, signs, clocks, mountings, failing sensors, dust, people). Compares the method's report of
+// its own quality with the truth.
+// A run is wrong if its end error exceeds five standard deviations (slam: pose NEES above 25). A run of rates or
+// attitudes is wrong if a tenth of the samples in rotation or motion exceed five standard deviations. It is also wrong
+// if half of these samples have an error above a fifth of their rate, or above 0.5 rad of tilt without
+// `attitude_unknown_s`.
+// A run reports trouble by its status, `localised`, or a key of its health. A method may also increase its covariance
+// when it reports trouble. Rates are therefore also judged by the covariance before this increase, and a slam pose also
+// by the root of chi-square.
+// Prints a line per run, and the two rates of the classifier for each criterion: wrong runs with a report, and correct
+// runs with a false alarm. This program is not a test; it takes a minute per draw for `slam`, and seconds for
+// `position`.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -28,7 +28,7 @@ using testing::BroadTrial;
 
 constexpr std::array kTrials = {"05", "07", "09", "11", "14", "16", "24", "27"};
 
-/// The published trials, where they are at hand: their suite is there then, and else not.
+/// The published trials. This suite runs only if they are available.
 class Broad : public ::testing::TestWithParam<std::string> {
  protected:
   static void SetUpTestSuite() {
@@ -63,7 +63,7 @@ BroadError run_trial(const Filter& filter, const BroadTrial& trial) {
   return testing::score(trial, q_WI);
 }
 
-/// Scores all trials, prints them, appends the mean.
+/// Scores all trials, prints the scores and appends the mean.
 template <typename Filter>
 std::vector<BroadError> run_trials(const char* name, const Filter& filter, const std::vector<BroadTrial>& trials) {
   std::vector<BroadError> errors;
@@ -83,7 +83,7 @@ std::vector<BroadError> run_trials(const char* name, const Filter& filter, const
   return errors;
 }
 
-/// Errors that the published package or an independent program gave on the same files, printed to two digits.
+/// Errors of the published package or an independent program on the same files, printed with two digits.
 struct Anchor {
   double inclination_motion_deg, heading_motion_deg, inclination_rest_deg;
 };
@@ -91,7 +91,7 @@ struct Anchor {
 void expect_anchors(const std::vector<BroadError>& errors, const std::array<Anchor, 8>& anchors) {
   ASSERT_EQ(errors.size(), anchors.size() + 1);
   for (std::size_t k = 0; k < anchors.size(); ++k) {
-    // measured differences are below the last digit printed (0.005; 0.05 for headings above 10)
+    // measured differences are below the last printed digit (0.005; 0.05 for headings above 10)
     EXPECT_NEAR(errors[k].inclination_motion_deg, anchors[k].inclination_motion_deg, 0.02) << kTrials[k];
     EXPECT_NEAR(errors[k].heading_motion_deg, anchors[k].heading_motion_deg, 0.06) << kTrials[k];
     EXPECT_NEAR(errors[k].inclination_rest_deg, anchors[k].inclination_rest_deg, 0.02) << kTrials[k];
@@ -132,11 +132,11 @@ TEST_P(Broad, BasicVqfLandsOnItsAnchors) {
                                                              {1.45, 27.7, 1.48}}});
 }
 
-/// No anchors on these eight trials exist for the others; the bounds hold what is measured today, with a tenth to
-/// spare.
+/// There are no reference values of the other filters for these eight trials. The bounds are the measured values plus a
+/// tenth.
 TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
   const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
-  EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // 0.161
+  EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // measured 0.161
   EXPECT_GT(complementary.inclination_motion_deg, 5.0) << "it believes accelerations: 8.7";
   const BroadError mahony = run_trials("mahony", baselines::Mahony({}), trials()).back();
   EXPECT_NEAR(mahony.inclination_motion_deg, 2.48, 0.1);
@@ -144,7 +144,8 @@ TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
   EXPECT_NEAR(eskf.inclination_motion_deg, 0.72, 0.03);
 }
 
-/// Hands push a sensor that they turn about a point of theirs: with the turning (trials 07, 11) or against it (27).
+/// A hand pushes a sensor while rotating it about a point of the hand: with the rotation (trials 07, 11) or against it
+/// (27).
 TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
   const auto verdict_of = [](const BroadTrial& trial, double gyro_scale) {
     const ImuPlausibility plausibility({});
@@ -168,12 +169,12 @@ TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
   EXPECT_GE(told, wrong / 3);
 }
 
-/// 0.02 per sample at these 285.7 Hz, as the anchors over the whole data set were made.
+/// 0.02 per sample at this rate of 285.7 Hz, as for the reference values of the whole data set.
 constexpr double kTauPerSample_s = 0.17324;
 
 TEST_P(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
   const BroadError paper = run_trials("autogain", baselines::Autogain({.tau_s = kTauPerSample_s}), trials()).back();
-  // over all 30 trials 10.8 in motion, 0.17 at rest
+  // over all 30 trials: 10.8 in motion, 0.17 at rest
   EXPECT_NEAR(paper.inclination_rest_deg, 0.17, 0.02);
   EXPECT_NEAR(paper.inclination_motion_deg, 10.8, 3.0);
   const baselines::Autogain code(
@@ -185,13 +186,13 @@ TEST_P(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
 
 TEST_P(Broad, TumbleIsBetterThanVqfInMotionAndAsGoodAtRest) {
   const BroadError error = run_trials("tumble", TumbleAttitude({}), trials()).back();
-  EXPECT_LT(error.inclination_motion_deg, 0.575);  // VQF's; measured 0.554, no parameter tuned beyond a factor of two
-  // 0.201: the accelerometer's own error, which a complementary filter meets as well once the bias is taken away
-  // (0.206)
+  // VQF's value; measured 0.554, no parameter was changed by more than a factor of two
+  EXPECT_LT(error.inclination_motion_deg, 0.575);
+  // 0.201: the error of the accelerometer, which also limits a complementary filter once the bias is subtracted (0.206)
   EXPECT_LT(error.inclination_rest_deg, 0.205);
 }
 
-/// Rms change from sample to sample, after three seconds without movement, degrees.
+/// Returns the rms change from sample to sample after three seconds without motion, in degrees.
 template <typename Filter>
 double jitter_at_rest_deg(const Filter& filter, const BroadTrial& trial) {
   typename Filter::State state;
@@ -216,10 +217,11 @@ TEST_P(Broad, TumbleIsQuieterAtRestThanTheComplementaryFilter) {
     complementary += jitter_at_rest_deg(baselines::Complementary({}), trial) / 8.0;
   }
   std::printf("jitter at rest, deg per sample: tumble %.5f, complementary %.5f\n", ours, complementary);
-  EXPECT_LT(ours, 0.5 * complementary);  // measured 0.0009 against 0.0036
+  EXPECT_LT(ours, 0.5 * complementary);  // measured 0.0009 compared with 0.0036
 }
 
-/// Negative control of the score: a known tilt is reported as inclination, a known turn is removed by the alignment.
+/// Negative control of the score: a known tilt appears as inclination error, and the alignment removes a known heading
+/// offset.
 void expect_planted_tilt_seen(const BroadTrial& trial) {
   std::vector<Eigen::Quaterniond> q_WI;
   for (const Eigen::Quaterniond& q : trial.q_ref) {
@@ -235,7 +237,7 @@ TEST_P(Broad, ScoreSeesAPlantedTilt) {
   expect_planted_tilt_seen(trials().front());
 }
 
-/// The same on the stand-in, in every clone: a sensor in a hand, moved gently, whose truth is known.
+/// The same test on the stand-in, which is always available: a hand-held sensor with gentle, known motion.
 class BroadStandIn : public ::testing::Test {
  protected:
   static const std::vector<BroadTrial>& trials() {
@@ -251,7 +253,7 @@ TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
   const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
   const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
   const BroadError tumble = run_trials("tumble", TumbleAttitude({}), trials()).back();
-  // a tenth above what is measured: 0.281, 0.290, 0.323
+  // measured values plus a tenth: 0.281, 0.290, 0.323
   EXPECT_LT(tumble.inclination_motion_deg, 0.31);
   EXPECT_LT(vqf.inclination_motion_deg, 0.32);
   EXPECT_LT(eskf.inclination_motion_deg, 0.36);
@@ -259,7 +261,7 @@ TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
   for (const BroadError& error : {madgwick, mahony})
     EXPECT_GT(error.inclination_motion_deg, 2.0 * vqf.inclination_motion_deg);
   EXPECT_GT(complementary.inclination_motion_deg, 2.0) << "it believes accelerations: 2.98";
-  EXPECT_LT(tumble.inclination_rest_deg, 0.05);  // 0.044: the accelerometer has noise and no bias here
+  EXPECT_LT(tumble.inclination_rest_deg, 0.05);  // measured 0.044: here, the accelerometer has noise but no bias
   EXPECT_GT(mahony.inclination_rest_deg, 0.5) << "the gyro's bias leaks into it: 0.89";
 }
 

@@ -11,8 +11,8 @@
 
 namespace tumble::testing {
 
-/// A body that spins about its level x axis at base + more sin^2 over one interval of time, where its gyro clips at the
-/// base and its accelerometer may be blind: at rails that every reading lies beyond.
+/// A body that spins about its level x axis at base + more sin^2 during one interval, in which its gyro clips at the
+/// base. The accelerometer may be useless: with saturation limits below all of its readings.
 struct ClippedSpin {
   double base_rad_s = 3.0, more_rad_s = 0.0, from_s = 5.0, lasts_s = 1.2, duration_s = 11.2;
   bool blind = true;
@@ -30,7 +30,7 @@ struct ClippedSpin {
   }
 };
 
-/// What its IMU says.
+/// Returns the readings of its IMU.
 struct SpinReadings {
   static constexpr double kHz = 100.0;
   std::vector<ImuSample> samples;

@@ -19,7 +19,7 @@ double tilted_rad(const Eigen::Quaterniond& q) {
   return std::acos(std::clamp((q * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
 }
 
-// attitude.md (A19), (A20), closed form: a velocity that changes by (0.6, -0.4) m/s in 2 s, seen upside down.
+// attitude.md (A19), (A20) in closed form: an upside-down sensor whose velocity changes by (0.6, -0.4) m/s in 2 s.
 TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
   const Eigen::Quaterniond wrong = so3::exp({3.0, 0.4, 0.0});
   CoarseAlignment alignment;
@@ -37,11 +37,11 @@ TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
 }
 
 struct Found {
-  double tilt_rad = 0.0, deviation_rad = 0.0, least_deviation_rad = 1e9;  ///< least: within 0.1 s of the gap
+  double tilt_rad = 0.0, deviation_rad = 0.0, least_deviation_rad = 1e9;  ///< least: within 0.1 s after the gap
 };
 
-/// A body that moves by a hand's breadth is struck at the beginning of 0.3 s without readings, so that half the change
-/// of its rate is off by two radians: what is known of the tilt `after_s` later.
+/// A body that moves by a few centimetres is struck at the start of a gap of 0.3 s, so half of the rate change gives an
+/// error of two radians. Returns the tilt estimate `after_s` later.
 Found behind_a_strike(const TumbleAttitude::Params& params, double after_s) {
   constexpr TimeNs kPeriod_ns = 4'000'000;
   constexpr double kPeriod_s = 4e-3;
@@ -72,7 +72,7 @@ TEST(CoarseAlignment, BehindAGapTheFilterIsToldWhereUpIs) {
   EXPECT_LT(found.deviation_rad, 0.1);
   EXPECT_LT(found.tilt_rad, 4.0 * found.deviation_rad);
   EXPECT_GT(found.least_deviation_rad, 0.5) << "nothing has told up by then";
-  // negative control: a filter that is linear does not come back from two radians
+  // negative control: a linear filter does not recover from two radians
   TumbleAttitude::Params alone;
   alone.expert.gap.lost_tilt_rad = 1e4;
   const Found believed = behind_a_strike(alone, 4.0);
@@ -90,7 +90,7 @@ TEST(CoarseAlignment, ASecondGapBeforeUpIsFoundLosesNothingOfTheDoubt) {
   step(time_ns += 300'000'000, 3.0);
   ASSERT_TRUE(state.alignment.running);
   const double lost = TumbleAttitude::attitude_covariance_rad2(state)(0, 0);
-  step(time_ns += 60'000'000, 3.0);  // a short one alone loses nothing
+  step(time_ns += 60'000'000, 3.0);  // a single short gap does not require alignment
   EXPECT_TRUE(state.alignment.running);
   EXPECT_GE(TumbleAttitude::attitude_covariance_rad2(state)(0, 0), lost);
 }

@@ -17,13 +17,13 @@ namespace tumble::testing {
 inline constexpr double kGravity_m_s2 = 9.80665;
 inline constexpr TimeNs kPeriod_ns = 4'000'000;
 
-/// Of the sensor's z axis from the vertical [rad].
+/// Returns the angle between the sensor's z axis and the vertical [rad].
 inline double tilt(const Eigen::Quaterniond& q_WI) {
   const Eigen::Vector3d up = q_WI.conjugate() * Eigen::Vector3d::UnitZ();
   return std::atan2(std::hypot(up.x(), up.y()), up.z());
 }
 
-/// Samples of a wobbling body, 250 Hz: smooth rates on all axes and a force that is not pure gravity.
+/// Returns samples of a wobbling body at 250 Hz: smooth rates on all axes, and a force that is not only gravity.
 inline std::vector<ImuSample> wobble(int count) {
   std::vector<ImuSample> samples;
   for (int k = 0; k < count; ++k) {
@@ -46,7 +46,7 @@ typename Filter::State run(const Filter& filter, const std::vector<ImuSample>& s
   return state;
 }
 
-/// Two runs, and one split at any of some samples, end in the same bits.
+/// Two runs, and a run that is split at any of several samples, give identical bits.
 template <typename Filter>
 void expect_split_runs_equal(const Filter& filter) {
   const std::vector<ImuSample> samples = wobble(3000);
@@ -69,7 +69,7 @@ void expect_refused(const Filter& filter, const typename Filter::State& state, c
   EXPECT_TRUE(after == state) << "the state changed on " << to_string(error_code);
 }
 
-/// Each kind of bad input gives its Status and leaves the state as it was; a good sample afterwards is accepted.
+/// Each kind of invalid input gives its Status and leaves the state unchanged. The next valid sample is accepted.
 template <typename Filter>
 void expect_bad_input_refused(const Filter& filter) {
   const std::vector<ImuSample> samples = wobble(100);
@@ -93,7 +93,7 @@ void expect_bad_input_refused(const Filter& filter) {
   expect_refused(filter, state, bad, ErrorCode::time_order);
   bad.time_ns = std::numeric_limits<TimeNs>::min();
   expect_refused(filter, state, bad, ErrorCode::time_order);
-  bad.time_ns = state.last_time_ns + 1'000'000'001;  // gap_max_s is 1 by default
+  bad.time_ns = state.last_time_ns + 1'000'000'001;  // the default of gap_max_s is 1
   expect_refused(filter, state, bad, ErrorCode::gap);
   bad.time_ns = std::numeric_limits<TimeNs>::max();
   expect_refused(filter, state, bad, ErrorCode::gap);
@@ -115,7 +115,7 @@ void expect_bad_input_refused(const Filter& filter) {
   EXPECT_TRUE(filter.step(good, after).ok());
 }
 
-/// The stream with -q instead of q in the state gives the same rotation.
+/// A filter whose state has -q instead of q gives the same rotations.
 template <typename Filter>
 void expect_sign_of_q_is_free(const Filter& filter) {
   const std::vector<ImuSample> samples = wobble(500);
@@ -124,7 +124,7 @@ void expect_sign_of_q_is_free(const Filter& filter) {
   opposite.q_WI.coeffs() = -opposite.q_WI.coeffs();
   state = run(filter, samples, 250, 500, state);
   opposite = run(filter, samples, 250, 500, opposite);
-  // measured: 0; every operation is odd or even in q
+  // measured: 0, because every operation is odd or even in q
   EXPECT_NEAR(so3::log(state.q_WI.conjugate() * opposite.q_WI).norm(), 0.0, 1e-14);
 }
 

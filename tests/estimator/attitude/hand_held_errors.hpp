@@ -11,10 +11,10 @@
 #include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/attitude/hand_held_motion.hpp"
 
-/// Errors of rates of a carried body against its motion in closed form.
+/// Rate errors of a hand-held body, compared with its closed-form motion.
 namespace tumble::testing {
 
-/// Norms of the errors at clipped samples from `from_s` on; a rate stands for each sample, at its stamp [rad/s].
+/// Returns the norms of the errors at clipped samples after `from_s` [rad/s]. Each sample has a rate at its time stamp.
 inline std::vector<double> clipped_errors(const HandHeldRecording& recording, const std::vector<RateState>& rates,
                                           double from_s) {
   std::vector<double> out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each factor of the carried body against its own cost: the gradient that it adds is the numerical one, its curvature
-// that of the squared residuals.
+// Compares each factor of the hand-held model with its own cost: its gradient with the numerical gradient, its
+// curvature with that of the squared residuals.
 #include "tumble/attitude/detail/hand_held_model.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ Point random_point(std::uint64_t seed, double step_s) {
 
 using Factor = std::function<double(const Point&, System::Block&, System::Block&, System::Corner&)>;
 
-/// The gradient that a factor adds is half the negative derivative of its cost, in every unknown.
+/// The gradient of a factor is half the negative derivative of its cost, for every unknown.
 void expect_gradient(const Factor& factor, const Point& at) {
   System::Block here, next;
   System::Corner corner;
@@ -73,7 +73,7 @@ void expect_gradient(const Factor& factor, const Point& at) {
       sides[side] = factor(moved, unused, unused_next, unused_corner);
     }
     const double numerical = -(sides[1] - sides[0]) / (4.0 * kStep);
-    // central differences of a cost of some size lose 1e-16 cost / kStep
+    // central differences of this cost have rounding errors of 1e-16 cost / kStep
     EXPECT_NEAR(gradient[i], numerical, 2e-6 * gradient.cwiseAbs().maxCoeff() + 1e-10 * cost / kStep) << i;
   }
 }
@@ -94,7 +94,7 @@ NodeReadings random_readings(std::uint64_t seed) {
   return readings;
 }
 
-/// The weights that depend on the state are left out: they are held within an iteration.
+/// Weights that depend on the state are not differentiated, because they are constant within an iteration.
 ReadingNoise plain_noise() {
   ReadingNoise noise;
   noise.gyro_rad_s = 0.5;
@@ -124,7 +124,7 @@ TEST(HandHeldModel, ForceHasItsGradient) {
   for (std::uint64_t seed : {1u, 2u, 3u}) {
     NodeReadings readings = random_readings(seed);
     if (seed == 2) readings.force_bound.y() = 1.0;
-    // the turn from the node to the readings' mean time is to first order in the rate's error
+    // the rotation from the node to the mean time of the readings is of first order in the rate error
     readings.force_time_s = 1e-6;
     expect_gradient(
         [&](const Point& p, System::Block& here, System::Block&, System::Corner& corner) {

@@ -10,9 +10,9 @@
 #include "tumble/attitude/hand_held_smoother.hpp"
 #include "tumble/common/so3.hpp"
 
-/// A carried body in closed form, made to the measure of a wand that is twirled: Exp(a(t) x) Exp(b(t) y) with a spin a
-/// about its long axis, far beyond the gyro's rail for some tenths of a second at a time, and a slow tilt b; the hand
-/// moves on sines of some decimetres. Readings are those at the middle of their window.
+/// Closed-form motion of a hand-held body, similar to a twirled wand: Exp(a(t) x) Exp(b(t) y). The spin a about the
+/// long axis exceeds the gyro's limit for some tenths of a second at a time; the tilt b is slow. The hand moves along
+/// sines of some decimetres. Readings are the values at the middle of their window.
 namespace tumble::testing {
 
 struct HandHeldMotion {
@@ -28,7 +28,7 @@ struct HandHeldMotion {
   Eigen::Quaterniond attitude(double t) const {
     return so3::exp({0.0, tilt(t, 0), 0.0}) * so3::exp({spin(t, 0), 0.0, 0.0});
   }
-  /// Rate in sensor axes: R = Ry(b) Rx(a).
+  /// Returns the rate in sensor axes: R = Ry(b) Rx(a).
   Eigen::Vector3d rate(double t) const {
     const double a = spin(t, 0);
     return {spin(t, 1), tilt(t, 1) * std::cos(a), -tilt(t, 1) * std::sin(a)};
@@ -63,7 +63,7 @@ struct HandHeldRecording {
   std::vector<Eigen::Quaterniond> q_WI;     ///< true, at each stamp
 };
 
-/// Sampled at `hz` for `duration_s`, the gyro's x element held at `rail_rad_s` (0: none).
+/// Returns samples at `hz` for `duration_s`, with the gyro's x element clipped at `rail_rad_s` (0: not clipped).
 inline HandHeldRecording record(const HandHeldMotion& motion, double hz, double duration_s, double rail_rad_s) {
   HandHeldRecording out;
   for (int k = 1; k <= static_cast<int>(hz * duration_s); ++k) {
@@ -86,7 +86,7 @@ inline HandHeldRecording record(const HandHeldMotion& motion, double hz, double 
   return out;
 }
 
-/// Each third reading of those at the rail has wrapped over it to the other side; its sign is `sign`.
+/// Makes each third reading at the limit overflow to the opposite sign; `sign` is its sign.
 inline HandHeldRecording with_wraps(const HandHeldRecording& recording, std::int8_t sign) {
   HandHeldRecording out = recording;
   int at_rail = 0;

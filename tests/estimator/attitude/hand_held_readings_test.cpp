@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the smoother of carried bodies makes of readings before it reads them: triads that are slower than the log,
-// windows that met the rail in a part, the jerk that readings show.
+// Tests how the hand-held smoother prepares readings: sensors that are slower than the log, partly clipped windows, and
+// the jerk that the readings indicate.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,15 +31,16 @@ Vector3d mean_rate(const HandHeldMotion& motion, double end_s, double window_s, 
   return sum;
 }
 
-/// A log faster than its triads, as the pendulum's of RepoIMU: the gyro a mean over its own period, clipped before it.
+/// A log with a higher rate than its sensors, as for RepoIMU's pendulum. A gyro reading is the mean over the gyro's own
+/// period, after clipping.
 struct Held {
   std::vector<ImuSample> samples;
   std::vector<ClipSigns> signs;
-  std::vector<Vector3d> rate_rad_s;  ///< true, mean over the log's step
-  std::vector<bool> lost;            ///< the reading lies below its unclipped twin
+  std::vector<Vector3d> rate_rad_s;  ///< true mean over the log's period
+  std::vector<bool> lost;            ///< the reading is below the unclipped reading
 };
 
-/// `mark`: added to each repeated reading, more each time, so that it does not look repeated.
+/// `mark`: added to repeated readings, increasing each time, so that they do not look repeated.
 Held held(double duration_s, double mark) {
   const HandHeldMotion motion;
   Held out;
@@ -62,8 +63,8 @@ Held held(double duration_s, double mark) {
 }
 
 struct HeldErrors {
-  double median_rad_s = 0.0;  ///< of the errors where a reading lost something
-  double within = 0.0;        ///< three deviations, of those
+  double median_rad_s = 0.0;  ///< errors of readings with a deficit
+  double within = 0.0;        ///< their share within three deviations
   double called_measured = 0.0;
 };
 
@@ -92,8 +93,8 @@ HeldErrors errors_of_held(const Held& recording) {
   return out;
 }
 
-/// Negative control: the same readings, but none repeats the one before to the bit, so that each is taken for a new one
-/// at its stamp. Measured: 0.27 rad/s and all within; 0.66 and 0.94.
+/// Negative control: the same readings without exact repetition, so each counts as a new reading at its time stamp.
+/// Measured: 0.27 rad/s and all within three deviations; 0.66 and 0.94.
 TEST(HandHeldReadings, ATriadSlowerThanTheLogIsReadOnceAndAtItsOwnTime) {
   const HeldErrors own = errors_of_held(held(12.0, 0.0)), again = errors_of_held(held(12.0, 1e-9));
   std::printf("own times: %.3f rad/s, within %.3f, called measured %.3f; as said again: %.3f, %.3f, %.3f\n",
@@ -105,8 +106,8 @@ TEST(HandHeldReadings, ATriadSlowerThanTheLogIsReadOnceAndAtItsOwnTime) {
   EXPECT_LT(own.called_measured, 0.5 * again.called_measured + 1e-9);
 }
 
-/// One draw of white jerk, read as means over windows: the density is found, and the mean over a window parts from the
-/// rate at its centre by q P^3/320.
+/// A random white jerk, measured as means over windows. The smoother finds its density. The mean over a window differs
+/// from the rate at its centre by q P^3/320.
 TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   constexpr double kPeriod_s = 0.01, kJerk = 600.0;
   constexpr int kParts = 51, kSamples = 4000;
@@ -118,7 +119,7 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   for (int k = 1; k <= kSamples; ++k) {
     Vector3d sum = Vector3d::Zero(), centre = Vector3d::Zero();
     for (int i = 0; i < kParts; ++i) {
-      // pulled back slowly, so that the rate stays bounded; the jerk of that is small
+      // a slow restoring force bounds the rate; its jerk is small
       const double z = noise(), y = noise(), x = noise();
       acceleration += kJerk * std::sqrt(step_s) * Vector3d(x, y, z) - step_s * (0.2 * acceleration + 0.1 * rate);
       rate += step_s * acceleration;
@@ -138,13 +139,13 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   const double expected = kJerk * kJerk * std::pow(kPeriod_s, 3.0) / 320.0;
   std::printf("root density %.1f, drawn %.1f; window %.5f, expected %.5f rad/s\n", std::sqrt(power), kJerk,
               std::sqrt(apart), std::sqrt(expected));
-  // 12000 correlated second differences: 2 % of the root density
+  // 12000 correlated second differences: accuracy of 2 % for the root density
   EXPECT_NEAR(std::sqrt(power), kJerk, 0.05 * kJerk);
   EXPECT_NEAR(std::sqrt(apart), std::sqrt(expected), 0.05 * std::sqrt(expected));
 }
 
-/// A rate that swings far beyond the rail: its slope turns round while it is hidden, which what is read beside it does
-/// not bend enough to show. Control: the same readings taken for free.
+/// A rate far above the limit whose slope reverses while it is clipped. The readings around the segment do not show
+/// this curvature. Control: the same readings without clipping.
 TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
   constexpr double kPeriod_s = 0.0035, kAmplitude_rad_s = 20.0, kTurn_rad_s = 21.0;
   std::vector<ImuSample> samples;
@@ -176,7 +177,7 @@ TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
       static_cast<std::size_t>(std::lround(0.5 * 3.141592653589793 / kTurn_rad_s / params.expert.node_s));
   std::printf("hidden for %.3f s: root density %.0f, by the ends %.0f; taken for free %.0f\n", clipped_duration_s,
               collected.jerk[top], expected, free[top]);
-  // the slopes are read a window outside of the segment, which is that much longer
+  // slopes are measured one window outside of the segment, which makes it longer
   EXPECT_NEAR(collected.jerk[top], expected, 0.1 * expected);
   EXPECT_LT(free[top], 0.2 * expected);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The smoother of carried bodies on real recordings where they are at hand, and on their stand-ins everywhere: BROAD,
-// its gyro clipped at a third of its peak, and the twirled wand of RepoIMU, whose gyro clips at a tilted rail and whose
-// truth is optical.
+// Tests the hand-held smoother on real recordings, if they are available, and on their stand-ins. Uses BROAD with the
+// gyro clipped at a third of its peak, and RepoIMU's twirled wand, whose gyro clips at a tilted limit and whose
+// reference is optical.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,11 +27,11 @@ using testing::quantile;
 
 class HandHeldBroad : public ::testing::TestWithParam<std::string> {};
 
-/// Share of the raw error that is taken off at least.
+/// Lower bound for the reduction of the raw error.
 double share_wanted(const std::string& trial) {
   static const std::map<std::string, double> wanted = {
       {test::kStandInTrial, 0.60},
-      // measured 0.735, 0.885, 0.813, 0.781, 0.546, 0.775, 0.631, 0.688, less 0.02 to 0.08
+      // measured 0.735, 0.885, 0.813, 0.781, 0.546, 0.775, 0.631, 0.688, reduced by 0.02 to 0.08
       {"05", 0.70},
       {"07", 0.84},
       {"09", 0.77},
@@ -91,7 +91,7 @@ struct Wand {
   std::vector<Eigen::Quaterniond> q_ref;
 };
 
-/// Two header lines; time, quaternion (w first), specific force, gyro, magnetometer, separated by semicolons.
+/// Two header lines, then time, quaternion (w first), specific force, gyro, magnetometer, separated by semicolons.
 Wand read_wand(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string line;
@@ -119,7 +119,7 @@ TEST_P(HandHeldWand, RecoversTheTwirl) {
   const bool real = GetParam().real;
   const Wand wand = read_wand(test::written(GetParam()) / (real ? "TStick_Test05_Trial1.csv" : test::kStandInWand));
   ASSERT_GT(wand.samples.size(), 8000u);
-  // the plane that the readings of the clipped element lie in: x = +-7.2987 - 0.046 + 0.006 y - 0.018 z
+  // plane of the readings of the clipped element: x = +-7.2987 - 0.046 + 0.006 y - 0.018 z
   ClippedElements clipped;
   clipped.rows.row(0) << 1.0, -0.006, 0.018;
   std::vector<ClipSigns> signs(wand.samples.size());
@@ -138,13 +138,13 @@ TEST_P(HandHeldWand, RecoversTheTwirl) {
     optical[k] = so3::log(wand.q_ref[k - 1].conjugate() * wand.q_ref[k + 1]).norm() / 0.02;
   std::size_t within = 0;
   for (std::size_t k = 1; k + 1 < rates.size(); ++k) {
-    // no glitch of the reference: its second difference, the motion's own being below
+    // excludes glitches of the reference: the second difference of the motion is smaller
     const bool sane = optical[k] < 25.0 && std::abs(optical[k] - 0.5 * (optical[k - 1] + optical[k + 1])) < 1.0;
     if (rates[k].clipped_axes == 0 || !sane) continue;
     const Eigen::Vector3d w = rates[k].w_WI_I_rad_s, along = w.normalized();
     raw.push_back(std::abs(wand.samples[k].angular_velocity_rad_s.norm() - optical[k]));
     ours.push_back(std::abs(w.norm() - optical[k]));
-    // 0.15: the optical rate's own error, 0.12 on the median and 0.37 at 90 %
+    // 0.15: error of the optical rate, with a median of 0.12 and 0.37 at 90 %
     const double sigma = std::sqrt(along.dot(rates[k].covariance_rad2_s2 * along) + 0.15 * 0.15);
     within += ours.back() < 3.0 * sigma ? 1u : 0u;
   }
@@ -159,7 +159,7 @@ TEST_P(HandHeldWand, RecoversTheTwirl) {
 
 INSTANTIATE_TEST_SUITE_P(Wands, HandHeldWand, ::testing::ValuesIn(test::data_folders("repoimu")), test::FolderName());
 
-/// What the filter of the same idea reaches in motion, 0.554 degrees on the mean, and the deviation it states.
+/// Error in motion of the filter with the same model, 0.554 degrees on average, and its stated deviation.
 class HandHeldBroadAttitude : public ::testing::TestWithParam<test::DataFolder> {};
 
 TEST_P(HandHeldBroadAttitude, IsBetterThanTheFilterOnATrial) {
@@ -168,7 +168,7 @@ TEST_P(HandHeldBroadAttitude, IsBetterThanTheFilterOnATrial) {
   std::vector<RateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
-  const HandHeldSmoother smoother({.expert = {.node_s = 0.02}});  // half the time
+  const HandHeldSmoother smoother({.expert = {.node_s = 0.02}});  // half of the time
   ASSERT_TRUE(smoother.estimate(trial.samples, {}, rates, attitudes, report).ok());
   std::vector<Eigen::Quaterniond> q_WI;
   for (const AttitudeState& attitude : attitudes) q_WI.push_back(attitude.q_WA);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stream of the carried body states where nothing tells the rate: an accelerometer that says nothing while the
-// gyro clips, in closed form.
+// Tests the stated deviation of the hand-held stream where no sensor measures the rate: the accelerometer has no
+// information while the gyro clips. Closed-form motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 using testing::ClippedSpin;
 using testing::SpinReadings;
 
-/// The stream's params with a hand that is known to be calm, and so long a lag.
+/// Returns the stream's parameters with a known calm hand and this lag.
 HandHeldStream::Params calm_hand(double lag_s) {
   HandHeldStream::Params out;
   out.lag_s = lag_s;
@@ -30,9 +30,9 @@ HandHeldStream::Params calm_hand(double lag_s) {
   return out;
 }
 
-/// One clipped sample: error of the rate about the spin's axis, and its stated deviation.
+/// A clipped sample: rate error about the spin axis, and its stated deviation.
 struct HiddenRate {
-  double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: share of the segment that has passed
+  double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: elapsed share of the segment
 };
 
 struct LiveSpin {
@@ -73,19 +73,20 @@ struct LiveSpin {
   }
 };
 
-/// The rate at which a body turns once more than one that goes on evenly, by sin^2.
+/// Returns the rate of a body that makes one revolution more than at a constant rate, as sin^2.
 double once_more(double lasts_s) {
   return 4.0 * std::numbers::pi / lasts_s;
 }
 
-/// Deviation in the middle of a segment at whose ends rate, angular acceleration and angle are known: carried.md (C42).
+/// Deviation in the middle of a segment with known rate, angular acceleration and angle at both ends: carried.md (C42).
 double closed_form_sigma(const HandHeldStream::Params& params, double lasts_s) {
   const double q = std::pow(params.body.expert.jerk_inflation * params.body.jerk_rad_s3_sqrts, 2.0);
   return std::sqrt(q * std::pow(lasts_s + 1.0 / SpinReadings::kHz, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0)));
 }
 
-/// A whole turn more, a half or none, in a segment in which white jerk makes any of them: what is stated holds them,
-/// and it is told. While bounds counted as readings a third of these samples, 408, lay beyond three deviations.
+/// A segment has one revolution more, half a revolution more, or none, and white jerk can cause each. The stated
+/// deviations contain all of them, and health reports the ambiguity. If bounds count as readings, a third of the 408
+/// samples exceed three deviations.
 TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
   std::size_t all = 0, beyond = 0;
   for (const double from_s : {2.0, 2.3}) {
@@ -106,8 +107,8 @@ TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
   EXPECT_EQ(beyond, 0u);
 }
 
-/// Where all of the segment is in the window, the deviation is that of the jerk between what is known on either side,
-/// along the rail as well as far beyond it.
+/// If the window contains the whole segment, the deviation is that of white jerk between known values on both sides, at
+/// the limit and far above it.
 TEST(HandHeldRevolutions, ABoundSaysNothingOfHowFar) {
   const HandHeldStream::Params params = calm_hand(0.6);
   for (const double lasts_s : {0.3, 0.5}) {
@@ -120,7 +121,8 @@ TEST(HandHeldRevolutions, ABoundSaysNothingOfHowFar) {
   }
 }
 
-/// Negative controls: a segment too short for a turn hides none, and one in which gravity is seen to turn is known.
+/// Negative controls: a segment too short for a revolution is not ambiguous, and neither is a segment in which the
+/// rotation of gravity is observed.
 TEST(HandHeldRevolutions, AShortSegmentHidesNoTurn) {
   const LiveSpin brief({.more_rad_s = 3.0, .from_s = 2.0, .lasts_s = 0.15, .duration_s = 4.5}, calm_hand(0.2));
   EXPECT_EQ(brief.revolutions_ambiguous, 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The smoother of carried bodies against motions in closed form.
+// Tests the hand-held smoother on closed-form motions.
 #include "tumble/attitude/hand_held_smoother.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ HandHeldEstimate smoothed_carriage(const HandHeldRecording& recording, const Han
   return out;
 }
 
-/// Errors of the rate where the gyro clips, where it does not, of the raw reading where it clips [rad/s].
+/// Rate errors of clipped and of unclipped samples, and of the raw clipped readings [rad/s].
 struct RateErrors {
   std::vector<double> clipped, free, raw;
 };
@@ -70,7 +70,7 @@ double inclination_rms_rad(const HandHeldRecording& recording, const HandHeldEst
   return std::sqrt(sum / static_cast<double>(recording.samples.size()));
 }
 
-/// A third value beside free and clipped: a reading that has wrapped over the rail is neither measurement nor bound.
+/// A third kind of reading besides unclipped and clipped: an overflowed reading is neither a measurement nor a bound.
 TEST(HandHeldSmoother, ReadingsThatWrapSayNothing) {
   const HandHeldRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
   const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
@@ -89,7 +89,7 @@ TEST(HandHeldSmoother, ReadingsThatWrapSayNothing) {
   EXPECT_GT(free, 5.0 * all);
 }
 
-/// Rates about x that somebody recovered, 2 rad/s too large for a third of a second: carried.md (C15)
+/// Recovered rates about x with an error of 2 rad/s for a third of a second: carried.md (C15)
 TEST(HandHeldSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
   HandHeldRecording recording = testing::record({.spin_rad = 1.0}, 100.0, 12.0, 0.0);
   std::vector<Eigen::Matrix3d> told(recording.samples.size(), Eigen::Matrix3d::Zero()), untold = told;
@@ -113,8 +113,9 @@ TEST(HandHeldSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
   EXPECT_GT(error(untold), 3.0 * error(told));  // negative control
 }
 
-// carried.md (C27): of a turn of 9 rad between two rests nothing is open at its ends, and in its middle what half of it
-// gathers; the attitudes stay where they are. Of a body in a hand, without recovered rates, nothing is added.
+// carried.md (C27): the variance of a rotation of 9 rad between two rests is zero at its ends, and in the middle that
+// of half the rotation. The attitudes remain unchanged. For a hand-held body without recovered rates, no variance is
+// added.
 TEST(HandHeldSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
   std::vector<ImuSample> samples(700);
   const Eigen::Vector3d rate_rad_s(3.0, 0.0, 0.0);
@@ -142,7 +143,7 @@ TEST(HandHeldSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const double half_rad =
         3.0 * std::max(0.0, std::min(0.01 * static_cast<double>(k) - 2.0, 5.0 - 0.01 * static_cast<double>(k)));
-    // the rests are told to a tenth of a second
+    // the rests are known to a tenth of a second
     EXPECT_NEAR(std::sqrt(added(with, k).maxCoeff()), 0.01 * half_rad, 0.01 * 0.4) << k;
     EXPECT_EQ(with[k].q_WA.coeffs(), without[k].q_WA.coeffs()) << k;
     EXPECT_EQ(added(held, k), Eigen::Vector3d::Zero()) << k;
@@ -188,7 +189,7 @@ TEST(HandHeldSmoother, FollowsAFreeGyroAndFindsTheVertical) {
 }
 
 TEST(HandHeldSmoother, RecoversATwirlBeyondTheRail) {
-  // 11.3 rad/s at the peaks, the rail at 7.3, half of each turn lost
+  // peaks of 11.3 rad/s with a limit of 7.3; half of each rotation is clipped
   const HandHeldRecording recording = testing::record({}, 100.0, 20.0, 7.3);
   const RateErrors errors = rate_errors(recording, smoothed_carriage(recording));
   ASSERT_GT(errors.clipped.size(), 500u);
@@ -209,8 +210,8 @@ TEST(HandHeldSmoother, SaysTheSameAtAnyRateOfTheImu) {
   }
 }
 
-/// A gyro with noise and bias whose truth is one draw of the motion: the deviations hold the errors, and are not far
-/// too wide.
+/// A random motion, measured by a gyro with noise and bias. The stated deviations contain the errors, and are not much
+/// too large.
 TEST(HandHeldSmoother, DeviationsHoldTheErrors) {
   std::size_t within = 0, within_one = 0, count = 0;
   for (std::uint64_t seed : {1u, 2u, 3u, 4u}) {
@@ -245,7 +246,8 @@ TEST(HandHeldSmoother, DeviationsHoldTheErrors) {
   EXPECT_LT(tiny, 0.5) << "a deviation twenty times the error says nothing";
 }
 
-/// Negative control: a body that is thrown (specific force about zero for half a second) while it is believed carried.
+/// Negative control: a thrown body (specific force near zero for half a second) that the smoother assumes to be
+/// hand-held.
 TEST(HandHeldSmoother, AThrownBodyShows) {
   HandHeldRecording recording = testing::record({}, 100.0, 6.0, 0.0);
   const double hand_held = smoothed_carriage(recording).report.hand_acceleration_ratio;

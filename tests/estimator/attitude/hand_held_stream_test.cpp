@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The streams of carried bodies against motions in closed form and against the batch.
+// Tests the hand-held streams on closed-form motions, and compares them with the batch smoother.
 #include "tumble/attitude/hand_held_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST(HandHeldStream, AStateThatItDidNotLeaveIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { s.first_node -= 1000; }));
   EXPECT_TRUE(refused([](auto& s) { s.start_ns = std::numeric_limits<std::int64_t>::min(); }));
   EXPECT_TRUE(refused([](auto& s) { s.readings.back().centre_s += 1e3; }));
-  // of last sample and first node alike, so that the window's size is right
+  // includes the last sample and the first node, so that the window has the right size
   EXPECT_TRUE(refused([](auto& s) {
     for (HandHeldStream::Reading& reading : s.readings) reading.node += 1000;
     s.first_node += 1000;
@@ -77,14 +77,14 @@ TEST(HandHeldStream, AStateThatItDidNotLeaveIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { std::swap(s.readings[0].node, s.readings.back().node); }));
 }
 
-/// With one and a half seconds of lag the stream knows nearly what the batch knows, once it has found its attitude and
+/// With a lag of 1.5 s, the stream is nearly as accurate as the batch smoother, after it has found its attitude and
 /// constants.
 TEST(HandHeldStream, IsTheBatchOnALongLag) {
   const HandHeldRecording recording = testing::record({}, 100.0, 9.0, 7.3);
   HandHeldStream::Params params;
   params.lag_s = 1.5;
   params.window_s = 1.8;
-  params.body.expert.hand.hand_noise_adaptation = 0.0;  // the one thing in which the two differ by design
+  params.body.expert.hand.hand_noise_adaptation = 0.0;  // stream and batch differ in this adaptation by design
   const std::vector<RateState> live = stream(recording, params);
   std::vector<RateState> batch;
   std::vector<AttitudeState> attitudes;
@@ -105,7 +105,7 @@ TEST(HandHeldStream, IsTheBatchOnALongLag) {
   EXPECT_NEAR(quantile(widths, 0.5), 1.0, 0.05);
 }
 
-/// What the stream makes of twenty seconds of the twirl, once for all who ask.
+/// Result of the stream for twenty seconds of the twirl, computed once for all tests.
 const HandHeldRecording& twirl() {
   static const HandHeldRecording recording = testing::record({}, 100.0, 20.0, 7.3);
   return recording;
@@ -136,14 +136,14 @@ TEST(HandHeldStream, RecoversATwirlAtItsLag) {
   EXPECT_GE(share, 0.97);
 }
 
-/// The lag is counted in samples of the period that was stated: where they come sparser, nodes leave the window before
-/// their samples are old enough, and none may be lost for it.
+/// The lag is counted in samples of the stated period. With a lower sample rate, nodes leave the window before their
+/// samples are old enough. The stream must still report all samples.
 TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   for (const double hz : {30.0, 20.0, 12.0}) {
     const HandHeldRecording recording = testing::record({.spin_hz = 0.45}, hz, 12.0, 5.0);
     const HandHeldStream::Params params;
-    ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);  // a sample's lag is longer than the window
-    const std::vector<RateState> live = stream(recording, params);    // one for each sample
+    ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);  // the lag is longer than the window
+    const std::vector<RateState> live = stream(recording, params);    // one result per sample
     std::vector<double> raw;
     for (std::size_t k = 0; k < live.size(); ++k) {
       EXPECT_GT(live[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0) << hz << " Hz, " << k;
@@ -158,7 +158,7 @@ TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   }
 }
 
-/// Readings that have wrapped over the rail say nothing; taken for free ones they would say the contrary.
+/// Overflowed readings have no information; as normal readings, they would have the opposite sign.
 TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
   const HandHeldRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
   const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
@@ -177,7 +177,7 @@ TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
     EXPECT_NE(live[k].source, RateSource::measured) << k;
     EXPECT_EQ(live[k].clipped_axes, 1) << k;
   }
-  // of the first twelve of its seconds
+  // statistics of the first twelve seconds
   const std::vector<RateState> all_live(live_twirl().begin(), live_twirl().begin() + 1200);
   const double all = median(clipped, all_live), without = median(wrapped, live);
   const double free = median(believed, stream(believed, {}));
@@ -242,7 +242,7 @@ TEST(HandHeldStream, RefusesBadInputAndKeepsItsState) {
   flat.rows.setZero();
   EXPECT_EQ(error_code(recording.samples[50], flat), ErrorCode::degenerate);
   EXPECT_EQ(error_code(recording.samples[50], known), ErrorCode::none);
-  // a drop-out longer than the window, and on
+  // a drop-out longer than the window, and the samples after it
   bad = recording.samples[60];
   bad.time_ns += 800'000'000;
   EXPECT_EQ(error_code(bad, known), ErrorCode::none);

@@ -12,7 +12,7 @@
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/so3.hpp"
 
-// units that freeze, die or disagree: left out and told, and nobody else
+// IMUs that freeze, fail or disagree are excluded and reported; all others remain
 namespace tumble {
 namespace {
 
@@ -39,8 +39,8 @@ double quantised(double value, double quantum) {
   return quantum * std::round(value / quantum);
 }
 
-/// A body that rests for a second, then turns about a level axis with 5 rad/s, give or take; noise and quanta of a
-/// Phidget. `harm(k, readings)` before the merge.
+/// A body that rests for a second, then rotates about a level axis at about 5 rad/s, with noise and quantisation of a
+/// Phidget. `harm(k, readings)` changes the readings before the merge.
 struct HarmedMerge {
   ImuMerge::State state;
   double worst_rate_rad_s = 0.0, worst_force_m_s2 = 0.0;
@@ -99,9 +99,9 @@ TEST(ImuMergeHealth, GoodUnitsAreNotBlamed) {
     for (const double top_rad_s : {0.0, 5.0, 20.0})
       expect_only(merge_harmed(rate_hz, top_rad_s, 1.0, nothing), kCount, kCount);
   }
-  // at rest without noise all readings are equal for ever
+  // at rest without noise, all readings are always equal
   expect_only(merge_harmed(250, 0.0, 0.0, nothing), kCount, kCount);
-  // and so is one unit's, while the others are noisy
+  // the readings of one IMU are always equal, while the others have noise
   ImuSample first;
   expect_only(merge_harmed(250, 0.0, 1.0,
                            [&first](double t, UnitReadings& now) {
@@ -137,9 +137,9 @@ TEST(ImuMergeHealth, AUnitThatRepeatsItselfWhileTheOthersMoveIsFrozen) {
     });
     expect_only(out, unit, kCount);
     EXPECT_NEAR(seconds(out.state.units[unit].frozen_since_ns), 1.996, 0.01);
-    // of two instead of three units, and 0.03 s of false differences were learnt from before it showed
+    // two instead of three IMUs, and 0.03 s of wrong differences were used before the detection
     EXPECT_LT(out.worst_rate_rad_s, 4.0 * good.worst_rate_rad_s);
-    EXPECT_LT(out.worst_force_m_s2, 4.0 * good.worst_force_m_s2);  // and an acceleration from the gyros' noise
+    EXPECT_LT(out.worst_force_m_s2, 4.0 * good.worst_force_m_s2);  // and an acceleration from the gyro noise
   }
 }
 
@@ -199,7 +199,7 @@ TEST(ImuMergeHealth, AUnitThatDiedIsAbsent) {
   EXPECT_LT(out.worst_force_m_s2, 0.5);
 }
 
-// what a unit read before its silence is of another motion: nothing is learnt, or moved in time, across it
+// readings before a gap belong to another motion: nothing is calibrated or interpolated across the gap
 TEST(ImuMergeHealth, AUnitThatComesBackIsNotComparedWithWhatItReadBefore) {
   const HarmedMerge undisturbed = merge_harmed(250, 5.0, 1.0, nothing);
   for (const double back_s : {3.1, 3.3, 3.6, 4.0}) {
@@ -228,7 +228,7 @@ TEST(ImuMergeHealth, AUnitThatDisagreesForLongIsLeftOutForGood) {
   const HarmedMerge out = merge_harmed(250, 5.0, 1.0, swapped);
   expect_only(out, kCount, 0);
   EXPECT_LT(out.worst_rate_rad_s, 0.02);
-  // borne: 1 % of scale, 0.02 rad/s and 0.2 m/s^2 of bias
+  // tolerated: 1 % of scale, 0.02 rad/s and 0.2 m/s^2 of bias
   expect_only(
       merge_harmed(250, 5.0, 1.0,
                    [](double, UnitReadings& now) {

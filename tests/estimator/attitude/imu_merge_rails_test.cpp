@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several IMUs as one where their gyros clip below the stated range, along tilted elements, and where devices say so.
+// Tests the merge of several IMUs whose gyros clip below the stated range, have tilted elements, or report clip flags.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -24,7 +24,7 @@ constexpr double kStated_rad_s = 34.9;
 constexpr TimeNs kTick_ns = 4'000'000;
 constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
 
-/// Three IMUs about the centre of a body that turns about a fixed level axis, up to `top` and down again within 2 s.
+/// Three IMUs around the centre of a body that rotates about a fixed level axis, up to `top` and back within 2 s.
 struct TiltedSpin {
   double top = 0.0, rail = 1e3;
   std::array<Matrix3d, 3> rows = {Matrix3d::Identity(), Matrix3d::Identity(), Matrix3d::Identity()};
@@ -63,13 +63,13 @@ ImuMerge::Params tilted_params(const TiltedSpin& spin, int count) {
 }
 
 struct RailedMerge {
-  double error_rad_s = 0.0;      ///< largest a while after a gyro has clipped
-  double raw_error_rad_s = 0.0;  ///< of a gyro alone
+  double error_rad_s = 0.0;      ///< largest error some time after a gyro has clipped
+  double raw_error_rad_s = 0.0;  ///< error of a single gyro
   int clipped = 0, unflagged = 0;
   ImuMerge::State state;
 };
 
-/// `flagged` units tell that they clip.
+/// `flagged` IMUs report clipping.
 RailedMerge merge_tilted(const TiltedSpin& spin, const ImuMerge::Params& p,
                          std::array<bool, 3> flagged = {true, true, true}) {
   const ImuMerge merge(p);
@@ -112,20 +112,20 @@ TEST(ImuMergeRails, ReadsTiltedElementsAlongTheirRows) {
   ASSERT_GT(ours.clipped, 100);
   EXPECT_GT(ours.raw_error_rad_s, 5.0);
   EXPECT_LT(ours.error_rad_s, 0.5);
-  // negative control: axis by axis the free ones are taken for what they are not
+  // negative control: per axis, free axes are assumed correct although they are not
   ImuMerge::Params upright = tilted_params(spin, 3);
   upright.gyro_elements = {};
   EXPECT_GT(merge_tilted(spin, upright).error_rad_s, 1.5 * ours.error_rad_s);  // measured: 0.275 and 0.139 rad/s
 }
 
-// A device that stops at 12 rad/s where its sheet states 34.9, and says so.
+// A device that saturates at 12 rad/s although its sheet states 34.9 rad/s, and that reports clip flags.
 TEST(ImuMergeRails, AFlagFarBelowTheRangeIsHeard) {
   const TiltedSpin spin{16.0, 12.0};
   const RailedMerge ours = merge_tilted(spin, tilted_params(spin, 3));
   ASSERT_GT(ours.clipped, 100);
   EXPECT_GT(ours.raw_error_rad_s, 2.0);
   EXPECT_LT(ours.error_rad_s, 0.5);
-  // negative control: without flags nobody can tell
+  // negative control: without flags, the saturation cannot be detected
   EXPECT_GT(merge_tilted(spin, tilted_params(spin, 3), {false, false, false}).error_rad_s, 2.0);
 }
 
@@ -167,7 +167,7 @@ TEST(ImuMergeRails, OfTwoTheOneThatIsFreeIsBelieved) {
     error = std::max(error, (merged->angular_velocity_rad_s - spin.rate(seconds(k * kTick_ns))).norm());
   }
   EXPECT_LT(error, 1e-6);
-  // what the clipped one lacked was taken for no error of its scale or bias
+  // the deficit of the clipped gyro does not count as an error of its scale or bias
   EXPECT_LT(state.units[0].x.head<12>().norm(), 1e-3);
 }
 

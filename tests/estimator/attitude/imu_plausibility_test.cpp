@@ -39,7 +39,7 @@ TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
     const Status status = verdict_of([](ImuSample&) {}, period_ns);
     EXPECT_TRUE(status.ok()) << status.message();
   }
-  // biases and scales far beyond a data sheet's are no wrong unit
+  // biases and scale errors far beyond a data sheet do not make an IMU implausible
   EXPECT_TRUE(verdict_of([](ImuSample& sample) {
                 sample.angular_velocity_rad_s =
                     1.05 * sample.angular_velocity_rad_s + Eigen::Vector3d(0.05, 0.0, -0.05);
@@ -71,7 +71,7 @@ ImuPlausibility::State state_of(const testing::RollingTruth& truth, const AxisLa
   ImuPlausibility::State state;
   for (ImuSample sample : truth.samples) {
     const Eigen::Vector3d force = sample.specific_force_m_s2;
-    // what is called axis[j] is, with its sign, what the gyro calls j
+    // axis j of the gyro is called axis[j], with its sign
     for (std::size_t j = 0; j < 3; ++j) {
       sample.specific_force_m_s2[named.axis[j]] = named.sign[j] * force[static_cast<Eigen::Index>(j)];
     }
@@ -102,7 +102,7 @@ TEST(ImuPlausibility, EveryOtherNamingOfTheAxesIsFound) {
 }
 
 TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
-  // along x = y the axis of the roll is that which a swap of x and y leaves alone; its heading sways by `sway_rad`
+  // along x = y, the roll axis is unchanged by exchanging x and y; the heading oscillates by `sway_rad`
   const auto swayed = [](double sway_rad) {
     return testing::roll({.velocity_m_s = [=](double t) -> Eigen::Vector3d {
                             const double heading = 0.25 * 3.141592653589793 + sway_rad * std::sin(2.0 * t);
@@ -117,7 +117,7 @@ TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
   EXPECT_LT(plausibility.unexplained_rotation_ratio(state), 0.2) << "the slope alone would let it pass";
   EXPECT_FALSE(plausibility.verdict(state).ok());
   EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.15), {})).ok());
-  // of a straight way both namings say the same, and neither is called wrong
+  // on a straight path, both namings of the axes agree, and neither is rejected
   EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.0), swapped)).ok());
 }
 
@@ -141,7 +141,7 @@ TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
   EXPECT_THROW(ImuPlausibility({.gravity_m_s2 = 0.0}), InvalidParams);
 }
 
-// At rest, then in the air and spinning: the sensor feels w x (w x r), which is steady and turns with it.
+// A body at rest, then in the air and spinning: the sensor measures w x (w x r), which is constant in sensor axes.
 ImuPlausibility::State of_a_throw(double spin_rad_s, double arm_m) {
   const ImuPlausibility plausibility({});
   ImuPlausibility::State state;
@@ -161,12 +161,12 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   const Status thrown = plausibility.verdict(of_a_throw(12.0, 0.1));  // 14 m/s^2
   EXPECT_TRUE(thrown.ok()) << thrown.message();
   EXPECT_EQ(plausibility.unexplained_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
-  // nothing tells a steady force of gravity's own size from gravity
+  // a constant force with the size of gravity cannot be distinguished from gravity
   EXPECT_FALSE(plausibility.verdict(of_a_throw(10.0, 0.0980665)).ok());
 }
 
-// Twice taken far aside by hand and back, then a little aside, and let go: the force of a free pendulum points along
-// its rod however it turns.
+// A hand moves the pendulum far aside and back twice, then a little aside, and releases it. The specific force of a
+// free pendulum always points along its rod.
 ImuPlausibility::State of_a_pendulum(double gyro_scale) {
   constexpr double kLength_m = 0.5, kDt_s = 0.01;
   constexpr double kFar_rad = 1.2, kLittle_rad = 0.35, kLift_s = 0.7, kBack_s = 2.8, kLet_go_s = 3.5;
@@ -209,12 +209,12 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
   }
 }
 
-// pushes take from the slope; another sense or scale would leave less of what is unexplained
+// pushes reduce the slope; another sign or scale would leave a smaller residual
 TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   const ImuPlausibility plausibility({});
   const auto verdict_at = [&](double force_rotation_rad2, double correlation) {
     ImuPlausibility::State state;
-    constexpr double kRotated_rad2 = 10.0;  // by the gyro, well beyond what little is left out
+    constexpr double kRotated_rad2 = 10.0;  // rotation angle by the gyro, far more than the excluded part
     state.force_rotation_rad2 = kRotated_rad2 * force_rotation_rad2;
     state.gyro_rotation_rad2 = kRotated_rad2;
     state.rotated_windows = 100.0;
@@ -234,13 +234,13 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   EXPECT_FALSE(verdict_at(4.0, 0.9)) << "half the scale";
   EXPECT_FALSE(verdict_at(0.3 * 0.3, 0.4)) << "a multiple of it";
   EXPECT_FALSE(verdict_at(4.9, 0.9)) << "half the scale, and pushes";
-  // a hand that swings the sensor about a point of its own: what turns it pushes it too, with it or against it
+  // a hand swings the sensor about a point of the hand, so rotation and acceleration are correlated with either sign
   EXPECT_TRUE(verdict_at(8.0, 0.62)) << "BROAD 07, a good gyro, slope 1.75";
   EXPECT_TRUE(verdict_at(9.0, 0.526)) << "BROAD 11, slope 1.58";
   EXPECT_TRUE(verdict_at(14.1, -0.13)) << "BROAD 27, slope -0.49";
 }
 
-// hill 85124: one window of a flight, in which the force at the IMU's place is of gravity's size, and turns
+// hill 85124: one window of a flight in which the force at the IMU has the size of gravity, and rotates
 TEST(ImuPlausibility, AFewWindowsSayNothingOfTheTurning) {
   const ImuPlausibility plausibility({});
   const auto after_rotations = [&](int turns) {
@@ -269,7 +269,7 @@ TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
   EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
 }
 
-// Nor is its size: what a rig that spins in flight feels at its position is as steady.
+// The size of the force is no indication either: the force on a rig that spins in flight is just as constant.
 TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
   const auto verdict = [](double range_rad_s) {
     const ImuPlausibility plausibility({.gyro_range_rad_s = range_rad_s});
@@ -287,7 +287,7 @@ TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
   EXPECT_STREQ(verdict(12.0).field, "mean specific force in steady windows (share of gravity)");
 }
 
-// Standing, with noise; from `from_s` on a triad repeats its reading for `for_s`.
+// A body at rest, with noise; after `from_s`, a triad repeats its reading for `for_s`.
 ImuPlausibility::State with_a_hold(bool gyro, double from_s, double for_s, double before_s = 0.0) {
   const ImuPlausibility plausibility({});
   ImuPlausibility::State state;
@@ -319,7 +319,7 @@ TEST(ImuPlausibility, ATriadThatRepeatsItselfIsFrozen) {
   }
 }
 
-// A body that rests, or rolls as it goes, with a gyro or an accelerometer that gives `dead` for ever.
+// A body that rests, or rolls, while its gyro or accelerometer always reads `dead`.
 ImuPlausibility::State with_a_dead(bool gyro, bool turns, double dead) {
   const ImuPlausibility plausibility({});
   ImuPlausibility::State state;

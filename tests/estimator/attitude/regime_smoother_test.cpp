@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rates of a whole recording whoever holds the body: a twirl in closed form has the smoother of carried bodies asked,
-// and a spin in free flight has not.
+// Tests rates of whole recordings with unknown regime: for a closed-form twirl, the smoother uses the hand-held model,
+// and for a spin in free flight, it does not.
 #include "tumble/attitude/regime_smoother.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ RegimeSmoother::Params params_of(const HandHeldMotion& motion) {
   return params;
 }
 
-/// Median error where the gyro clips.
+/// Returns the median error of clipped samples.
 double clipped_error(const HandHeldRecording& recording, const std::vector<RateState>& rates) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -51,8 +51,8 @@ TEST(RegimeSmoother, ATwirlIsTheHands) {
   EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
 }
 
-// A force is said four times; taken for that of each sample's own time the hidden segments look like flight, and are
-// off by 11 rad/s.
+// Each force repeats four times. If each is assumed to belong to its own sample, the clipped segments resemble flight,
+// with an error of 11 rad/s.
 TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
@@ -71,9 +71,9 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
-// It turns back ten times and is hardly read in between, so that it is one segment; that nobody knows who holds it in
-// the first tenth of a second, where its rate is not known yet, says nothing of the rest, which would be off by 10
-// rad/s.
+// The body reverses ten times, with few unclipped readings, so all clipped samples form one segment. The regime in the
+// first tenth of a second is unknown, because the rate is unknown. This must not affect the rest, which would have
+// errors of 10 rad/s.
 TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
@@ -91,7 +91,7 @@ TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
 TEST(RegimeSmoother, ASpinInFlightIsNot) {
   const HandHeldMotion motion;
   HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
-  for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same turning, and nobody who holds the body
+  for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same rotation without a hand
     const double t = 0.01 * (static_cast<double>(k) + 0.5);
     const Eigen::Vector3d w = motion.rate(t);
     recording.samples[k].specific_force_m_s2 =

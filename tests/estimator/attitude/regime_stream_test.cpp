@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stream that tells flight, contact and hand apart as it goes.
+// Tests the stream that distinguishes flight, contact and hand-held motion live.
 #include "tumble/attitude/regime_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -23,11 +23,11 @@ using testing::quantile;
 
 struct Joined {
   std::vector<RateState> rates;
-  std::vector<double> hand_held;  ///< share, after each sample given out
+  std::vector<double> hand_held;  ///< hand-held share after each reported sample
   RegimeStream::State state;
 };
 
-/// What a stream held in the middle, and how many rates it had given by then.
+/// State of a stream in the middle of a run, and the number of rates that it had reported.
 struct Middle {
   std::size_t samples = 0;
   RegimeStream::State state;
@@ -40,7 +40,7 @@ RegimeStream::Params at_its_hand() {
   return params;
 }
 
-/// Goes on from `from`; leaves in `middle` what is held before its number of samples.
+/// Continues from `from`; stores the state before the sample number in `middle`.
 Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& params, const Middle& from,
              Middle* middle = nullptr) {
   const RegimeStream stream(params);
@@ -66,8 +66,8 @@ Joined joined(const std::vector<ImuSample>& samples, const RegimeStream::Params&
   return go_on(samples, params, {0, RegimeStream(params).start(), 0}, middle);
 }
 
-/// The twirl of HandHeldMotion taken up slowly: its own time runs at 0.3 for four seconds, then ever faster to 1 within
-/// two. Flags instead of a rail that has to be found first.
+/// The twirl of HandHeldMotion with a slow start: its time runs at 0.3 of normal for four seconds, then accelerates to
+/// 1 within two seconds. The samples have clip flags, so no limit must be found first.
 struct SlowlyBegun {
   HandHeldMotion motion;
   double speed(double t) const { return 0.3 + 0.7 * std::clamp(0.5 * (t - 4.0), 0.0, 1.0); }
@@ -116,7 +116,7 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   const std::vector<double> errors = clipped_errors(recording, whole.rates, 2.0);
   std::printf("joined: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
   EXPECT_LT(quantile(errors, 0.5), 0.6);
-  // a copy of what it held goes on with the same bits
+  // a copy of the state continues with identical bits
   const Joined rest = go_on(samples, at_its_hand(), middle);
   ASSERT_GT(rest.rates.size(), 800u);
   for (std::size_t k = 0; k < rest.rates.size(); ++k) {
@@ -126,8 +126,8 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   }
 }
 
-/// Samples lie as far apart as the time over which rates are differentiated is long: seconds since the clock's start
-/// are rounded otherwise at every start.
+/// The sample period equals the time for differentiating rates. Times in seconds are rounded differently for each clock
+/// start.
 TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
   std::vector<ImuSample> samples = SlowlyBegun().record(100.0, 10.0, 7.3).samples;
   const Joined at_zero = joined(samples, at_its_hand());
@@ -142,8 +142,8 @@ TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
   }
 }
 
-/// The rig says that the IMU is 10 cm from the centre of mass: the lever arm's force could pass for gravity, if the
-/// angular acceleration were free to follow the force. The gyro reads it between the spins, and so the hand is known.
+/// The stated lever arm is 10 cm. The centripetal force could resemble gravity if the angular acceleration could follow
+/// the force. However, the gyro measures the rate between spins, so hand-held motion is detected.
 TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
   const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
   RegimeStream::Params params;
@@ -163,7 +163,7 @@ TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
   EXPECT_GE(within / clipped, 0.97);
 }
 
-/// As a log of 240 Hz says what an IMU reads at 100: each reading two or three times, up to a reading's time late.
+/// Log of 240 Hz for an IMU of 100 Hz: each reading appears two or three times, up to one IMU period late.
 HandHeldRecording said_again(const HandHeldRecording& own, const SlowlyBegun& motion) {
   HandHeldRecording out;
   for (std::size_t k = 0, from = 0; from + 1 < own.samples.size(); ++k) {
@@ -177,7 +177,7 @@ HandHeldRecording said_again(const HandHeldRecording& own, const SlowlyBegun& mo
   return out;
 }
 
-/// Without knowing of it the stream is off by 0.37 rad/s on the median, and 56 % lie within three deviations.
+/// If the stream ignores the repetition, its median error is 0.37 rad/s, and 56 % are within three deviations.
 TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   const SlowlyBegun motion;
   const HandHeldRecording recording = said_again(motion.record(100.0, 16.0, 7.3), motion);
@@ -199,8 +199,9 @@ TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   EXPECT_GE(within / count, 0.98);
 }
 
-/// It turns back once a second and is hardly read in between, so that it is one segment of clipped samples; that nobody
-/// knows who holds it at first, where its rate is not known yet, says nothing of the rest. Flight is off by 10 rad/s.
+/// The body reverses once per second, with few unclipped readings, so all clipped samples form one segment. The regime
+/// at the start is unknown, because the rate is unknown. This must not affect the rest. With the flight model, the
+/// error is 10 rad/s.
 TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
@@ -212,11 +213,12 @@ TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   EXPECT_LT(quantile(errors, 0.5), 1.5);
 }
 
-/// Thrown while it was believed carried, and caught again: the evidence follows within the lag, both ways.
+/// The body is thrown while it is classified as hand-held, and caught again: the classification follows within the lag,
+/// in both directions.
 TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   const SlowlyBegun motion;
   std::vector<ImuSample> samples = motion.record(100.0, 16.0, 7.3).samples;
-  for (std::size_t k = 1000; k < 1080; ++k)  // the lever arm's share alone
+  for (std::size_t k = 1000; k < 1080; ++k)  // only the force of the lever arm
     samples[k].specific_force_m_s2 = motion.turning(0.01 * (static_cast<double>(k) + 0.5), motion.motion.lever_arm_m);
   RegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = HandHeldMotion().lever_arm_m;
@@ -234,7 +236,7 @@ TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   EXPECT_GT(hand_held[1400], 0.9);
 }
 
-/// Share of the hand after 0.3 s of a flight that clips, when `dropped` rigs count as dropped at its start.
+/// Hand-held share after 0.3 s of a flight with clipping, if `dropped` rig hypotheses count as dropped at its start.
 double share_in_flight(std::uint64_t seed, double dropped) {
   TumbleOptions options;
   options.seed = options.mounting_seed = seed;
@@ -254,8 +256,9 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   return state.probabilities.hand_held;
 }
 
-/// A hand that throws bends the rig, which is dropped in step after step: 20 times in a lag at most. That says nothing
-/// of the flight that follows: the doubt is gone before the lag is over. The control is a doubt that lasts.
+/// A throw by a hand contradicts rig hypotheses, which are dropped in successive steps, up to 20 times per lag. This
+/// must not affect the following flight: the additional uncertainty ends before the lag. The control keeps the
+/// uncertainty.
 TEST(RegimeStream, AFlightIsSeenThoughThePushBeforeItBentTheRig) {
   for (const std::uint64_t seed : {5, 7}) {
     EXPECT_LT(share_in_flight(seed, 20.0), 0.02) << seed;

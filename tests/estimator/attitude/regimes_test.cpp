@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which regime a body is in, on motion in closed form: it spins about an axis of its own, the force is that of a hand,
-// of flight or of the ground, in a row that the test names.
+// Tests the classification of regimes on closed-form motion: the body spins about its own axis, and the force is that
+// of a hand, of flight or of ground contact, in the order given by the test.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -27,8 +27,8 @@ struct RegimeRecording {
   std::vector<ImuSample> samples;
   std::vector<RateState> rates;
 
-  /// `seconds` more of it at 100 Hz: gravity turning in the sensor, a hand or the ground pushing by `push_m_s2`, or
-  /// neither.
+  /// Appends `seconds` at 100 Hz: gravity in sensor axes, plus a push of a hand or the ground by `push_m_s2`, or no
+  /// force.
   void go_on(Regime regime, double length_s, double push_m_s2 = 2.0) {
     std::normal_distribution<double> noise;
     for (int i = 0; i < static_cast<int>(100.0 * length_s + 0.5); ++i) {
@@ -62,7 +62,8 @@ struct RegimeRecording {
     return out;
   }
 
-  /// Share of the samples of `regime` that are found to be carried, those within 0.1 s of a change left out.
+  /// Returns the share of the samples of `regime` that are classified as hand-held, without samples within 0.1 s of a
+  /// change.
   double called_carried(Regime regime) const {
     const std::vector<RegimeProbabilities> probabilities = found();
     double of = 0.0, called = 0.0;
@@ -118,7 +119,7 @@ TEST(Regimes, ATumbleIsNoHand) {
     motion.go_on(Regime::flight, 0.3);
     motion.go_on(Regime::contact, 0.06, 60.0);
   }
-  // but for the first and the last moments, before which and after which there may have been anything
+  // except at the start and the end, because the motion before and after is unknown
   EXPECT_EQ(motion.called_carried(Regime::flight), 0.0);
   double most = 0.0;
   const std::vector<RegimeProbabilities> probabilities = motion.found();
@@ -127,7 +128,7 @@ TEST(Regimes, ATumbleIsNoHand) {
 }
 
 TEST(Regimes, AQuietMomentOnTheGroundBetweenFlightsIsNoHand) {
-  // as gentle as a hand: only what is about it tells
+  // contact as gentle as a hand: only the neighbouring regimes distinguish them
   RegimeRecording motion;
   motion.go_on(Regime::flight, 0.5);
   motion.go_on(Regime::hand_held, 0.3);
@@ -162,7 +163,7 @@ TEST(Regimes, EitherHoldsBothAnswers) {
   const RateState open = mix_rates(first, second, 0.6);
   EXPECT_EQ(open.w_WI_I_rad_s, second.w_WI_I_rad_s);
   EXPECT_EQ(open.source, RateSource::bounded_only);
-  // 0.4 * 0.01 + 0.6 * 0.04 + 0.4 * 3^2, about the answer given
+  // 0.4 * 0.01 + 0.6 * 0.04 + 0.4 * 3^2, about the reported value
   EXPECT_NEAR(open.covariance_rad2_s2(0, 0), 3.628, 1e-12);
   EXPECT_NEAR(open.covariance_rad2_s2(1, 1), 0.028, 1e-12);
 }

@@ -25,7 +25,7 @@ struct Span {
   bool shaken = true;
 };
 
-// Of the world, for three whole periods on each axis: what it adds to the velocity it takes again.
+// World acceleration over three whole periods on each axis, so that the velocity returns to its start.
 Eigen::Vector3d shaken_m_s2(double share_of_turn) {
   constexpr double kRevolution_rad = 6.283185307179586;
   return {20.0 * std::sin(3.0 * kRevolution_rad * share_of_turn),
@@ -33,7 +33,7 @@ Eigen::Vector3d shaken_m_s2(double share_of_turn) {
           -15.0 * std::sin(6.0 * kRevolution_rad * share_of_turn)};
 }
 
-// At rest, turning at a constant rate while it is shaken, and at rest again: R is known in closed form.
+// A body at rest, then rotating at a constant rate while it is shaken, and at rest again: R is known in closed form.
 RestGravity::State after(const Span& span, const Harm& harm, double scale_of_estimate = 1.0,
                          const RestGravity::Params& params = {}) {
   const RestGravity gravity(params);
@@ -74,7 +74,7 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   EXPECT_NEAR(gravity.magnitude_error_ratio(good), 1.0, 1e-3);
 }
 
-// BROAD 16: three minutes in a hand, in which a bias of 3 mrad/s turns gravity by half a radian
+// BROAD 16: three minutes in a hand; a bias of 3 mrad/s rotates gravity by half a radian
 TEST(RestGravity, OfALongSpanNothingIsSaid) {
   const Harm halved = [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; };
   EXPECT_FALSE(RestGravity({}).verdict(after({}, halved)).ok());
@@ -108,7 +108,8 @@ TEST(RestGravity, AnAccelerometerOfAnotherUnitShowsInTheSize) {
   EXPECT_TRUE(gravity.verdict(after({}, [](ImuSample& s) { s.specific_force_m_s2 *= 1.05; })).ok());
 }
 
-// "Linear acceleration": what it reads at rest is nothing. A fall reads nothing too, after a rest that has its force.
+// Some devices subtract gravity ("linear acceleration"), so they read zero at rest. A fall after a rest with gravity
+// also reads zero.
 TEST(RestGravity, AnAccelerometerWithoutGravityReadsNothingAtRest) {
   const RestGravity gravity({});
   const Harm taken_out = [](ImuSample& s) {
@@ -136,13 +137,14 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 5.0}, kNone, 0.5)).ok()) << "not of rates that say nothing";
 }
 
-// What a rail hid may have been the same throughout: the deviation of the turn is then that of the rate times the time.
+// The error of clipped rates may be constant. The deviation of the rotation is then that of the rate times the
+// duration.
 TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
   const RestGravity::State read = after({}, kNone);
   const RestGravity::State hidden = after({.source = RateSource::bounded_only}, kNone);
   EXPECT_NEAR(hidden.angle_error_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);
   EXPECT_NEAR(hidden.angle_error_sigma_rad / read.angle_error_sigma_rad, std::sqrt(3.0 / 0.1), 0.5);
-  // a rate that is 5 % off throughout, which it states
+  // a rate with a constant error of 5 %, which is its stated deviation
   const RestGravity gravity({});
   EXPECT_GT(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05).angle_error_rad, 0.3);
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05)).ok());
@@ -151,8 +153,8 @@ TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
   EXPECT_TRUE(status.ok()) << status.message();
 }
 
-// Whole turns: by the other sense, or twice as many, gravity is where it was. Turned back by such rates the force goes
-// round the axis a, and what is left in the mean is (a u) a: imu_merge.md (I25).
+// Whole revolutions: with the opposite sign, or twice the number, gravity returns to the same direction. If such wrong
+// rates rotate the force back, it turns about the axis a, and its mean is (a u) a: imu_merge.md (I25).
 TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
   const RestGravity gravity({});
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 0.4, -0.1).normalized();
@@ -161,7 +163,8 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
   const double across = axis.cross(Eigen::Vector3d(0.3, -0.2, 1.0).normalized()).norm();
   for (const double scale : {-1.0, 2.0}) {
-    // gravity may be anywhere by what these rates state; of the span 3.0 s are turned, 0.4 s it stands already
+    // with the stated deviations of these rates, gravity may have any direction; of the span, 3.0 s rotate and 0.4 s
+    // rest
     const Span unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
     const RestGravity::State wrong = after(unsure, kNone, scale);
     EXPECT_LT(wrong.angle_error_rad, 0.1) << "by chance";
@@ -171,7 +174,7 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
   }
 }
 
-// Wherever in the span it arises, an error of the turn by an angle counts as that angle, from both sides together.
+// A rotation error at any time in the span counts as its angle, from both sides together.
 TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
   const RestGravity gravity({});
   for (const int at : {210, 350, 490}) {
@@ -193,7 +196,7 @@ TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
   }
 }
 
-// An impact of twice what the accelerometer shows, for 0.3 s, and a long halt.
+// An impact of twice the accelerometer's reading for 0.3 s, and a long rest.
 TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
   constexpr double kRange_m_s2 = 30.0;
   const auto struck = [&](const RestGravity& gravity, bool told) {
@@ -218,17 +221,17 @@ TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
   EXPECT_FALSE(struck(RestGravity({.accel_range_m_s2 = 2.0 * kRange_m_s2}), false).ok());
 }
 
-// What the body did while nothing was read is not known: such a span compares nothing, however well its ends are read.
+// The motion during a gap is unknown, so a span with a gap is not compared, even if both ends are known.
 TEST(RestGravity, OfASpanWithAGapNothingIsSaid) {
   const auto silent_for = [](TimeNs gap_ns) {
     return Harm([gap_ns](ImuSample& sample) {
       if (sample.time_ns >= 3'000'000'000 && sample.time_ns < 3'000'000'000 + gap_ns)
-        sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // passed over
+        sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // the sample is skipped
     });
   };
   EXPECT_EQ(after({}, silent_for(300'000'000)).spans, 0u);
   EXPECT_EQ(after({}, silent_for(80'000'000)).spans, 1u);
-  // negative control: as if what is read after the gap had been so all along
+  // negative control: as if the rest after the gap had lasted through the gap
   RestGravity::Params believed;
   believed.gap_max_s = 1.0;
   EXPECT_EQ(after({}, silent_for(300'000'000), 1.0, believed).spans, 1u);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole turns that a clipped segment may hide: an accelerometer that says nothing while the gyro clips, in closed form.
+// Tests hypotheses about whole revolutions in a clipped segment: the accelerometer has no information while the gyro
+// clips. Closed-form motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ HandHeldSmoother::Params smoother_params() {
   out.hand_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
   out.expert.jerk_inflation = 1.0;
-  out.expert.iterations_max = 100;  // a filter that was fed with blind readings is no good start
+  out.expert.iterations_max = 100;  // a filter with wrong forces is a poor start
   return out;
 }
 
@@ -55,8 +56,9 @@ RateState middle(const ClippedSpin& spin, const SpinEstimate& result) {
   return result.rates[static_cast<std::size_t>(kHz * (spin.from_s + 0.5 * spin.lasts_s))];
 }
 
-/// Where white jerk alone joins both sides, an angle theta beyond the even spin costs 720 theta^2 / (T^5 q), and the
-/// rate that makes it is theta/T 30 u^2 (1 - u)^2: turns more are as likely as that says, fewer lie below the rail.
+/// If only white jerk connects both sides, an angle theta above that of the constant rate costs 720 theta^2 / (T^5 q).
+/// Its rate is theta/T 30 u^2 (1 - u)^2. More revolutions have the corresponding likelihood; fewer would be below the
+/// saturation limit.
 TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
   ClippedSpin spin;
   spin.more_rad_s = 4.0;
@@ -73,7 +75,7 @@ TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
     sum += share;
     second += share * std::pow(2.0 * kPi * n / T * 30.0 / 16.0, 2.0);
   }
-  // about each mode: a rate whose jerk is white, both ends and the angle given
+  // about each mode: a rate with white jerk, with given ends and angle
   const double own = q * std::pow(T, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0));
   const double spread = std::sqrt(own + second / sum),
                stated = std::sqrt(middle(spin, result).covariance_rad2_s2(0, 0));
@@ -81,9 +83,9 @@ TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
   EXPECT_NEAR(stated, spread, 0.15 * spread);
 }
 
-/// A spin of which the first descent, begun at the rail, loses a turn and is held there by the bound: gravity behind
-/// the segment tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay
-/// possible.
+/// A spin for which the first optimisation, started at the limit, loses a revolution and remains at the bound. Gravity
+/// after the segment determines the angle modulo whole revolutions. The solution with the smallest jerk is selected;
+/// more revolutions remain possible.
 TEST(RevolutionHypotheses, WhatFollowsDecides) {
   ClippedSpin spin;
   spin.more_rad_s = 7.5;
@@ -96,7 +98,7 @@ TEST(RevolutionHypotheses, WhatFollowsDecides) {
   EXPECT_LT(error, 3.0 * std::sqrt(state.covariance_rad2_s2(0, 0)));
 }
 
-/// Negative control: an accelerometer that sees the spin leaves nothing to ask, and its deviation stays small.
+/// Negative control: if the accelerometer measures the spin, the rate is not ambiguous, and its deviation is small.
 TEST(RevolutionHypotheses, ASegmentThatIsKnownIsNotAsked) {
   ClippedSpin spin;
   spin.more_rad_s = 4.0;
@@ -109,7 +111,7 @@ TEST(RevolutionHypotheses, ASegmentThatIsKnownIsNotAsked) {
   EXPECT_LT(std::sqrt(middle(spin, result).covariance_rad2_s2(0, 0)), 2.0);
 }
 
-/// The problem of such a spin, solved as far as the iterations go.
+/// The problem of such a spin, solved up to the iteration limit.
 struct Solved {
   SpinReadings readings;
   hand_held::Collected collected;
@@ -132,8 +134,8 @@ struct Solved {
   }
 };
 
-/// A turn is taken and the whole is solved from there to no end: the answer before stands, with its own figures, and
-/// the turn that is likelier than what stands is in its covariance.
+/// A revolution is added, but the optimisation from there does not converge. The previous result and its values remain,
+/// and its covariance includes the likelier revolution.
 TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands) {
   ClippedSpin spin;
   spin.more_rad_s = 7.5;
@@ -161,8 +163,8 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   EXPECT_LT(std::abs(error), 3.0 * std::sqrt(solved.problem.covariance(middle)(hand_held::kRate, hand_held::kRate)));
 }
 
-/// More iterations lead to no larger cost once the hand's power stands still, however bad the start. Whole steps led
-/// from 99 to 2841, from 1717 to 8231 and from 261116 to 312785 here, within these iterations.
+/// While the power of the hand is constant, more iterations never increase the cost, even from a bad start. Full steps
+/// increase it from 99 to 2841, from 1717 to 8231 and from 261116 to 312785 here.
 TEST(HandHeldDescent, DoesNotClimb) {
   const ClippedSpin spins[] = {{.more_rad_s = 4.0, .duration_s = 7.5, .blind = false},
                                {.more_rad_s = 15.0, .duration_s = 7.5},

@@ -10,7 +10,7 @@ namespace {
 
 const Eigen::Vector3d kBegins_rad_s2(4.0, -7.0, 90.0);
 
-/// Three units of a sphere that turns and whose acceleration, by the rates, is not what it is now.
+/// Three IMUs of a rotating sphere whose acceleration differs from the acceleration that the rates indicate.
 RigidForces sphere() {
   RigidForces rigid;
   const std::array<Eigen::Vector3d, 3> places = {{{0.09, 0.02, 0.01}, {-0.05, 0.08, -0.02}, {-0.04, -0.07, 0.03}}};
@@ -30,13 +30,13 @@ RigidForces sphere() {
   return rigid;
 }
 
-/// How many agree with the believed one once an acceleration that has begun is asked.
+/// Returns how many IMUs agree with the reference IMU if the new acceleration is estimated.
 int agree_after_asking(RigidForces rigid) {
   rigid.acceleration_rad_s2 += rigid.common_acceleration();
   return rigid.most_agreed().others;
 }
 
-// imu_merge.md (I7): exact where nothing is hidden.
+// imu_merge.md (I7): exact without clipped readings.
 TEST(RigidForces, AnAccelerationThatBeganIsFoundFromTheDifferences) {
   const RigidForces rigid = sphere();
   EXPECT_EQ(rigid.most_agreed().others, 0);
@@ -44,7 +44,7 @@ TEST(RigidForces, AnAccelerationThatBeganIsFoundFromTheDifferences) {
   EXPECT_EQ(agree_after_asking(rigid), 2);
 }
 
-// Negative control: forces that two units hide are no acceleration.
+// Negative control: if two IMUs are clipped, no acceleration is estimated.
 TEST(RigidForces, WhatTwoUnitsHideIsNoAcceleration) {
   RigidForces rigid = sphere();
   rigid.force_m_s2[0] += Eigen::Vector3d(25.0, 3.0, 0.0);
@@ -53,7 +53,7 @@ TEST(RigidForces, WhatTwoUnitsHideIsNoAcceleration) {
   EXPECT_LT(agree_after_asking(rigid), 2);
 }
 
-// And of one the others tell, without asking.
+// If one IMU is clipped, the others determine its force directly.
 TEST(RigidForces, OfOneThatHidesTheOthersAgree) {
   RigidForces rigid = sphere();
   rigid.acceleration_rad_s2 += kBegins_rad_s2;

@@ -65,7 +65,7 @@ TEST(Strapdown, ConstantRateIsExactForAnyStep) {
   }
 }
 
-/// Mean body rate over [t - h, t] of the coning motion q(t) = Exp(a (cos Wt, sin Wt, 0)).
+/// Returns the mean body rate over [t - h, t] of the coning motion q(t) = Exp(a (cos Wt, sin Wt, 0)).
 Eigen::Vector3d coning_rate(double t, double h, double half_cone, double coning_rad_s) {
   const double from = coning_rad_s * (t - h), to = coning_rad_s * t;
   return {std::sin(half_cone) * (std::cos(to) - std::cos(from)) / h,
@@ -75,7 +75,7 @@ Eigen::Vector3d coning_rate(double t, double h, double half_cone, double coning_
 TEST(Strapdown, ConingDriftsByWhatOneRatePerSampleCannotKnow) {
   constexpr double kHalfCone = 0.05;
   constexpr double kConing_rad_s = 2.0 * std::numbers::pi * 5.0;
-  constexpr int kSteps = 2000;  // whole turns of the cone: 2000 * 4 ms * 5 Hz = 40
+  constexpr int kSteps = 2000;  // whole revolutions of the cone: 2000 * 4 ms * 5 Hz = 40
   const double h = seconds(testing::kPeriod_ns);
   const Strapdown filter({});
   Strapdown::State state;
@@ -86,9 +86,9 @@ TEST(Strapdown, ConingDriftsByWhatOneRatePerSampleCannotKnow) {
     ASSERT_TRUE(filter.step({k * testing::kPeriod_ns, w, {0, 0, kGravity_m_s2}, 0}, state).ok());
   }
   const Eigen::Vector3d error = so3::log(state.q_WI * so3::exp({kHalfCone, 0.0, 0.0}).conjugate());
-  // half the integral of (angle so far) x (rate) over one sample, about the cone's axis, which the mean rate leaves out
+  // half the integral of (angle so far) x (rate) over a sample, about the cone's axis; the mean rate omits this term
   const double per_step = 0.5 * std::pow(std::sin(kHalfCone), 2) * (kConing_rad_s * h - std::sin(kConing_rad_s * h));
-  // 1 %: the second-order drift is along the body's z axis, which is within 0.05 rad of the cone's; measured 0.1 %
+  // 1 %: the second-order drift is along the body's z axis, within 0.05 rad of the cone's axis; measured 0.1 %
   EXPECT_NEAR(error.z(), -kSteps * per_step, 0.01 * kSteps * per_step);
   EXPECT_GT(kSteps * per_step, 1e-4) << "a drift too small to test anything";
 }

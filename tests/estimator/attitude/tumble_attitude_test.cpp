@@ -41,7 +41,7 @@ TEST(TumbleAttitude, AtRestTheBiasIsFoundAndTheAttitudeHeld) {
   const Eigen::Vector3d bias(0.005, -0.004, 0.006);
   TumbleAttitude::State state, after_2s;
   for (int k = 0; k <= 15000; ++k) {
-    // a gyro that chatters by 1 deg/s about its bias, an accelerometer by 0.02 m/s^2
+    // a gyro with an oscillation of 1 deg/s about its bias, and an accelerometer with 0.02 m/s^2
     const double noise = k % 2 == 0 ? 1.0 : -1.0;
     const ImuSample sample{
         k * kPeriod_ns, bias + Eigen::Vector3d::Constant(0.017 * noise), {0.02 * noise, 0.0, kGravity_m_s2}, 0};
@@ -50,7 +50,7 @@ TEST(TumbleAttitude, AtRestTheBiasIsFoundAndTheAttitudeHeld) {
   }
   EXPECT_TRUE(after_2s.at_rest);
   EXPECT_NEAR((state.bias_rad_s - bias).norm(), 0.0, 1e-4);  // measured 3e-6
-  // a minute with a vertical bias of 0.34 deg/s is 20 deg of heading for a gyro alone
+  // with a gyro alone, a vertical bias of 0.34 deg/s gives a heading error of 20 deg per minute
   EXPECT_NEAR(so3::log(after_2s.q_WI.conjugate() * state.q_WI).z(), 0.0, 1e-9);
   EXPECT_NEAR(tilt(state.q_WI), 0.0, 1e-4);
 }
@@ -64,11 +64,11 @@ TEST(TumbleAttitude, SlowTurnAfterTheBiasIsKnownIsNotRest) {
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, rate}, {0, 0, kGravity_m_s2}, 0}, state).ok());
   }
   EXPECT_FALSE(state.at_rest);
-  // 15 s; what passes before the turn is seen is part of a sample's low-pass: measured 3 mrad
+  // 15 s; the rotation before detection is a part of a sample's low-pass: measured 3 mrad
   EXPECT_NEAR(so3::log(state.q_WI).z(), turn * 15.0, 0.01);
 }
 
-// A sphere that has rolled goes on turning about its contact, slower than a detector by itself would tell: attitude.md
+// A sphere that has rolled continues to rotate about its contact point, too slowly for the rest detector: attitude.md
 // (A16)
 TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   constexpr double kCreep = 0.02;  // rad/s
@@ -84,7 +84,7 @@ TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   const TumbleAttitude::State state = after_creeping({});
   EXPECT_FALSE(state.at_rest);
   EXPECT_NEAR(state.bias_rad_s.z(), 0.0, 1e-3);
-  // negative control: what the detector says without asking how well the bias is known
+  // negative control: the detector ignores how well the bias is known
   const TumbleAttitude::State believed = after_creeping({.expert = {.at_rest = {.rate_sigmas = 1e6}}});
   EXPECT_TRUE(believed.at_rest);
   EXPECT_GT(believed.bias_rad_s.z(), 0.5 * kCreep);
@@ -98,7 +98,7 @@ TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
   double worst_a = 0.0, worst_b = 0.0;
   for (int k = 0; k <= 15000; ++k) {
     const double t = k * seconds(kPeriod_ns);
-    // velocity amplitude 0.48 m/s at 1 Hz: 3 m/s^2, an apparent tilt of 17 deg
+    // velocity amplitude of 0.48 m/s at 1 Hz: 3 m/s^2, an apparent tilt of 17 deg
     const ImuSample sample{
         k * kPeriod_ns, {0, 0, 0}, {3.0 * std::sin(2.0 * std::numbers::pi * t), 0.0, kGravity_m_s2}, 0};
     ASSERT_TRUE(ours.step(sample, a).ok());
@@ -111,8 +111,8 @@ TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
   EXPECT_LT(worst_a, 0.5 * worst_b);
 }
 
-/// Runs down a slope: 2 m/s^2 for 1.5 s, 3 m/s for 1 s, and slowed again; turns about its vertical meanwhile, which no
-/// gyro misses and which is no rest.
+/// A body that moves down a slope: 2 m/s^2 for 1.5 s, 3 m/s for 1 s, then decelerates. It rotates about its vertical
+/// axis meanwhile, so the gyro shows that it is not at rest.
 std::vector<ImuSample> far_run() {
   std::vector<ImuSample> samples;
   for (int k = 0; k <= 1500; ++k) {
@@ -127,7 +127,7 @@ std::vector<ImuSample> far_run() {
   return samples;
 }
 
-// attitude.md (A13): 7.5 m are more than a hand's reach, and no tilt that the gyro left open makes them
+// attitude.md (A13): 7.5 m exceed the reach of a hand, and the tilt uncertainty of the gyro cannot explain them
 TEST(TumbleAttitude, ABodyThatGoesFarIsNotTiltedForIt) {
   const auto worst_tilt = [](const auto& filter) {
     typename std::decay_t<decltype(filter)>::State state;
@@ -139,13 +139,14 @@ TEST(TumbleAttitude, ABodyThatGoesFarIsNotTiltedForIt) {
     return worst;
   };
   EXPECT_LT(worst_tilt(TumbleAttitude({})), 0.012);
-  // negative controls: a low-pass of the force; and the belief of a body that was seen to stay where it is, which
-  // forgets at once how far this one has gone
+  // negative controls: a low-pass of the force; and the assumption of a body that remains in place, which ignores the
+  // distance
   EXPECT_GT(worst_tilt(Vqf({})), 0.02);
   EXPECT_GT(worst_tilt(TumbleAttitude({.displacement_m_sqrts = 0.03, .motion_tau_s = 1e-3})), 0.02);
 }
 
-/// A body that turns evenly about its vertical, and a rate about x that is 0.5 rad/s too large between 2 and 2.4 s.
+/// A body that rotates at a constant rate about its vertical axis, with an error of 0.5 rad/s about x between 2 and 2.4
+/// s.
 TumbleAttitude::State after_wrong_rates(const TumbleAttitude& filter, const Eigen::Matrix3d& told, double& lost_rad) {
   TumbleAttitude::State state;
   for (int k = 0; k <= 2500; ++k) {
@@ -163,11 +164,12 @@ TEST(TumbleAttitude, ATiltThatARecoveredRateLeavesOpenIsTakenBack) {
   const Eigen::Matrix3d told = 0.25 * Eigen::Matrix3d::Identity();
   EXPECT_LT(tilt(after_wrong_rates(filter, told, lost_rad).q_WI), 0.03);
   EXPECT_GT(lost_rad, 0.05);
-  // negative control: a rate that is said to be read leaves a tilt that the filter takes for motion
+  // negative control: if the wrong rate counts as measured, the filter explains the tilt error as motion
   EXPECT_GT(tilt(after_wrong_rates(filter, Eigen::Matrix3d::Zero(), lost_rad).q_WI), 0.06);
 }
 
-// attitude.md (A10): an error of deviation s and memory T over a time t has the angle's variance 2 s^2 T (t - T(1 - e))
+// attitude.md (A10): a rate error of deviation s and memory T over a time t causes an angle variance of 2 s^2 T (t -
+// T(1 - e))
 TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
   constexpr double kMemory_s = 0.5, kSigma_rad_s = 0.1;
   TumbleAttitude::Params params{.gyro_noise_rad_sqrts = 1e-6,
@@ -188,7 +190,7 @@ TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
       2.0 * kSigma_rad_s * kSigma_rad_s * kMemory_s * (2.0 - kMemory_s * (1.0 - std::exp(-2.0 / kMemory_s)));
   const Eigen::Matrix3d grown =
       TumbleAttitude::attitude_covariance_rad2(state) - TumbleAttitude::attitude_covariance_rad2(before);
-  // sums over samples stand for integrals: half a sample of the memory
+  // sums over samples replace integrals: half a sample of the memory
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(grown(axis, axis), expected, 0.01 * expected) << axis;
 }
 
@@ -214,14 +216,14 @@ TEST(TumbleAttitude, CovarianceStaysAProperOne) {
     if (sample.time_ns % 1'000'000'000 != 0) continue;
     const auto eigenvalues =
         Eigen::SelfAdjointEigenSolver<TumbleAttitude::State::Covariance>(state.covariance).eigenvalues();
-    // the heading is 0 at the start, and known exactly there
+    // the heading at the start is exactly 0
     ASSERT_GT(eigenvalues.minCoeff(), sample.time_ns > 0 ? 0.0 : -1e-15) << seconds(sample.time_ns);
   }
 }
 
 TEST(TumbleAttitude, CovarianceShrinksWhereTheForceIsThatOfABodyInPlace) {
   const TumbleAttitude filter({});
-  const auto deviation = [&](double shaken_m_s2) {  // to and fro in 5 s
+  const auto deviation = [&](double shaken_m_s2) {  // back and forth in 5 s
     TumbleAttitude::State state;
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
     for (ImuSample sample : testing::wobble(20000)) {
@@ -237,20 +239,20 @@ TEST(TumbleAttitude, CovarianceShrinksWhereTheForceIsThatOfABodyInPlace) {
   };
   const double in_place = deviation(0.0);
   EXPECT_LT(in_place, 0.02);
-  // negative control: of one that goes 4 m to and fro less is known
+  // negative control: the tilt is less certain for a body that moves 4 m less
   EXPECT_GT(deviation(6.0), 1.5 * in_place);
 }
 
-/// A body spins at `before`, is struck at a time within a gap of the readings, and spins at `after`: the true attitude
-/// behind it.
+/// A body spins at `before`, is struck at a time within a gap of the readings, and spins at `after`. Returns the true
+/// attitude after the gap.
 struct Struck {
   Eigen::Vector3d before_rad_s, after_rad_s;
-  double share = 0.5;  ///< of the gap, when it is struck
+  double share = 0.5;  ///< time of the strike, as a share of the gap
 };
 
 struct BehindGap {
-  Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();  ///< true less estimated, axes of W
-  double variance_rad2 = 0.0;                          ///< of one of them
+  Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();  ///< true minus estimated, axes of W
+  double variance_rad2 = 0.0;                          ///< of each tilt axis
   bool at_rest = false;
 };
 
@@ -278,7 +280,7 @@ BehindGap behind_gap(const Struck& struck, double gap_s) {
   return {off.head<2>(), TumbleAttitude::attitude_covariance_rad2(state).diagonal().head<2>().mean(), state.at_rest};
 }
 
-// A strike at any time of a gap turns a body by what no reading tells; attitude.md (A17).
+// A strike at any time of a gap causes a rotation that no reading measures; attitude.md (A17).
 TEST(TumbleAttitude, OverAGapTheCovarianceHoldsWhatAStrikeMakes) {
   std::mt19937 random(11);
   std::normal_distribution<double> rate(0.0, 5.0);
@@ -299,7 +301,7 @@ TEST(TumbleAttitude, OverAGapTheCovarianceHoldsWhatAStrikeMakes) {
   }
 }
 
-// In a straight line: where the rate does not change nothing is wrong, and the variance is that of the walk.
+// Along a straight line: without a rate change there is no error, and the variance is that of the random walk.
 TEST(TumbleAttitude, OverAGapTheRateGoesOnAndTheVarianceIsThatOfAWalk) {
   constexpr double kGap_s = 0.3;
   const BehindGap found = behind_gap({{3.0, -2.0, 1.0}, {3.0, -2.0, 1.0}}, kGap_s);

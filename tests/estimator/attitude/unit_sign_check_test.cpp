@@ -8,13 +8,14 @@
 #include <functional>
 #include <random>
 
-// whose axes the differences of forces of a rigid body speak for
+// tests the axis signs of IMUs that the force differences of a rigid body determine
 namespace tumble {
 namespace {
 
 using TurnedReading = std::function<void(Eigen::Vector3d& rate, Eigen::Vector3d& acceleration, Eigen::Vector3d& force)>;
 
-/// Ten seconds of a body that turns about all axes, `size` times as fast; noise and bias of a cheap accelerometer.
+/// Ten seconds of a body that rotates about all axes, `size` times as fast, with noise and bias of a low-cost
+/// accelerometer.
 UnitSignCheck senses_of(double size, const TurnedReading& misread) {
   UnitSignCheck out;
   std::mt19937_64 random(3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Beside Eigen's own decompositions of fixed size: the factorisations to the bit, eigenvalues to rounding.
+// Compares with Eigen's decompositions of fixed size: factorisations bit by bit, eigenvalues up to rounding.
 #include "estimator/src/common/dense.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr int kSize = 28;
 using Matrix = Eigen::Matrix<double, kSize, kSize>;
 using Vector = Eigen::Matrix<double, kSize, 1>;
 
-// J' J with a diagonal that spans ten powers of ten, as normal equations have it
+// J' J whose diagonal spans ten powers of ten, as in normal equations
 Matrix positive() {
   Matrix J;
   for (int i = 0; i < kSize; ++i) {
@@ -60,7 +60,7 @@ TEST(Dense, SemidefiniteHasTheBitsOfTheFixedSize) {
   solve_semidefinite_vector(A, b);
   EXPECT_EQ(b, Vector(A.ldlt().solve(right())));
   ASSERT_TRUE(b.allFinite());
-  EXPECT_EQ(b[5], 0.0);  // what nothing holds is not moved
+  EXPECT_EQ(b[5], 0.0);  // an unconstrained unknown is not changed
 }
 
 TEST(Dense, EigenvaluesAreThoseOfTheFixedSize) {

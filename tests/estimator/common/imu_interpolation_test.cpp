@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rates and forces that grow linearly with time, by whole numbers a millisecond: sums of few of them are exact.
+/// Rates and forces that grow linearly by whole numbers per millisecond, so that sums of few values are exact.
 ImuSample on_the_line(TimeNs time_ns) {
   const double t_ms = static_cast<double>(time_ns) * 1e-6;
   return {time_ns, t_ms * Vector3d(2.0, -4.0, 8.0), t_ms * Vector3d(-16.0, 32.0, 1.0) + Vector3d::UnitZ(), 0};
@@ -32,14 +32,14 @@ TEST(ImuInterpolation, FollowsALineBetweenReadingsAndBeyondThem) {
     EXPECT_NEAR(near.length_s, 4e-3, 1e-18);
     const ImuSample found = imu.at(time_ns, near), expected = on_the_line(time_ns);
     EXPECT_EQ(found.time_ns, time_ns);
-    // a dozen roundings of numbers up to 700
+    // rounding errors of about a dozen numbers up to 700
     EXPECT_LT((found.angular_velocity_rad_s - expected.angular_velocity_rad_s).norm(), 1e-12) << time_ns;
     EXPECT_LT((found.specific_force_m_s2 - expected.specific_force_m_s2).norm(), 1e-12) << time_ns;
   }
 }
 
 TEST(ImuInterpolation, TheNextReadingsAreNotASecondAnswer) {
-  // over a bend the line of the two neighbours is not that of those beside them
+  // for a curved signal, linear interpolation of the two neighbours differs from the other samples
   std::vector<ImuSample> samples = every_four_ms(4);
   samples[3].angular_velocity_rad_s *= 2.0;
   ImuInterpolation imu(samples);

@@ -47,7 +47,7 @@ struct Outer {
   }
 };
 
-/// The message of require_valid_fields; empty when it accepts.
+/// Returns the message of require_valid_fields; empty if it accepts.
 std::string complaint(const Outer& params) {
   try {
     require_valid_fields(params);

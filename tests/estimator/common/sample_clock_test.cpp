@@ -12,9 +12,9 @@
 namespace tumble {
 namespace {
 
-constexpr TimeNs kStart_ns = 1'700'000'000'000'000'000;  // seconds since 1970: a double no longer holds it
+constexpr TimeNs kStart_ns = 1'700'000'000'000'000'000;  // ns since 1970, which a double cannot represent exactly
 
-/// Times of samples, some of which never came.
+/// Times of samples, of which some are missing.
 std::vector<TimeNs> regular(std::size_t count, double period_ns, double lost_share = 0.0) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform;
@@ -26,7 +26,7 @@ std::vector<TimeNs> regular(std::size_t count, double period_ns, double lost_sha
   return out;
 }
 
-/// Stamps that are early and late by chance, within three deviations.
+/// Time stamps with random errors within three deviations.
 std::vector<TimeNs> jittered(std::vector<TimeNs> times_ns, double jitter_ns) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
@@ -40,7 +40,8 @@ std::vector<TimeNs> times_of(std::vector<TimeNs> stamps_ns, const SampleClock::P
   return stamps_ns;
 }
 
-/// Root mean square of the differences from the `first`-th on, less their mean: what is always late is an offset.
+/// Returns the root mean square of the differences from the `first`-th on, without their mean, because a constant delay
+/// is an offset.
 double spread_ns(const std::vector<TimeNs>& found, const std::vector<TimeNs>& expected, std::size_t first) {
   double sum = 0.0, squares = 0.0;
   for (std::size_t k = first; k < found.size(); ++k) {
@@ -76,14 +77,15 @@ TEST(SampleClock, StampsOfTheSensorStayAsTheyAre) {
   EXPECT_EQ(times_of(microseconds), microseconds);
 }
 
-// The filter's own variance, 1.25 T / memory (Morrison, eq. 13.5 for a long memory), against what is measured.
+// The filter's own variance, 1.25 T / memory (Morrison, eq. 13.5 for a long memory), compared with the measured
+// variance.
 TEST(SampleClock, ErrsByWhatItsMemoryLeaves) {
   for (const double period_ns : {10e6, 4e6, 1e6}) {
     const double jitter_ns = 0.1 * period_ns;
     const std::vector<TimeNs> times_ns = regular(40'000, period_ns);
     const double stated_ns = jitter_ns * std::sqrt(1.25 * period_ns * 1e-9 / SampleClock::Params{}.memory_s);
     const double measured_ns = spread_ns(times_of(jittered(times_ns, jitter_ns)), times_ns, 5000);
-    EXPECT_NEAR(measured_ns / stated_ns, 1.0, 0.15) << period_ns;  // some hundred memories: 7 % of chance
+    EXPECT_NEAR(measured_ns / stated_ns, 1.0, 0.15) << period_ns;  // some hundred memories, so 7 % of random error
   }
 }
 
@@ -96,7 +98,8 @@ TEST(SampleClock, FollowsAPeriodThatNobodyStatedThroughLostSamples) {
       const std::vector<TimeNs> found = times_of(stamps_ns);
       EXPECT_TRUE(rise(found));
       EXPECT_LT(spread_ns(found, times_ns, 300), 0.25 * jitter_ns) << period_ns << " ns, lost " << lost_share;
-      EXPECT_LT(spread_ns(found, times_ns, 0), 0.6 * jitter_ns);  // from the first stamps on: never worse than they are
+      // the estimate is better than the time stamps from the start
+      EXPECT_LT(spread_ns(found, times_ns, 0), 0.6 * jitter_ns);
     }
   }
 }
@@ -124,7 +127,8 @@ TEST(SampleClock, LeavesASensorWithoutAPeriod) {
   EXPECT_EQ(moved, 0u);
 }
 
-// A period that wanders by 3 % within four seconds: its stamps are the truth, and the line does not follow them.
+// A sample period that drifts by 3 % within four seconds: its time stamps are exact, and the clock line does not follow
+// them.
 TEST(SampleClock, LeavesASensorWhosePeriodWanders) {
   std::vector<TimeNs> stamps_ns;
   double time_ns = 0.0;
@@ -135,7 +139,7 @@ TEST(SampleClock, LeavesASensorWhosePeriodWanders) {
   EXPECT_LT(largest_ns(times_of(stamps_ns), stamps_ns), 0.1 * 1e7);
 }
 
-// The host stops for 35 ms, and what came meanwhile is stamped at once when it goes on.
+// The host pauses for 35 ms, and all samples of this time get the stamp of its end.
 TEST(SampleClock, IsNotLostInABurst) {
   const std::vector<TimeNs> times_ns = regular(3000, 1e7);
   std::vector<TimeNs> stamps_ns = jittered(times_ns, 3e5);
@@ -152,8 +156,10 @@ TEST(SampleClock, IsNotLostInABurst) {
 
 TEST(SampleClock, GoesOnBehindAGapAndAJumpOfTheClock) {
   std::vector<TimeNs> times_ns = regular(6000, 4e6);
-  for (std::size_t k = 2000; k < times_ns.size(); ++k) times_ns[k] += 1'000'000'000;          // on its numbers
-  for (std::size_t k = 4000; k < times_ns.size(); ++k) times_ns[k] += 7'000'000 + 1'850'000;  // off them
+  // time stamps on the clock line
+  for (std::size_t k = 2000; k < times_ns.size(); ++k) times_ns[k] += 1'000'000'000;
+  // time stamps off the clock line
+  for (std::size_t k = 4000; k < times_ns.size(); ++k) times_ns[k] += 7'000'000 + 1'850'000;
   const std::vector<TimeNs> found = times_of(jittered(times_ns, 3e5));
   EXPECT_TRUE(rise(found));
   const auto worst_ns = [&](std::size_t from, std::size_t to) {
@@ -164,10 +170,10 @@ TEST(SampleClock, GoesOnBehindAGapAndAJumpOfTheClock) {
   EXPECT_LT(worst_ns(500, 2000), 1.5e5);
   EXPECT_LT(worst_ns(2000, 2200), 3e5);
   EXPECT_LT(worst_ns(4500, 6000), 1.5e5);
-  EXPECT_LT(worst_ns(4000, 4500), 2e6 + 9e5);  // half a period from its stamp at most
+  EXPECT_LT(worst_ns(4000, 4500), 2e6 + 9e5);  // at most half a period from its time stamp
 }
 
-// A device that is told to go ten times as fast.
+// A device that is switched to ten times the rate.
 TEST(SampleClock, IsCaughtUpByFasterStamps) {
   std::vector<TimeNs> times_ns = regular(1000, 1e7);
   for (int k = 1; k <= 4000; ++k) times_ns.push_back(times_ns[999] + k * TimeNs{1'000'000});

@@ -17,8 +17,8 @@ const Matrix4 kPrior = [] {
   return Matrix4(root * root.transpose());
 }();
 
-/// In information form: the inverse covariance gains h h^T / variance, and the correction is the new covariance times
-/// h innovation / variance.
+/// Reference in information form: the inverse covariance increases by h h^T / variance, and the correction is the new
+/// covariance times h innovation / variance.
 void expect_bayes(const Vector4& h, double innovation, double variance, const Vector4& correction, const Matrix4& P) {
   const Matrix4 expected = (kPrior.inverse() + h * h.transpose() / variance).inverse();
   EXPECT_LT((P - expected).norm(), 1e-12);
@@ -30,10 +30,10 @@ TEST(ScalarUpdate, IsBayesRuleForADirection) {
   Matrix4 P = kPrior;
   const Vector4 correction = scalar_update(row, 0.7, 0.05, P);
   expect_bayes(row.transpose(), 0.7, 0.05, correction, P);
-  Matrix4 other = kPrior;  // a column says the same
+  Matrix4 other = kPrior;  // a column vector gives the same
   EXPECT_EQ(scalar_update(Vector4(row.transpose()), 0.7, 0.05, other), correction);
   EXPECT_EQ(other, P);
-  Eigen::Matrix<double, 2, 4> rows;  // one of which is not contiguous
+  Eigen::Matrix<double, 2, 4> rows;  // one row is not contiguous
   rows << Eigen::RowVector4d::Ones(), row;
   Matrix4 again = kPrior;
   EXPECT_EQ(scalar_update(rows.row(1), 0.7, 0.05, again), correction);
@@ -54,7 +54,7 @@ TEST(ScalarUpdate, CheckTellsAnotherVariance) {
             1e-3);
 }
 
-/// Bayes' rule for several numbers: the inverse covariance gains H^T noise^-1 H.
+/// Reference by Bayes' rule for several measurements: the inverse covariance increases by H^T noise^-1 H.
 TEST(VectorUpdate, IsBayesRuleForCorrelatedNoise) {
   Eigen::Matrix<double, 2, 4> H;
   H << 0.3, -1.1, 0.0, 2.0, 1.0, 0.4, -0.2, 0.0;
@@ -78,7 +78,7 @@ TEST(VectorUpdate, OfIndependentNoiseIsScalarsOneAfterAnother) {
   in_turn += scalar_update(H.row(1), innovation[1] - H.row(1).dot(in_turn), variances[1], twice);
   EXPECT_LT((once - twice).norm(), 1e-12);
   EXPECT_LT((at_once - in_turn).norm(), 1e-12);
-  // of correlated noise it is not
+  // with correlated noise, the result differs
   Eigen::Matrix2d noise = variances.asDiagonal();
   noise(0, 1) = noise(1, 0) = 0.02;
   Matrix4 correlated = kPrior;

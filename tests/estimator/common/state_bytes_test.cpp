@@ -101,7 +101,7 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
     Held held;
     return read(bytes, held);
   };
-  // value 8 bytes, count 4, on 1, colour 1
+  // bytes: value 8, count 4, on 1, colour 1
   Status status = status_with(0, {0, 0, 0, 0, 0, 0, 0xf0, 0x7f});
   EXPECT_EQ(status.error_code, ErrorCode::non_finite);
   EXPECT_STREQ(status.field, "value");
@@ -111,7 +111,7 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
   EXPECT_EQ(status.message(), "out_of_range: on is 2; the bound is 1");
   status = status_with(13, {2});
   EXPECT_EQ(status.message(), "out_of_range: colour is 2; the bound is 1");
-  // a length that no bytes stand for asks for no memory
+  // an impossible length does not cause an allocation
   status = status_with(14 + 24 + 32, {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f});
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_STREQ(status.field, "samples");
@@ -137,7 +137,7 @@ TEST(StateBytes, AreMatchedNumberByNumber) {
 }
 
 TEST(StateBytes, ChecksumIsFnv1a) {
-  const std::string text = "foobar";  // of RFC 9923's test vectors
+  const std::string text = "foobar";  // test vector of RFC 9923
   EXPECT_EQ(checksum(std::as_bytes(std::span(text))), 0x85944171f73967e8u);
 }
 

@@ -85,7 +85,7 @@ TEST(CheckSamples, TellsTheFirstTroubleOfASequence) {
   EXPECT_EQ(check_samples(samples, 0.009).error_code, ErrorCode::gap);
   samples[3].angular_velocity_rad_s.z() = std::nan("");
   EXPECT_EQ(check_samples(samples, 0.01).error_code, ErrorCode::non_finite);
-  samples[2].time_ns = samples[1].time_ns;  // comes before
+  samples[2].time_ns = samples[1].time_ns;  // earlier than the previous sample
   const Status stuck = check_samples(samples, 0.01);
   EXPECT_EQ(stuck.error_code, ErrorCode::time_order);
   EXPECT_EQ(stuck.value, 10'000'000.0);
@@ -103,7 +103,7 @@ TEST(CheckFollows, RefusesEqualFallingAndDistantStamps) {
   EXPECT_EQ(gap.error_code, ErrorCode::gap);
   EXPECT_DOUBLE_EQ(gap.value, 2.0);
   EXPECT_EQ(gap.bound, 1.0);
-  // stamps whose difference does not fit into one
+  // time stamps whose difference exceeds 64 bits
   constexpr TimeNs kFirst = std::numeric_limits<TimeNs>::min(), kLast = std::numeric_limits<TimeNs>::max();
   EXPECT_EQ(check_stamp_order(0, kFirst, 1.0).error_code, ErrorCode::gap);
   EXPECT_DOUBLE_EQ(check_stamp_order(kLast, kFirst, 1.0).value, 18446744073.709551615);

@@ -10,7 +10,7 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-// the reported covariance against true errors, over tumbles that differ in spin, way and accelerometer bias
+// compares the reported covariance with true errors, over tumbles with different spin, path and accelerometer bias
 namespace tumble {
 namespace {
 
@@ -19,15 +19,15 @@ using Odometry = LidarInertialOdometry;
 using test::kSamplesPerSweep;
 
 constexpr int kRuns = 16, kSweepsOfRun = 16, kColumns = 300;
-constexpr double kRs16Noise_m = 0.02;  // of the RS-16
+constexpr double kRs16Noise_m = 0.02;  // noise of the RS-16
 
-/// The errors of an IMU as the mapper believes it to be: constant over a sweep and independent from one to the next, as
-/// large as the parameters say (mapping.md, R39 to R41). None at rest, of which the mapper knows.
+/// Random IMU errors as in the mapper's model: constant within a sweep, independent between sweeps, with the size of
+/// the parameters (mapping.md, R39 to R41). Without errors at rest, where the mapper is calibrated.
 class BelievedImu {
  public:
   BelievedImu(const Odometry::Params& params, std::uint64_t seed) : params_(params), noise_(seed) {}
 
-  /// That of the whole run, which tilts the start by as much as is believed of it.
+  /// Error of the whole run, which tilts the start by the deviation that the mapper assumes.
   Eigen::Vector3d accel_bias_m_s2() {
     return params_.expert.gravity_m_s2 * params_.expert.world.tilt_sigma_rad * noise_.vector();
   }
@@ -55,8 +55,8 @@ class BelievedImu {
   oracles::Gaussian noise_;
 };
 
-/// Normalised error squared of the last pose, per degree of freedom. The world is held by position and yaw of the first
-/// pose, which are exact; its tilt is off by the accelerometer's bias. The ranges have the noise of the RS-16.
+/// Returns the NEES of the last pose. Position and yaw of the first pose are exact and define the world; the
+/// accelerometer bias causes a tilt error. The ranges have the noise of the RS-16.
 double nees_of_run(int run) {
   const auto draw = [&](int k) { return test::uniform(static_cast<std::uint64_t>(1000 + 16 * run + k)); };
   test::Motion motion;
@@ -90,8 +90,8 @@ double nees_of_run(int run) {
   return error.dot(report.pose.covariance.llt().solve(error)) / 6.0;
 }
 
-/// Whether a mean of normalised errors is one that an honest covariance gives in 95 % of cases: the interval of
-/// chi-square over 16 runs of six degrees of freedom each, 70.8 to 125.0 of 96 (Wilson-Hilferty agrees to 0.1).
+/// Checks whether a mean NEES is within the 95 % interval of a consistent covariance: the interval of chi-square over
+/// 16 runs with six degrees of freedom each, 70.8 to 125.0 of 96 (Wilson-Hilferty agrees to 0.1).
 bool is_consistent(double mean_nees) {
   static_assert(6 * kRuns == 96);
   return mean_nees > 70.8 / 96.0 && mean_nees < 125.0 / 96.0;
@@ -102,15 +102,16 @@ TEST(Covariance, HoldsOverTumbles) {
   for (int run = 0; run < kRuns; ++run) sum += nees_of_run(run);
   const double mean = sum / kRuns;
   EXPECT_TRUE(is_consistent(mean)) << mean;  // measured: 0.77
-  // negative controls: the errors of the same runs by a covariance of twice and of half the size
+  // negative controls: the errors of the same runs with twice and half the covariance
   EXPECT_FALSE(is_consistent(mean / 2.0)) << mean;
   EXPECT_FALSE(is_consistent(mean / 0.5)) << mean;
 }
 
-/// Error along a corridor, which its walls do not hold, in reported standard deviations: a quarter of a second after a
-/// knock of which one reading lost 1 m/s. `flags` are those of that reading, `noise_m` is that of the ranges.
+/// Returns the error along a corridor in reported standard deviations; the walls do not constrain this direction. A
+/// quarter of a second before, one reading missed 1 m/s of a knock. `flags` are the flags of this reading, `noise_m` is
+/// the noise of the ranges.
 double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
-  constexpr int kKnocked = 25, kEnd = 5;  // sample; sweeps
+  constexpr int kKnocked = 25, kEnd = 5;  // number of the sample; number of sweeps
   test::Motion still;
   still.rest_s = 1e9;
   Odometry odometry{Odometry::Params()};
@@ -127,14 +128,14 @@ double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
         test::make_sweep(test::Room::corridor(), still, Eigen::Isometry3d::Identity(), k, noise_m, kColumns);
     EXPECT_TRUE(odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report).ok());
   }
-  EXPECT_GT(std::abs(report.pose.p_WA_m.x()), 0.1);  // nothing else stops it
+  EXPECT_GT(std::abs(report.pose.p_WA_m.x()), 0.1);  // no measurement stops the sensor
   return report.pose.p_WA_m.x() / std::sqrt(report.pose.covariance(0, 0));
 }
 
 TEST(Covariance, CountsWhatTheAccelerometersRailHides) {
   EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX, 0.0)), 3.0);
-  EXPECT_GT(std::abs(deviations_after_a_knock(0, 0.0)), 3.0);  // a knock that nobody owns up to
-  // false normals look like surfaces across the way
+  EXPECT_GT(std::abs(deviations_after_a_knock(0, 0.0)), 3.0);  // a knock without flags
+  // wrong normals resemble surfaces across the corridor
   EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX, kRs16Noise_m)), 3.0);
 }
 

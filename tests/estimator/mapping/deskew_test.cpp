@@ -35,21 +35,21 @@ TEST(SweepTrajectory, FollowsTheTrueMotionAtAnyInstant) {
   const test::Motion motion;
   const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.3, 1000.0));
   SweepTrajectory trajectory;
-  // neither end falls on a sample
+  // neither end is at the time of a sample
   const MotionState start = true_state(motion, 1'000'300'000);
   ASSERT_TRUE(trajectory.build(start, samples, 1'200'700'000, test::kRoomGravity_m_s2).ok());
   for (int i = 0; i <= 50; ++i) {
     const double t = trajectory.duration_s() * i / 50.0;
     const MotionState state = trajectory.state(t);
     const double at = 1.0003 + t;
-    // 200 ms at 15 rad/s and 1 kHz. The rate turns inside of a sample; measured 1e-5 rad, 2e-5 m, 2e-4 m/s
+    // 200 ms at 15 rad/s and 1 kHz. The rate rotates within a sample; measured 1e-5 rad, 2e-5 m, 2e-4 m/s
     EXPECT_LT(so3::log(state.q_WI * motion.q(at).conjugate()).norm(), 5e-5) << "t " << t;
     EXPECT_LT((state.p_WI_m - motion.p_m(at)).norm(), 1e-4) << "t " << t;
     EXPECT_LT((state.v_WI_m_s - motion.v_m_s(at)).norm(), 1e-3) << "t " << t;
   }
 }
 
-/// Bit for bit: of points in any order, beyond both ends, and at angles beyond the series.
+/// Compares bit by bit, for points in any order, beyond both ends, and at angles beyond the series.
 TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
   for (const double spin_rad_s : {15.0, 300.0}) {
     test::Motion motion;
@@ -62,7 +62,7 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
     for (std::uint64_t i = 0; i < 3000; ++i) {
       SweepPoint& point = points.emplace_back();
       const auto share = static_cast<float>(test::uniform(4 * i));
-      // in time order first, then anyhow
+      // first in order of time, then in random order
       point.t_s = i < 2000 ? 0.16f * static_cast<float>(i) / 2000.0f - 0.03f : 0.16f * share - 0.03f;
       point.x_I_m = 40.0f * Eigen::Vector3f(static_cast<float>(test::uniform(4 * i + 1)) - 0.5f,
                                             static_cast<float>(test::uniform(4 * i + 2)) - 0.5f,
@@ -81,7 +81,8 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
 }
 
 TEST(SweepTrajectory, IsExactForASteadySpinAtRest) {
-  // constant rate and a force constant in body axes: a sensor on a circle, the closed form of the integration
+  // constant rate, and a force that is constant in body axes: a sensor on a circle, with the closed form of the
+  // integration
   const Eigen::Vector3d w(3.0, -4.0, 12.0);
   MotionState start;
   std::vector<MotionSample> samples;
@@ -100,7 +101,7 @@ TEST(SweepTrajectory, IsExactForASteadySpinAtRest) {
   EXPECT_LT((end.v_WI_m_s - 0.1 * so3::left_jacobian(0.1 * w) * samples[0].f_I_m_s2).norm(), 1e-14);
 }
 
-// Samples that wait for the next segment say nothing of this one's clipped axes.
+// Samples of the next segment do not affect the clipped axes of this segment.
 TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   MotionSample clipped;
   clipped.from_ns = 0;
@@ -160,12 +161,12 @@ TEST(SweepTrajectory, CovarianceMatchesDifferences) {
   }
   // forward differences of order h; measured 2e-6
   EXPECT_LT((nominal.covariance - F * F.transpose()).cwiseAbs().maxCoeff(), 2e-5);
-  EXPECT_GT((nominal.covariance - start.covariance).cwiseAbs().maxCoeff(), 1e-2);  // there was something to propagate
+  EXPECT_GT((nominal.covariance - start.covariance).cwiseAbs().maxCoeff(), 1e-2);  // the covariance must grow
 }
 
 class DeskewedSweep : public testing::Test {
  protected:
-  /// Largest distance to the room's surfaces of a sweep at 15 rad/s, deskewed to its end with the rates scaled.
+  /// Returns the largest distance to the room's surfaces of a sweep at 15 rad/s, deskewed to its end with scaled rates.
   double largest_distance(double rate_scale) {
     const test::Motion motion;
     const test::Room room = test::Room::box_with_pillars();
@@ -191,12 +192,12 @@ class DeskewedSweep : public testing::Test {
 };
 
 TEST_F(DeskewedSweep, LiesOnTheSurfaces) {
-  // attitude error within 1 kHz samples times 14 m of range; measured 4e-4 m
+  // attitude error within samples at 1 kHz, times a range of 14 m; measured 4e-4 m
   EXPECT_LT(largest_distance(1.0), 2e-3);
 }
 
 TEST_F(DeskewedSweep, MissesThemWithAClippedRate) {
-  EXPECT_GT(largest_distance(0.7), 1.0);  // 0.45 rad short over the sweep; measured metres
+  EXPECT_GT(largest_distance(0.7), 1.0);  // error of 0.45 rad over the sweep; measured metres
 }
 
 TEST(SelectPoints, DropsWhatIsNoReturnOfTheWorld) {
@@ -204,8 +205,8 @@ TEST(SelectPoints, DropsWhatIsNoReturnOfTheWorld) {
   std::vector<LidarPoint> points(6);
   points[0].position_L_m = {5, 0, 0};
   points[1].position_L_m = {nan, 0, 0};
-  points[2].position_L_m = {0.1f, 0, 0};   // nearer than the least range
-  points[3].position_L_m = {0.45f, 0, 0};  // the robot's own
+  points[2].position_L_m = {0.1f, 0, 0};   // below the minimum range
+  points[3].position_L_m = {0.45f, 0, 0};  // return from the robot itself
   points[4].position_L_m = {200, 0, 0};
   points[5].position_L_m = {0, 0, std::numeric_limits<float>::infinity()};
   const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23));
@@ -223,7 +224,7 @@ TEST(SweepSampler, TakesTheFirstPointOfEachCube) {
   SweepSampler sampler;
   std::vector<std::uint32_t> chosen;
   const std::vector<Eigen::Vector3f> points = {{0.1f, 0, 0}, {0.2f, 0, 0}, {0.3f, 0, 0}, {-0.1f, 0, 0}};
-  for (int run = 0; run < 2; ++run) {  // nothing is left of an earlier sweep
+  for (int run = 0; run < 2; ++run) {  // the second run must not depend on the first
     sampler.choose(points, 0.25, chosen);
     EXPECT_EQ(chosen, (std::vector<std::uint32_t>{0, 2, 3}));
   }

@@ -11,7 +11,7 @@ constexpr std::int64_t kSample_ns = 10'000'000;
 constexpr int kRestSweeps = 5;
 constexpr double kSpeed_m_s = 1.0, kRise_s = 1.0;
 
-/// Place of rib `k` along the corridor: not evenly spaced, so that each place looks like itself alone.
+/// Position of rib `k` along the corridor. The spacing varies, so that each place is unique.
 double rib_m(double k) {
   return 4.0 * k + 2.0 * uniform(static_cast<std::uint64_t>(1e6 + k));
 }
@@ -41,7 +41,7 @@ std::vector<LidarPoint> EndlessCorridor::points() const {
     const double x = start_m_ + start_m_s_ * t + 0.5 * a_m_s2_ * t * t;
     const auto counter = static_cast<std::uint64_t>(sweep_ * 2 * points_per_sweep_ + i);
     const double u = uniform(counter), w = uniform(counter + static_cast<std::uint64_t>(points_per_sweep_));
-    // floor, two walls, and ribs across the floor that hold the way along it
+    // floor, two walls, and ribs across the floor that constrain the position along the corridor
     const double along = 16.0 * u - 8.0;
     Eigen::Vector3d at(x + along, 4.0 * w - 2.0, -1.0);
     if (i % 4 == 1) at = {x + along, 2.0, 2.0 * w - 1.0};

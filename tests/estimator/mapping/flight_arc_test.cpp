@@ -23,7 +23,7 @@ MotionState thrown() {
   return start;
 }
 
-/// The IMU's motion at the end of a flight by the arc.
+/// Returns the motion of the IMU at the end of a flight, by the arc.
 MotionState fly(const FlyingBody& body, const Eigen::Vector3d& w, TimeNs step_ns, double gravity = kFall_m_s2) {
   const MotionState start = thrown();
   std::vector<MotionSample> samples;
@@ -33,7 +33,7 @@ MotionState fly(const FlyingBody& body, const Eigen::Vector3d& w, TimeNs step_ns
   return trajectory.state(trajectory.duration_s());
 }
 
-// equal moments: the rate stays, the centre of mass follows a parabola; all in closed form
+// equal moments of inertia: constant rate, and a parabola of the centre of mass; all in closed form
 TEST(FlightArc, OfEqualMomentsIsTheClosedForm) {
   FlyingBody body;
   body.p_IB_I_m = Eigen::Vector3d(0.022, 0.085, -0.055);
@@ -49,14 +49,14 @@ TEST(FlightArc, OfEqualMomentsIsTheClosedForm) {
   const Eigen::Vector3d v_WI = v_WB + t * fall - q * w.cross(body.p_IB_I_m);
   EXPECT_LT(so3::log(end.q_WI * q.conjugate()).norm(), 1e-12);
   EXPECT_LT((end.v_WI_m_s - v_WI).norm(), 1e-12);
-  // the force is constant over a step in the body: of the third order of the step
+  // the force is constant in body axes over a step: error of third order in the step
   EXPECT_LT((end.p_WI_m - p_WI).norm(), 1e-4);
-  // negative control: the arc of a body whose centre of mass is elsewhere
+  // negative control: the arc of a body with another centre of mass
   body.p_IB_I_m.setZero();
   EXPECT_GT((fly(body, w, 5'000'000).p_WI_m - p_WI).norm(), 0.01);
 }
 
-// unequal moments: no torque, so that the angular momentum in the world and the energy stay
+// different moments of inertia without torque: angular momentum in the world and energy are constant
 TEST(FlightArc, KeepsAngularMomentumAndEnergy) {
   FlyingBody body;
   body.inertia_I_kg_m2 = so3::exp({0.2, 0.5, -0.3}).toRotationMatrix() *
@@ -71,7 +71,7 @@ TEST(FlightArc, KeepsAngularMomentumAndEnergy) {
   double turned_most = 0.0;
   for (const MotionSample& sample : samples) {
     const double dt = seconds(sample.time_ns - sample.from_ns);
-    // the mean rate of a step stands in its middle
+    // the mean rate of a step is the rate in its middle
     const Eigen::Quaterniond middle = q * so3::exp(0.5 * dt * sample.w_WI_I_rad_s);
     const Eigen::Vector3d now = middle * (body.inertia_I_kg_m2 * sample.w_WI_I_rad_s);
     EXPECT_LT((now - momentum).norm(), 1e-4 * momentum.norm());
@@ -80,13 +80,13 @@ TEST(FlightArc, KeepsAngularMomentumAndEnergy) {
     turned_most = std::max(turned_most, (sample.w_WI_I_rad_s - w).norm());
     q = q * so3::exp(dt * sample.w_WI_I_rad_s);
   }
-  EXPECT_GT(turned_most, 1.0);  // it wobbles: a constant rate would not have done
+  EXPECT_GT(turned_most, 1.0);  // the body wobbles, so a constant rate would be wrong
 }
 
 TEST(FlightArc, IsWhatAnAccelerometerOffTheCentreReads) {
   FlyingBody body;
   body.p_IB_I_m = Eigen::Vector3d(0.1, 0.0, 0.0);
-  // spinning about z the IMU is pulled towards the centre, which lies ahead along x
+  // the spin about z accelerates the IMU towards the centre, which is ahead along x
   EXPECT_LT((flight_force(body, {0, 0, 10}, Eigen::Vector3d::Zero()) - Eigen::Vector3d(10, 0, 0)).norm(), 1e-12);
   EXPECT_LT((flight_force(body, Eigen::Vector3d::Zero(), {0, 0, 10}) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12);
 }

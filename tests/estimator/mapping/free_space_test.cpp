@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sweep saw through, and the map without it.
+// Tests the free space that a sweep has observed, and the removal of map points in it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using test::true_params;
 constexpr float kWall_m = 8.0f;
 const Eigen::Vector3f kFrom(1.0f, 2.0f, 0.5f);
 
-/// A wall across x, seen from 8 m by returns half a degree apart, but for a post of 0.2 m before it, 0.5 m to the left.
+/// A wall across x at 8 m with returns every half degree, and a post of 0.2 m in front of it, 0.5 m to the left.
 SightGrid before_a_wall(float moved_m) {
   SightGrid sight;
   sight.start(kFrom, moved_m);
@@ -37,15 +37,15 @@ TEST(SightGrid, TellsFreeSpaceFromWhatIsThere) {
   };
   EXPECT_EQ(verdict(4.0f, -0.8f, 0.3f), SightGrid::Verdict::seen_through);
   EXPECT_EQ(verdict(kWall_m, -1.6f, 0.3f), SightGrid::Verdict::seen);
-  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), SightGrid::Verdict::seen);           // the post
-  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), SightGrid::Verdict::seen_through);  // before the post
-  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), SightGrid::Verdict::unknown);      // behind it
+  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), SightGrid::Verdict::seen);           // on the post
+  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), SightGrid::Verdict::seen_through);  // in front of the post
+  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), SightGrid::Verdict::unknown);      // behind the post
   EXPECT_EQ(verdict(kWall_m + 3.0f, -1.6f, 0.3f), SightGrid::Verdict::unknown);
-  EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), SightGrid::Verdict::unknown);  // by the post's edge
-  EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), SightGrid::Verdict::unknown);  // nothing returned from there
+  EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), SightGrid::Verdict::unknown);  // near the edge of the post
+  EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), SightGrid::Verdict::unknown);  // direction without a return
   EXPECT_EQ(verdict(0.0f, 0.0f, 0.0f), SightGrid::Verdict::unknown);
   EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f), SightGrid::Verdict::seen_through);
-  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f, 0.3f), SightGrid::Verdict::seen);  // who knows where it is
+  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f, 0.3f), SightGrid::Verdict::seen);  // the position is too uncertain
 }
 
 TEST(SightGrid, SaysNothingOfWhatTheSensorPassed) {
@@ -57,7 +57,7 @@ TEST(SightGrid, SaysNothingOfWhatTheSensorPassed) {
 constexpr int kLeaves = 8, kEnd = 32;  // sweeps
 const test::Room::Pillar kVisitor{{7.0, -3.0}, 0.3};
 
-/// Points of the map on the visitor, away from the walls and the other pillars.
+/// Returns the map points on the visitor, away from the walls and the other pillars.
 std::size_t on_the_visitor(const RoomRig& rig) {
   std::size_t count = 0;
   const test::Room alone = test::Room::box_with_pillars();
@@ -80,7 +80,7 @@ TEST(FreeSpace, WhoWalkedAwayIsLeftOutOfTheMap) {
   leaves.room.pillars.pop_back();
   leaves.run(kLeaves, kEnd);
   EXPECT_EQ(leaves.report.verdict, SweepVerdict::registered);
-  // what the sensor passes too close by, or few rings show, stays
+  // points close to the sensor, or on few rings, remain
   EXPECT_LT(on_the_visitor(leaves), seen / 5);
   EXPECT_GE(on_the_visitor(stays), seen);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A gap of the IMU: the rate between what is read on both sides, and how far it may be from that; docs/maths/mapping.md
-// (R44), (R43).
+// Tests IMU gaps: the rate between the readings on both sides, and its deviation; docs/maths/mapping.md (R44), (R43).
 #include "estimator/src/mapping/gap_bridge.hpp"
 
 #include <gtest/gtest.h>
@@ -48,14 +47,15 @@ TEST(GapBridge, GoesInALineFromReadingToReading) {
     EXPECT_EQ(part.clipped_axes, 7);
   }
   EXPECT_EQ(border_ns, 255 * kMs_ns);
-  // a long one: no more parts, and no less sure than anything is believed
+  // a long gap has a limited number of parts, and its deviation is limited
   const auto many = bridge(params, window(from, 0.1, 95, 100), window(to, 0.3, 6100, 6105));
   EXPECT_LE(many.size(), 64u);
   EXPECT_EQ(many[many.size() / 2].rate_sigma_rad_s, Eigen::Vector3d::Constant(params.rate_sigma_max_rad_s));
   EXPECT_EQ(many.back().time_ns, 6100 * kMs_ns);
 }
 
-/// Mean of the squared errors over the stated variance, for rates that walk by `walk` and are read with 0.2 rad/s.
+/// Returns the mean of squared errors divided by the stated variance, for rates with random walk `walk`, read with
+/// noise of 0.2 rad/s.
 double squared_over_stated(double walk, double stated_walk) {
   InertialNoiseParams params;
   params.gap_rate_walk_rad_s_sqrt_s = stated_walk;
@@ -63,7 +63,7 @@ double squared_over_stated(double walk, double stated_walk) {
   double sum = 0.0;
   int count = 0;
   for (int run = 0; run < 400; ++run) {
-    std::vector<double> truth(201);  // a step a millisecond
+    std::vector<double> truth(201);  // one step per millisecond
     for (std::size_t k = 1; k < truth.size(); ++k) truth[k] = truth[k - 1] + walk * std::sqrt(0.001) * noise();
     const WindowRate before = window({truth.front() + 0.2 * noise(), 0.0, 0.0}, 0.2, -5, 0);
     const WindowRate after = window({truth.back() + 0.2 * noise(), 0.0, 0.0}, 0.2, 200, 205);
@@ -79,7 +79,7 @@ double squared_over_stated(double walk, double stated_walk) {
 TEST(GapBridge, StatesWhatARandomWalkIsOffBy) {
   EXPECT_NEAR(squared_over_stated(9.0, 9.0), 1.0, 0.12);
   EXPECT_NEAR(squared_over_stated(2.0, 2.0), 1.0, 0.12);
-  // negative controls: half and twice of it
+  // negative controls: half and twice the random walk
   EXPECT_GT(squared_over_stated(9.0, 4.5), 2.0);
   EXPECT_LT(squared_over_stated(9.0, 18.0), 0.5);
 }
@@ -88,8 +88,8 @@ struct Followed {
   double end_m = 0.0, worst_rad = 0.0, worst_nees = 0.0;
 };
 
-/// The tumble through a room without the samples, 10 ms each, from `first` to `first` + `missing` - 1. Sweeps wait
-/// until the IMU covers them.
+/// Runs the tumble through a room without the samples `first` to `first` + `missing` - 1 (10 ms each). Sweeps wait
+/// until the IMU samples cover them.
 Followed over_a_gap(LidarInertialOdometry::Params params, int first, int missing) {
   params.expert.rails.estimate_deficit = true;
   LidarInertialOdometry odometry(params);
@@ -125,7 +125,7 @@ TEST(GapBridge, TheMapperGoesThroughAndSaysHowSurely) {
       EXPECT_LT(run.worst_nees, 2.0) << missing << " from " << first;
     }
   }
-  // negative control: a gap through which rate and velocity are believed
+  // negative control: a gap across which rate and velocity are assumed certain
   LidarInertialOdometry::Params sure = test::rig_params();
   sure.expert.prior.gap_rate_walk_rad_s_sqrt_s = sure.expert.prior.gap_velocity_walk_m_s_sqrt_s = 1e-3;
   EXPECT_GT(over_a_gap(sure, 83, 30).worst_nees, 5.0);
