@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Empty: the headers that the tests share are parsed once, as part of this file (tests/CMakeLists.txt).
+// This file is empty. The headers that the tests share are precompiled with it (tests/CMakeLists.txt).

@@ -32,8 +32,8 @@ std::string output_of(const std::string& command) {
   return out;
 }
 
-/// The sensors of a recording as examples/odometry/driver.hpp reads them, all IMUs but the reference. Each sweep is
-/// stated to begin `early_ns` before it does, the times of its points to the same.
+/// Writes the sensors of a recording in the format of examples/odometry/driver.hpp, with all IMUs except the reference
+/// IMU. Each sweep gets a start time that is `early_ns` too early, and the times of its points are adjusted.
 void write_messages(const sim::Sensors& sensors, const fs::path& file, std::int64_t early_ns = 0) {
   std::vector<std::vector<ImuSample>> units;
   for (const sim::ImuRecord& record : sensors.imus) {
@@ -54,7 +54,7 @@ void write_messages(const sim::Sensors& sensors, const fs::path& file, std::int6
       const bridge::Sweep sweep = bridge::sweep(sensors.lidars.front(), next);
       if (sweep.end_ns > units.front()[k].time_ns) break;
       out << "sweep " << sweep.start_ns - early_ns << ' ' << sweep.end_ns << ' ' << sweep.points.size() << '\n';
-      out.precision(9);  // of single precision: all that it has
+      out.precision(9);  // enough digits for single precision
       for (const LidarPoint& p : sweep.points)
         out << p.position_L_m.transpose() << ' ' << p.offset_ns + early_ns << ' ' << p.ring << '\n';
       out.precision(17);
@@ -80,7 +80,7 @@ std::vector<Line> lines_of(const std::string& text) {
   return out;
 }
 
-/// How far a point that is fixed in the body went from the start to `time_ns` [m].
+/// Returns the distance between the positions of a body-fixed point at the start and at `time_ns` [m].
 double distance_m(const sim::Truth& truth, const Eigen::Vector3d& p_B_m, std::int64_t time_ns) {
   const auto k = std::min(static_cast<std::size_t>(time_ns / truth.period_ns), truth.p_WB_m.size() - 1);
   const auto at = [&](std::size_t i) { return Eigen::Vector3d(truth.p_WB_m[i] + truth.q_WB[i] * p_B_m); };
@@ -133,7 +133,7 @@ TEST(OdometryExamples, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
   EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + hill_1.file.string() + " 2>/dev/null").c_str()), 0);
 }
 
-// stamps of a real lidar's sweeps jitter: 50 us are some points of a sweep, not its end
+// time stamps of a real lidar's sweeps have jitter: 50 us correspond to some points of a sweep
 TEST(OdometryExamples, SweepsThatOverlapALittleArePlacedAllTheSame) {
   const Recorded hill_1 = record("hill");
   const fs::path early = hill_1.file.parent_path() / "early.txt";
@@ -165,7 +165,7 @@ std::string text_of(const fs::path& file) {
 TEST(OdometryExamples, TheRebootExampleGoesOnWhereItWas) {
   const Recorded throw_1 = record("throw");
   const fs::path folder = throw_1.file.parent_path();
-  // the messages in two: between two of the IMU in the middle of the motion
+  // splits the messages in two, between two IMU samples in the middle of the motion
   std::ifstream all(throw_1.messages);
   std::vector<std::string> lines;
   for (std::string line; std::getline(all, line);) lines.push_back(line);
@@ -185,7 +185,7 @@ TEST(OdometryExamples, TheRebootExampleGoesOnWhereItWas) {
   EXPECT_GT(lines_of(after).size(), 3u);
   EXPECT_EQ(before + after, whole);
   EXPECT_EQ(fs::file_size(folder / "parts"), fs::file_size(folder / "whole"));
-  // negative controls: without the state it begins anew, and says so of one that is none
+  // negative controls: without the state file, the run restarts; an invalid state file causes an error
   std::ofstream beginning(folder / "beginning.txt");
   for (std::size_t k = half; k < half + (lines.size() - half) / 2; ++k) beginning << lines[k] << '\n';
   beginning.close();
@@ -202,7 +202,7 @@ TEST(OdometryExamples, TheRebootExampleGoesOnWhereItWas) {
   EXPECT_FALSE(fs::exists(folder / "parts.new"));
 }
 
-/// What stands in a file between its first include and its end.
+/// Returns the text of a file between its first include and its end.
 std::string code_of(const std::string& text) {
   const std::size_t at = text.find("#include");
   return at == std::string::npos ? "" : text.substr(at);

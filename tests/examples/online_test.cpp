@@ -23,7 +23,7 @@ namespace {
 std::size_t allocations = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// not inlined, so that the compiler does not report a mismatched pair of new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* memory = std::malloc(size);
@@ -42,7 +42,7 @@ namespace {
 
 const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
 
-/// The sphere along an L of 2 m with a spell of slip, as ideal sensors see it.
+/// The sphere on an L of 2 m with slip, measured by ideal sensors.
 const testing::RollingTruth& truth() {
   static const testing::RollingTruth out =
       testing::roll({.velocity_m_s = testing::l_shape,
@@ -106,7 +106,7 @@ TEST(Online, SaysWhatTheFilterSaysAndAllocatesNothing) {
   for (const ImuSample& sample : truth().samples) ASSERT_TRUE(filter.step(sample, *state).ok());
   const Pose pose = parse(last);
   EXPECT_EQ(pose.time_ns, truth().samples.back().time_ns);
-  EXPECT_LT((pose.p_m - state->p_WG_m).norm(), 2e-6);          // six digits are written
+  EXPECT_LT((pose.p_m - state->p_WG_m).norm(), 2e-6);          // the text has six digits
   EXPECT_LT((pose.p_m - truth().p_WG_m.back()).norm(), 0.01);  // 0.5 % of the path; ideal sensors
   EXPECT_EQ(program.samples(), in.size());
 }
@@ -137,7 +137,7 @@ TEST(Online, RefusesBadParams) {
   EXPECT_THROW(online::Online{bad}, InvalidParams);
 }
 
-/// Runs the program with `arguments` on a file of `text`; its exit status, and what it wrote in `out`.
+/// Runs the program with `arguments` and the input file `text`. Returns its exit status, and its output in `out`.
 int run(const std::string& arguments, const std::string& text, std::string& out) {
   const std::filesystem::path file =
       std::filesystem::path(::testing::TempDir()) / ("online_" + std::to_string(::getpid()) + ".txt");

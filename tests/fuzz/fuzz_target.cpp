@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One reader (TUMBLE_FUZZ_READER) under libFuzzer: fuzz_NAME [-max_total_time=S] [CORPUS] SEEDS. Refusals are as good
-// as anything; what libFuzzer and the sanitizers call a crash, a leak, a hang or too much memory is a defect.
+// Runs one reader (TUMBLE_FUZZ_READER) under libFuzzer: fuzz_NAME [-max_total_time=S] [CORPUS] SEEDS. The reader may
+// reject any file. A crash, a leak, a hang or too much memory is a defect.
 #include <unistd.h>
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// A folder of this process, gone with it.
+/// A folder of this process, which is deleted at its end.
 class Place {
  public:
   Place()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// fuzz_make_seeds FOLDER: writes the smallest good file of each kind into FOLDER/READER/, where the readers' own
-// writers know how; tests/fuzz/README.md says where the others come from.
+// fuzz_make_seeds FOLDER: writes the smallest valid file of each kind to FOLDER/READER/, if the program has a writer
+// for it. tests/fuzz/README.md lists the origin of the other files.
 #include <hdf5.h>
 #include <zstd.h>
 
@@ -30,7 +30,7 @@ using namespace tumble;
 using namespace tumble::scenarios;
 using std::filesystem::path;
 
-/// Few readings of a body that turns slowly under gravity.
+/// Some readings of a body that rotates slowly under gravity.
 sim::Recording small_recording(int samples) {
   fixture::Numbers numbers;
   sim::Recording out = fixture::recording();
@@ -39,7 +39,7 @@ sim::Recording small_recording(int samples) {
   out.sensors.lidars.clear();
   out.truth.lidars.clear();
   fixture::add_lidar(numbers, out, "lidar", 2, 4);
-  for (std::uint32_t& offset_ns : out.sensors.lidars[0].offset_ns) offset_ns *= 8000;  // 25 ms from point to point
+  for (std::uint32_t& offset_ns : out.sensors.lidars[0].offset_ns) offset_ns *= 8000;  // 25 ms between points
   sim::ImuRecord& imu = out.sensors.imus[0];
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
     const double angle_rad = 0.003 * static_cast<double>(k);
@@ -111,7 +111,7 @@ void write_broad(const path& file) {
   H5Fclose(out);
 }
 
-/// Bags in our format and in those of others, without checksums, which would reject most inputs of a fuzzer.
+/// Bags in our format and in formats of other programs, without checksums, which would reject most inputs of a fuzzer.
 void write_mcaps(const path& folder, const sim::Recording& recording) {
   const StoredTruth truth = fixture::stored_truth(recording, folder);
   export_mcap(recording.sensors, {0, &truth}, folder / "small");
@@ -211,7 +211,7 @@ void write_texts(const path& folder) {
   std::string wand =
       "Time;Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;\n"
       "s;W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z\n";
-  for (int k = 0; k < 150; ++k) {  // it swings about x, and the readings belong to it
+  for (int k = 0; k < 150; ++k) {  // it swings about x, with consistent readings
     const double t = 0.01 * k, angle_rad = 0.5 * std::sin(6.0 * t);
     char line[256];
     std::snprintf(line, sizeof line, "%.3f;%.6f;%.6f;0;0;0.1;%.4f;%.4f;%.5f;0.01;0.02;0.1;0.2;0.3\n", t,

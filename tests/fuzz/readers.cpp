@@ -32,7 +32,7 @@ namespace tumble::fuzz {
 namespace {
 
 using std::filesystem::path;
-using namespace tumble::scenarios;  // the readers are all there
+using namespace tumble::scenarios;  // all readers are in this namespace
 
 void recording(const path& file) {
   read_info(file);
@@ -62,7 +62,7 @@ void repoimu(const path& file) {
   import_repoimu(file, false);
   try {
     import_repoimu(file, true);
-  } catch (const BadInput&) {  // too little motion to align by
+  } catch (const BadInput&) {  // the motion is too small for the alignment
   }
 }
 void airbrakes(const path& file) {
@@ -81,7 +81,7 @@ void mcap(const path& file) {
   import_mcap(file, some_bag());
 }
 
-/// A file of points, then the sweep that it is.
+/// A file of points, then a sweep with these points.
 void cloud(const path& file, const std::string& format) {
   read_cloud(file);
   SweepSource source;
@@ -171,7 +171,7 @@ void estimate(const path& place) {
 void estimate_tum(const path& file) {
   estimate(file);
 }
-/// The table beside an estimate.json that is good.
+/// The table of a valid estimate.json.
 void estimate_rates(const path& file) {
   const path json = file.parent_path() / "estimate.json";
   if (!std::filesystem::exists(json)) {
@@ -179,7 +179,7 @@ void estimate_rates(const path& file) {
   }
   estimate(file.parent_path());
 }
-/// The description beside a table that is good.
+/// The description of a valid table.
 void estimate_json(const path& file) {
   const path rates = file.parent_path() / "rates.csv";
   if (!std::filesystem::exists(rates)) {
@@ -252,7 +252,7 @@ bool takes(const Reader& reader, std::string_view bytes, const path& folder) {
     return true;
   } catch (const BadInput&) {
     return false;
-  } catch (const sim::InvalidSituation&) {  // a number that the draw finds out of bounds
+  } catch (const sim::InvalidSituation&) {  // a number that is out of bounds in the draw
     return false;
   }
 }

@@ -6,23 +6,24 @@
 #include <string>
 #include <string_view>
 
-/// What reads files of strangers, and how it is held to "a clear error, never a crash".
+/// Readers of external files, which must report a clear error and never crash.
 namespace tumble::fuzz {
 
 /// A reader of one kind of file.
 struct Reader {
-  std::string_view name;                            ///< also the folder of its seeds
-  std::string_view file;                            ///< name that the file is given: some readers look at its ending
-  void (*read)(const std::filesystem::path& file);  ///< BadInput is a refusal; whatever else it throws is a defect
+  std::string_view name;                            ///< also the name of the folder with its seeds
+  std::string_view file;                            ///< file name, because some readers check its ending
+  void (*read)(const std::filesystem::path& file);  ///< may throw BadInput; any other exception is a defect
 };
 
-/// All of them, in the order of registration: a new one is a function and a line in readers.cpp, and a folder of seeds.
+/// Returns all readers, in the order of registration. A new reader needs a function and a line in readers.cpp, and a
+/// folder of seeds.
 std::span<const Reader> readers();
-/// Null when none is called so.
+/// Returns the reader of this name, or null.
 const Reader* find_reader(std::string_view name);
 
-/// Puts `bytes` into the reader's file in `folder`, reads it and says whether it was taken. Throws what the reader
-/// throws but for refusals.
+/// Writes `bytes` to the reader's file in `folder` and reads it. Returns whether the reader accepts it. Throws all
+/// exceptions of the reader except BadInput.
 bool takes(const Reader& reader, std::string_view bytes, const std::filesystem::path& folder);
 
 }  // namespace tumble::fuzz

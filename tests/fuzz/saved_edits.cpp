@@ -25,7 +25,8 @@ void reseal(Bytes& bytes) {
   put_number(checksum(all.subspan(kHeader), checksum(all.first(kChecksumAt))), kChecksumAt, bytes);
 }
 
-/// Of numbers, lengths, flags and enumerations; the last ones are parameters within most bounds, and at their ends.
+/// Values of numbers, lengths, flags and enumerations. The last values are parameters within most bounds, and at the
+/// bounds.
 constexpr std::uint64_t kNumbers[] = {0,
                                       1,
                                       2,

@@ -11,23 +11,24 @@
 
 #include "scenarios/errors.hpp"
 
-/// Saved states, spoiled by what a file says: the edits are of states that are made here and not of files, so that a
-/// seed stays good when the states change.
+/// Corrupts saved states by edits from a file. The states are generated here and not read from files, so that a seed
+/// remains valid if the state format changes.
 namespace tumble::fuzz {
 
 using Bytes = std::vector<std::byte>;
 
-/// A letter that says of which class, and then edits, six bytes each: what (modulo 5), where (4 bytes, little-endian,
-/// modulo the size), by which byte.
+/// A letter for the class, then edits of six bytes: kind (modulo 5), position (4 bytes, little-endian, modulo the
+/// size), and value.
 struct Edits {
-  char letter = 0;                ///< the capital of what the file begins with
+  char letter = 0;                ///< first letter of the file, in upper case
   bool use_saved_params = false;  ///< use the parameters stored in the bytes, after the edits
   std::string text;
 
-  /// Length and checksum are made to fit again, since no fuzzer would find them. BadInput where an edit is not whole.
+  /// Corrects length and checksum after the edits, because a fuzzer would not find them. Throws BadInput if an edit is
+  /// incomplete.
   Bytes spoil(Bytes saved) const;
 };
-/// BadInput where there is not even a letter.
+/// Throws BadInput if the file is empty.
 Edits read_edits(const std::filesystem::path& file);
 
 /// Loads a saved state with edits. Throws BadInput if the estimator rejects the state by a Status, or its parameters by

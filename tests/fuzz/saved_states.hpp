@@ -8,8 +8,8 @@ namespace tumble::fuzz {
 /// Corrupted saved states of TumblingOdometry (T) and RollingOdometry (R), see saved_edits.hpp.
 void saved_states(const std::filesystem::path& file);
 
-/// The same of streams: RateStream (R), RegimeStream (G), HandHeldStream (C), HandHeldPipeline (L), RollingFilter (F),
-/// RollingSmoother (S).
+/// Corrupted saved states of streams: RateStream (R), RegimeStream (G), HandHeldStream (C), HandHeldPipeline (L),
+/// RollingFilter (F), RollingSmoother (S).
 void saved_streams(const std::filesystem::path& file);
 
 }  // namespace tumble::fuzz

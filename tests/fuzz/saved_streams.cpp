@@ -11,7 +11,7 @@ namespace tumble::fuzz {
 
 namespace {
 
-/// In motion, and where the window is full.
+/// Saved in motion, when the window is full.
 template <class Stream>
 struct Streaming {
   struct Estimator : test::Kept<Stream> {
@@ -24,7 +24,7 @@ struct Streaming {
   };
   static constexpr std::size_t kSome = test::kRolls<Stream> ? 500 : 150, kMore = 8;
 
-  /// With short windows, which are quick.
+  /// Streams with short windows, which are fast.
   static typename Estimator::Params params() {
     const auto shorten = [](HandHeldStream::Params& hand_held) {
       hand_held.lag_s = 0.05;

@@ -8,7 +8,7 @@
 
 namespace tumble::oracles {
 
-/// Gaussian noise for tests, the same bits on every machine: SplitMix64 and the Box-Muller transform.
+/// Gaussian noise for tests, with identical bits on every machine: SplitMix64 and the Box-Muller transform.
 class Gaussian {
  public:
   explicit Gaussian(std::uint64_t seed) : state_(seed) {}

@@ -8,7 +8,7 @@ struct JacobiElliptic {
   double sn, cn, dn;
 };
 
-/// By the arithmetic-geometric mean and descending Landen transformations (Abramowitz & Stegun 16.4); modulus
+/// Computed by the arithmetic-geometric mean and descending Landen transformations (Abramowitz & Stegun 16.4); modulus
 /// 0 <= k < 1. Accurate to about 1e-14 (1 + |u|).
 JacobiElliptic jacobi_elliptic(double u, double k);
 

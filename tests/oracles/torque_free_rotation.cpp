@@ -18,7 +18,7 @@ constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290
                                           0.9602898564975363};
 constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                             0.1012285362903763};
-// panels per half period; the integrand is smooth, doubling them changes nothing above 1e-14
+// panels per half period; the integrand is smooth, and twice as many panels change the result by less than 1e-14
 constexpr int kPanels = 64;
 
 void check_moments(const Eigen::Vector3d& moments) {
@@ -40,14 +40,14 @@ TorqueFreeRotation::TorqueFreeRotation(const Eigen::Vector3d& moments, const Eig
   steady_ = rate0_.cross(L).norm() <= 1e-14 * rate0_.norm() * momentum_;
   if (steady_) return;
 
-  // roles: dn on the axis (of largest or smallest moment) that the rate circles, sn on the middle one
+  // roles: dn belongs to the axis (of largest or smallest moment) that the rate circles, sn to the middle axis
   std::sort(axes_, axes_ + 3, [&](int i, int j) { return moments[i] < moments[j]; });
   const double twice_energy = rate0_.dot(L);
   const double L2 = momentum_ * momentum_;
   if (L2 < twice_energy * moments[axes_[1]]) std::swap(axes_[0], axes_[2]);
   const double I1 = moments[axes_[0]], I2 = moments[axes_[1]], I3 = moments[axes_[2]];
   const double w1 = rate0_[axes_[0]], w2 = rate0_[axes_[1]], w3 = rate0_[axes_[2]];
-  // 2 E I3 - L^2 and L^2 - 2 E I1, as sums in which nothing cancels
+  // 2 E I3 - L^2 and L^2 - 2 E I1, as sums without cancellation
   const double wobble = I1 * (I3 - I1) * w1 * w1 + I2 * (I3 - I2) * w2 * w2;
   const double spin = I2 * (I2 - I1) * w2 * w2 + I3 * (I3 - I1) * w3 * w3;
   const double k2 = (I2 - I1) * wobble / ((I3 - I2) * spin);
@@ -56,7 +56,7 @@ TorqueFreeRotation::TorqueFreeRotation(const Eigen::Vector3d& moments, const Eig
   modulus_ = std::sqrt(std::max(0.0, k2));
   frequency_rad_s_ = std::sqrt((I3 - I2) * spin / (I1 * I2 * I3));
   const double sign3 = w3 < 0.0 ? -1.0 : 1.0;
-  // Euler's equations change sign when the roles are a left-handed order of the axes
+  // Euler's equations change sign if the roles form a left-handed order of the axes
   const bool right_handed = (axes_[0] + 1) % 3 == axes_[1];
   const double sign2 = (I3 > I2) == right_handed ? sign3 : -sign3;
   amplitude_ = {std::sqrt(wobble / (I1 * (I3 - I1))), sign2 * std::sqrt(wobble / (I2 * (I3 - I2))),
@@ -94,8 +94,8 @@ Eigen::Vector3d TorqueFreeRotation::momentum_direction(double t_s) const {
   return moments_.cwiseProduct(rate(t_s)).normalized();
 }
 
-// Columns in B: direction l of the angular momentum, m = d x l normalised with d the axis of dn, l x m. In the world l
-// is fixed and m turns about it.
+// Columns in B: direction l of the angular momentum, m = d x l normalised with d the axis of dn, and l x m. In the
+// world, l is fixed and m rotates about it.
 Eigen::Matrix3d TorqueFreeRotation::momentum_frame_in_body(double t_s) const {
   const Eigen::Vector3d l = momentum_direction(t_s);
   const Eigen::Vector3d m = Eigen::Vector3d::Unit(axes_[2]).cross(l).normalized();
@@ -104,7 +104,7 @@ Eigen::Matrix3d TorqueFreeRotation::momentum_frame_in_body(double t_s) const {
   return frame;
 }
 
-// rate at which m turns about l: L (I1 w1^2 + I2 w2^2) / (I1^2 w1^2 + I2^2 w2^2), axes by role
+// rate at which m rotates about l: L (I1 w1^2 + I2 w2^2) / (I1^2 w1^2 + I2^2 w2^2), axes by role
 double TorqueFreeRotation::precession_rate(double t_s) const {
   const Eigen::Vector3d w = rate(t_s);
   const double l1 = moments_[axes_[0]] * w[axes_[0]], l2 = moments_[axes_[1]] * w[axes_[1]];

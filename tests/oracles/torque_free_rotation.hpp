@@ -6,15 +6,15 @@
 
 namespace tumble::oracles {
 
-/// Rotation of a rigid body on which no torque acts, in closed form.
+/// Closed-form rotation of a rigid body without torque.
 ///
-/// Body axes B are principal axes. The rate follows from Jacobi elliptic functions (Landau & Lifshitz, Mechanics,
-/// section 37); two angles of the attitude from the constant angular momentum; the third, the turn about the angular
-/// momentum, is an elliptic integral of the third kind, evaluated by Gauss-Legendre quadrature of the closed-form
-/// rate (converged to rounding), its whole half-periods counted and not integrated again.
+/// Body axes B are principal axes. The rate is given by Jacobi elliptic functions (Landau & Lifshitz, Mechanics,
+/// section 37). The constant angular momentum determines two angles of the attitude. The third angle, about the angular
+/// momentum, is an elliptic integral of the third kind. It is computed by Gauss-Legendre quadrature of the closed-form
+/// rate (converged to rounding); whole half-periods are counted and integrated only once.
 ///
-/// Any order of principal moments, equal ones included. Refuses (std::invalid_argument) moments that no rigid body
-/// has, and the separatrix, where the period is infinite (1 - k^2 < 1e-9), unless the spin is steady.
+/// Accepts principal moments in any order, also equal moments. Throws std::invalid_argument for impossible moments, and
+/// for the separatrix, where the period is infinite (1 - k^2 < 1e-9), unless the spin is constant.
 class TorqueFreeRotation {
  public:
   /// Principal moments [kg m^2, any common scale], rate w_WB in B at t = 0 [rad/s], attitude q_WB at t = 0.
@@ -27,11 +27,11 @@ class TorqueFreeRotation {
   Eigen::Vector3d acceleration(double t_s) const;
   /// Attitude at time t, body to world.
   Eigen::Quaterniond attitude(double t_s) const;
-  /// What an ideal accelerometer at p_BI (from the centre of mass, in B) measures in free flight, in B:
-  /// f = alpha x p + w x (w x p) [m/s^2].
+  /// Returns the reading of an ideal accelerometer at p_BI (from the centre of mass, in B) in free flight, in B: f =
+  /// alpha x p + w x (w x p) [m/s^2].
   Eigen::Vector3d specific_force(double t_s, const Eigen::Vector3d& p_BI_m) const;
 
-  /// Time after which the rate repeats [s]; infinite for a steady spin.
+  /// Returns the time after which the rate repeats [s]; infinite for a constant spin.
   double period_s() const;
   bool steady() const { return steady_; }
 
@@ -46,7 +46,7 @@ class TorqueFreeRotation {
   Eigen::Vector3d rate0_;
   Eigen::Quaterniond q_WB0_;
   bool steady_ = false;
-  // roles of the body axes: cn, sn and dn stand on axes_[0], axes_[1], axes_[2]
+  // axes_[0], axes_[1], axes_[2] are the body axes of cn, sn and dn
   int axes_[3] = {0, 1, 2};
   Eigen::Vector3d amplitude_ = Eigen::Vector3d::Zero();  // signed, by role
   double momentum_ = 0.0;

@@ -22,7 +22,7 @@ struct CloudMessage {
   }
 };
 
-/// A field's name, its datatype, and the number that it has for a point.
+/// Name and data type of a field, and its value for a point.
 struct Column {
   std::string name;
   std::uint8_t datatype;
@@ -51,7 +51,7 @@ inline void put(std::vector<std::uint8_t>& out, std::uint8_t datatype, double va
   }
 }
 
-/// Columns x, y and z as every driver has them.
+/// Fields x, y and z, as in every driver.
 inline std::vector<Column> xyz() {
   std::vector<Column> out;
   for (int axis = 0; axis < 3; ++axis)
@@ -72,7 +72,7 @@ inline CloudMessage cloud_message(const std::vector<LidarPoint>& points, std::ve
   return out;
 }
 
-/// Ouster's dialect: exact times.
+/// Fields of Ouster's driver, with exact times.
 inline CloudMessage ouster_cloud(const std::vector<LidarPoint>& points) {
   std::vector<Column> columns = xyz();
   columns.push_back({"t", 6, [](const LidarPoint& p) { return double(p.offset_ns); }});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sanitizer must stop at: negative controls of the builds that watch memory, arithmetic and threads.
+// Faults that sanitizers must detect: negative controls of the builds for memory, arithmetic and threads.
 #include <cstdio>
 #include <limits>
 #include <string_view>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the mapper hears of an IMU: when the rest at its start ends, what that teaches, and which sweeps rest.
+// Tests the mapper's processing of IMU samples: the end of the rest at the start, the calibration at rest, and the
+// detection of stationary sweeps.
 #include "estimator/src/mapping/inertial_track.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ using Params = LidarInertialOdometry::Params;
 
 const Eigen::Vector3d kBias_rad_s(0.01, -0.02, 0.005);
 
-/// One who hears an IMU of samples that are `step_ns` apart.
+/// Processes IMU samples with a period of `step_ns`.
 struct Listener {
   Params params = {};
   TimeNs step_ns = 10'000'000;
@@ -42,7 +43,8 @@ struct Listener {
   }
 };
 
-/// Of a gyro of 6.5 mrad/s a reading, the first two 35 mrad/s apart: rare, and no motion.
+/// A gyro with noise of 6.5 mrad/s per reading, whose first two readings differ by 35 mrad/s: this is rare, but not
+/// motion.
 Listener noisy_at_first(double bias_rest_s) {
   Listener listener;
   listener.params.expert.start.bias_rest_s = bias_rest_s;
@@ -61,7 +63,7 @@ TEST(InertialTrack, NoiseOfTheFirstReadingsEndsNoRest) {
   // the second reading is one of 99
   EXPECT_NEAR((listener.track.samples().back().w_WI_I_rad_s - Eigen::Vector3d(0.0, 1.0, 0.0)).norm(), 0.0175 / 99.0,
               1e-9);
-  // negative control: as if the first run of readings were the only one
+  // negative control: only the first few readings count
   EXPECT_EQ(noisy_at_first(0.0).resting(), 1);
 }
 
@@ -81,7 +83,7 @@ TEST(InertialTrack, ATooShortRestTeachesNoBias) {
   EXPECT_EQ(listener.track.samples().back().w_WI_I_rad_s, Eigen::Vector3d(0.0, 3.0, 0.0));
 }
 
-// readings take 10 ms, and what moves within one is told at its end
+// a reading takes 10 ms, so motion within it is detected at its end
 TEST(InertialTrack, AFastImuIsHeldNoLongerThanItRests) {
   Listener listener;
   listener.step_ns = 1'000'000;
@@ -114,7 +116,7 @@ TEST(InertialTrack, ASweepRestsWhileTheImuSaysNothingButGravity) {
   EXPECT_FALSE(rests(9.6, 0.0, 2));
 }
 
-/// Parts of a gap of 0.3 s in a flight that turns by 3 rad/s, and by `after_rad_s` once it is over.
+/// Parts of a gap of 0.3 s in a flight that rotates at 3 rad/s, and at `after_rad_s` after the gap.
 std::vector<MotionSample> parts_of_a_gap(double after_rad_s) {
   Listener listener;
   listener.params.expert.flight.body = FlyingBody{};
@@ -122,7 +124,7 @@ std::vector<MotionSample> parts_of_a_gap(double after_rad_s) {
   listener.now_ns += 300'000'000;
   listener.hear(1, Eigen::Vector3d(0.0, after_rad_s, 0.0), Eigen::Vector3d::Zero());
   const auto samples = listener.track.samples();
-  EXPECT_EQ(samples.back().time_ns - samples.back().from_ns, listener.step_ns);  // a reading is of its own window
+  EXPECT_EQ(samples.back().time_ns - samples.back().from_ns, listener.step_ns);  // a reading covers only its own window
   std::vector<MotionSample> parts;
   for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
     EXPECT_EQ(samples[k].time_ns, samples[k + 1].from_ns);
@@ -137,16 +139,16 @@ TEST(InertialTrack, AFlightGoesOnThroughAGapThatItsRateBearsOut) {
   for (const MotionSample& part : flown) {
     EXPECT_TRUE(part.in_flight && !part.bridges_gap);
     EXPECT_NEAR(part.w_WI_I_rad_s.y(), 3.0, 1e-9);
-    EXPECT_GE(part.rate_sigma_rad_s.y(), 0.2 - 1e-9);  // what it is off by at the end
+    EXPECT_GE(part.rate_sigma_rad_s.y(), 0.2 - 1e-9);  // error at the end
   }
-  // struck inside of it
+  // struck within the gap
   const auto struck = parts_of_a_gap(8.0);
   ASSERT_FALSE(struck.empty());
   for (const MotionSample& part : struck) EXPECT_TRUE(part.bridges_gap && !part.in_flight);
   EXPECT_NEAR(struck[struck.size() / 2].w_WI_I_rad_s.y(), 5.5, 0.2);
 }
 
-// The window before a gap may itself be a gap, at rest: no sample reaches back into the one before it.
+// The window before a gap may itself be a gap, at rest: no sample overlaps the previous sample.
 TEST(InertialTrack, SamplesDoNotOverlapWhateverTheirWindows) {
   Listener listener;
   listener.hear(30, Eigen::Vector3d::Zero());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The window's backward pass against the dense least squares of all its sweeps together.
+// Compares the backward pass of the window with dense least squares over all of its sweeps.
 #include "estimator/src/mapping/lag_window.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using Vector = Registration::Vector;
 using Dense = Eigen::MatrixXd;
 
 constexpr int kSweeps = 4, kMeasured = 6;
-/// All unknowns but the two rotations: of these an estimate is linear, and first order is exact.
+/// All unknowns except the two rotations: the problem is linear in them, so first order is exact.
 constexpr std::array kLinear = {0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 21, 22, 23, 24, 25, 26, 27};
 constexpr int kFree = kLinear.size();
 
@@ -57,13 +57,14 @@ Dense inverse(const Dense& matrix) {
   return matrix.ldlt().solve(Dense::Identity(matrix.rows(), matrix.cols()));
 }
 
-/// A linear system of sweeps, measured in some directions each: through a Kalman filter into a window, and all at once.
+/// A linear system of sweeps, each measured in some directions. It is solved by a Kalman filter with a window, and at
+/// once.
 struct System {
   LagWindow window{kSweeps};
   Dense information = Dense::Zero(kSweeps * kFree, kSweeps* kFree);
   Dense pull = Dense::Zero(kSweeps * kFree, 1);
 
-  /// `transition_error` spoils what the window is told of the transitions, not the system.
+  /// `transition_error` changes the transitions given to the window, not the system.
   explicit System(double transition_error = 0.0) {
     Numbers numbers;
     Dense x = Dense::Zero(kFree, 1), P = Dense::Identity(kFree, kFree);
@@ -98,7 +99,7 @@ struct System {
     window.smooth();
   }
 
-  /// Largest difference from the batch, over means and covariances of all sweeps.
+  /// Returns the largest difference from the batch solution, over means and covariances of all sweeps.
   double difference(Estimated WindowSweep::*which) const {
     const Dense covariance = inverse(information), mean = covariance * pull;
     double largest = 0.0;
@@ -112,7 +113,7 @@ struct System {
   }
 };
 
-// The window adds 1e-12 to variances so that it can invert them; the rest is rounding.
+// The window adds 1e-12 to variances to make them invertible; the rest is rounding.
 TEST(LagWindow, SmoothsToTheBatchSolutionOfAllSweeps) {
   EXPECT_LT(System().difference(&WindowSweep::smoothed), 1e-8);
 }

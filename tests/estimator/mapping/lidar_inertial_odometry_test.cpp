@@ -27,7 +27,7 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
   EXPECT_EQ(reports[0].verdict, SweepVerdict::first);
   int registered = 0;
   for (std::size_t i = 1; i < reports.size(); ++i) {
-    // the map of a sensor at rest is rings; it fills once the spin begins
+    // the map of a sensor at rest consists of rings; the gaps are filled after the spin starts
     EXPECT_NE(reports[i].verdict, SweepVerdict::rejected) << "sweep " << i;
     registered += reports[i].verdict == SweepVerdict::registered;
     EXPECT_GT(reports[i].inlier_ratio, i < 4 ? 0.15 : 0.35) << "sweep " << i;
@@ -37,12 +37,12 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
   }
   EXPECT_GT(registered, 20);
   const test::PoseError end = error_of(reports.back().pose);
-  // most of it comes from the first moving sweep against rings; measured 0.025 m, 0.0013 rad, 0.01 m/s
+  // most of the error comes from the first moving sweep, registered to rings; measured 0.025 m, 0.0013 rad, 0.01 m/s
   EXPECT_LT(end.m, 0.04);
   EXPECT_LT(end.rad, 0.003);
   EXPECT_LT(end.m_s, 0.05);
 
-  // the map lies on the surfaces, and its normals look back at the sensor's side of them
+  // map points are on the surfaces, and their normals point to the sensor's side
   const std::vector<MapPoint> map = odometry.map();
   ASSERT_GT(map.size(), 10'000u);
   std::size_t near = 0, with_normal = 0, inwards = 0;
@@ -53,7 +53,8 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
     if (point.normal_W.isZero()) continue;
     ++with_normal;
     EXPECT_NEAR(point.normal_W.norm(), 1.0f, 1e-5f);
-    inwards += point.normal_W.cast<double>().dot(-p) > 0.0 || room.distance(p) > 0.2;  // pillars look outwards
+    // normals of pillars point outwards
+    inwards += point.normal_W.cast<double>().dot(-p) > 0.0 || room.distance(p) > 0.2;
   }
   EXPECT_GT(static_cast<double>(near) / static_cast<double>(map.size()), 0.98);
   EXPECT_GT(static_cast<double>(with_normal) / static_cast<double>(map.size()), 0.7);
@@ -81,7 +82,7 @@ TEST(LidarInertialOdometry, FindsTheDeficitOfClippedAxesByItself) {
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
   Odometry whole(rig_params());
   const auto before = run(whole, 0, 9);
-  // in the midst of a sweep's samples
+  // between two samples of a sweep
   for (int k = 90; k < 94; ++k) {
     ASSERT_TRUE(whole
                     .add_imu(test::room_tumble().imu[static_cast<std::size_t>(k)],
@@ -127,11 +128,11 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
     const auto& d = report.least_constrained_direction;
     EXPECT_GT(std::hypot(d[0], d[1], d[5]), 0.95) << d.transpose();
   }
-  EXPECT_GT(degenerate, 3);  // at rest its rings give no plane at all
+  EXPECT_GT(degenerate, 3);  // at rest, its rings determine no plane
 }
 
-/// A plane without noise leaves directions open to the last bit: smallest over largest eigenvalue is 0 then. What it
-/// does hold is aligned all the same.
+/// A plane without noise leaves exactly unconstrained directions: the ratio of smallest to largest eigenvalue is 0. The
+/// constrained directions are still aligned.
 TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   const auto plane = [](float height_m) {
     std::vector<LidarPoint> points;
@@ -153,11 +154,12 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
     for (int k = sweep * kSamplesPerSweep; k < (sweep + 1) * kSamplesPerSweep; ++k) {
       ImuSample sample;
       sample.time_ns = (k + 1) * test::kSweep_ns / kSamplesPerSweep;
-      sample.angular_velocity_rad_s = {0.0, 0.0, sweep == 0 ? 0.0 : 0.5};  // no rest, about the plane's normal
+      // rotation about the plane's normal, so the sensor is not at rest
+      sample.angular_velocity_rad_s = {0.0, 0.0, sweep == 0 ? 0.0 : 0.5};
       sample.specific_force_m_s2 = {0.0, 0.0, params.expert.gravity_m_s2};
       ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     }
-    // the second sweep sees the plane 5 mm nearer than inertia has it
+    // in the second sweep, the plane is 5 mm nearer than the IMU predicts
     ASSERT_TRUE(add_sweep(odometry, sweep, plane(sweep == 0 ? -1.5f : -1.495f), report).ok());
   }
   EXPECT_EQ(report.verdict, SweepVerdict::degenerate);
@@ -167,8 +169,8 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   EXPECT_GT(report.innovation, 0.0);
 }
 
-/// Above a floor alone, which leaves two directions open, and with an accelerometer that is off by 0.5 m/s^2 once the
-/// rest is over: integrated it goes astray, a velocity that is told at every sweep holds it.
+/// A sensor above a floor, which leaves two directions unconstrained. After the rest, the accelerometer has an error of
+/// 0.5 m/s^2. Its integral drifts, but a velocity measurement per sweep bounds the drift.
 TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
   const test::Motion& motion = test::room_tumble().motion;
   const auto end_error_m = [&](bool told) {
@@ -195,7 +197,7 @@ TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
   EXPECT_GT(end_error_m(false), 0.15);
 }
 
-/// An accelerometer that reads one value of its rail, or nothing at all, from the throw on.
+/// After the throw, an accelerometer always reads its saturation limit, or has no readings.
 TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
   const test::Motion& motion = test::room_tumble().motion;
   const auto worst_m = [&](const Eigen::Vector3d& read, bool left_out) {
@@ -226,7 +228,7 @@ TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
 }
 
 TEST(LidarInertialOdometry, LevelsAtRest) {
-  // a tilted start: gravity tells roll and pitch, yaw is zero
+  // for a tilted start, gravity determines roll and pitch, and yaw is zero
   const Eigen::Quaterniond q_true = so3::exp({0.0, 0.3, 0.0}) * so3::exp({0.2, 0.0, 0.0});
   Odometry odometry(rig_params());
   for (int k = 1; k <= 10; ++k) {

@@ -49,7 +49,8 @@ TEST(Localisation, WithoutAMapNothingIsLost) {
   EXPECT_FALSE(localisation.verdict().ok());
 }
 
-// A rail may hide more of one sweep than the rates knew; what is wrong of an IMU or a mounting comes back.
+// Saturation may cause a larger error in one sweep than the stated deviation. Errors of an IMU or a mounting occur in
+// every sweep.
 TEST(Localisation, TwoSweepsThatContradictTheirPriorsAreNotForgotten) {
   EXPECT_TRUE(after(sweep(0.1, 3.0)).ok());
   Localisation localisation(1.0);

@@ -14,7 +14,8 @@ namespace tumble {
 namespace {
 
 constexpr RangeNoise kNoise{0.02, 0.0015};
-constexpr float kNoticeable_m = 0.6f;  // at 15 m returns 0.4 deg apart are one surface at 10 deg up to here
+// at a range of 15 m, returns 0.4 deg apart belong to one surface at 10 deg up to this difference
+constexpr float kNoticeable_m = 0.6f;
 
 std::vector<SweepPoint> selected(const std::vector<LidarPoint>& given) {
   std::vector<SweepPoint> points;
@@ -24,7 +25,7 @@ std::vector<SweepPoint> selected(const std::vector<LidarPoint>& given) {
   return points;
 }
 
-/// One return in twenty at a random range up to 15 m along its beam; what each was displaced by goes into `moved_m`.
+/// Moves one return in twenty to a random range up to 15 m along its beam; `moved_m` receives the displacements.
 std::vector<LidarPoint> dusty(std::vector<LidarPoint> points, std::uint64_t seed, std::vector<float>* moved_m) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::uint64_t counter = (seed << 24) + 2 * k;
@@ -37,7 +38,7 @@ std::vector<LidarPoint> dusty(std::vector<LidarPoint> points, std::uint64_t seed
   return points;
 }
 
-/// A ring that turns through `step_rad` from return to return, at the ranges given; 0: a miss.
+/// A ring with an angular step of `step_rad`, with the given ranges; 0: no return.
 std::vector<SweepPoint> ring(const std::vector<float>& ranges_m, double step_rad) {
   std::vector<LidarPoint> points;
   for (std::size_t k = 0; k < ranges_m.size(); ++k) {
@@ -66,7 +67,7 @@ TEST(LoneReturns, GoAndTheirNeighboursStay) {
   for (const SweepPoint& point : points) EXPECT_NEAR(point.range_m, 8.0f, 1e-3f);
 }
 
-/// Two beams on it and an object is one; so are both sides of an edge.
+/// Two adjacent returns form an object, and so does each side of an edge.
 TEST(LoneReturns, ThinThingsAndEdgesStay) {
   LoneReturns lone;
   std::vector<float> scene(40, 8.0f);
@@ -77,14 +78,14 @@ TEST(LoneReturns, ThinThingsAndEdgesStay) {
   EXPECT_EQ(points.size(), 40u);
 }
 
-/// Ground 0.5 m below a ring that stands upright, 6 to 10 m away: at 3 to 5 degrees against the beam its returns lie
-/// further apart in range than a surface at 10 degrees has them, yet each between its neighbours. One out of line goes.
+/// Ground 0.5 m below an upright ring, 6 to 10 m away, seen at 3 to 5 degrees. Adjacent ranges differ more than on a
+/// surface at 10 degrees, but each is between its neighbours. A single wrong return is removed.
 TEST(LoneReturns, GroundAtAGrazingAngleStays) {
   LoneReturns lone;
   std::vector<float> scene;
   for (int k = 0; k < 11; ++k) scene.push_back(static_cast<float>(0.5 / std::sin(0.08 - 0.003 * k)));
   std::vector<SweepPoint> points = ring(scene, 0.003);
-  // the ends of the row have no second side
+  // the ends of the row have only one neighbour
   EXPECT_LE(lone.drop(kNoise, points), 2u);
   scene[5] -= 1.5f;
   points = ring(scene, 0.003);
@@ -102,7 +103,7 @@ TEST(LoneReturns, AReturnAmidMissesGoes) {
   EXPECT_EQ(lone.drop(kNoise, points), 1u);
 }
 
-/// Where successive returns are half a right angle apart they say nothing of each other.
+/// Returns more than 45 degrees apart are not compared.
 TEST(LoneReturns, ASweepWithoutNeighboursKeepsAll) {
   LoneReturns lone;
   std::vector<float> scattered;
@@ -133,7 +134,7 @@ TEST(LoneReturns, OfATumbleInDustFewStayAndFewGoTooMany) {
   EXPECT_GT(static_cast<double>(clean_left), 0.99 * static_cast<double>(clean));
 }
 
-/// The map of a tumble in dust lies on the surfaces.
+/// The map of a tumble in dust is on the surfaces.
 TEST(LoneReturns, KeepDustOutOfTheMap) {
   LidarInertialOdometry odometry(test::rig_params());
   LidarInertialOdometry::SweepReport report;

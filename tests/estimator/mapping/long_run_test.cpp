@@ -5,14 +5,14 @@
 
 #include "tests/estimator/mapping/endless_corridor.hpp"
 
-// memory over a long way: what lies behind is forgotten
+// memory of a long drive: the map behind the robot is removed
 namespace tumble {
 namespace {
 
 TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   constexpr std::int64_t kSlowSweep_ns = 400'000'000;
-  constexpr int kSweeps = 1500;  // 10 min, some 600 m
-  constexpr int kSettled = 150;  // 60 m: the map has left its start behind
+  constexpr int kSweeps = 1500;  // 10 min, about 600 m
+  constexpr int kSettled = 150;  // 60 m: the start is outside of the map
   const LidarInertialOdometry::Params params = test::corridor_params();
   LidarInertialOdometry odometry(params);
   test::EndlessCorridor corridor(400, kSlowSweep_ns);
@@ -35,7 +35,7 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   EXPECT_EQ(lost, 0u);
   EXPECT_NEAR(report.pose.p_WA_m.x(), corridor.x_m(), 0.02 * corridor.x_m());
   ASSERT_GT(points_early, 500u);
-  // it breathes by what comes between two prunings
+  // memory varies by the growth between two removals
   EXPECT_LT(static_cast<double>(odometry.map().size()), 1.3 * static_cast<double>(points_early));
   EXPECT_LT(static_cast<double>(bytes_late), 2.1 * static_cast<double>(bytes_early));
   for (const MapPoint& point : odometry.map()) {
@@ -43,7 +43,7 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   }
 }
 
-// negative control: with a map that reaches farther than the way, memory grows with it
+// negative control: if the map radius exceeds the path, memory grows with the path
 TEST(LocalMapSoak, GrowsWhereItForgetsNothing) {
   LidarInertialOdometry::Params params = test::corridor_params();
   params.expert.map.radius_m = 1e4;

@@ -27,10 +27,10 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   run(odometry, 0, 3);
   const std::vector<LidarPoint>& points = test::room_tumble().sweeps[3];
 
-  // IMU samples do not reach the end; nothing changes
+  // IMU samples do not cover the sweep; the state is unchanged
   EXPECT_EQ(add_sweep(odometry, 3, points, report).error_code, ErrorCode::too_few);
   feed_imu(odometry, 3);
-  // times
+  // invalid times
   EXPECT_EQ(odometry.add_sweep(2 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,
             ErrorCode::time_order);
   EXPECT_EQ(odometry.add_sweep(4 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,
@@ -50,7 +50,7 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   next.specific_force_m_s2.y() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(odometry.add_imu(next, test::believe(test::room_tumble().imu[40])).error_code, ErrorCode::non_finite);
 
-  // after all of this the sweep registers as if nothing had been
+  // afterwards, the sweep registers as without these errors
   ASSERT_TRUE(add_sweep(odometry, 3, points, report).ok());
   EXPECT_NE(report.verdict, SweepVerdict::rejected);
   Odometry untroubled(rig_params());
@@ -86,7 +86,7 @@ TEST_P(UselessSweep, KeepsTheInertialPriorAndSaysSo) {
     EXPECT_GT(std::sqrt(report.pose.covariance(0, 0)), i == 8 ? 0.01 : 0.02);
   }
   EXPECT_EQ(odometry.map().size(), before);
-  // and finds its way back
+  // and recovers
   const auto after = run(odometry, 11, 16);
   EXPECT_EQ(after.back().verdict, SweepVerdict::registered);
   EXPECT_LT(error_of(after.back().pose).m, 0.05);

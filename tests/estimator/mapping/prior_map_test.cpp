@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Localisation in the map of an earlier run.
+// Tests localisation in the map of an earlier run.
 #include "tumble/mapping/detail/prior_map.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using test::true_params;
 constexpr int kMapped = 14;     // sweeps of the run that makes the map
 constexpr int kLocalised = 14;  // sweeps within which a run must be localised: 1.1 s after the start of its motion
 
-/// Frame of the prior map: the room's frame turned and moved, so that no start fits by luck.
+/// Pose of the prior map: rotated and translated against the room, so that a default start pose is wrong.
 Eigen::Isometry3d T_MW(double yaw_rad = 2.0) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -37,7 +37,7 @@ std::vector<MapPoint> moved(std::vector<MapPoint> points, const Eigen::Isometry3
   return points;
 }
 
-/// Map of a run in a room, in its frame M.
+/// Returns the map of a run in a room, in the map's frame M.
 const std::vector<MapPoint>& map_of_pillars() {
   static const std::vector<MapPoint> points = [] {
     RoomRig rig(true_params());
@@ -47,7 +47,7 @@ const std::vector<MapPoint>& map_of_pillars() {
   return points;
 }
 
-/// Another motion than that of the map.
+/// Returns a motion other than that of the map.
 test::Motion second_motion() {
   test::Motion motion = test::slower();
   motion.swing = -0.8;
@@ -60,7 +60,7 @@ double error_in_map_m(const RoomRig& rig) {
   return (rig.report.pose.p_WA_m - T_MW() * rig.motion.p_m(t)).norm();
 }
 
-/// Runs until the run is localised, at most to sweep `last`. Returns the number of sweeps.
+/// Runs until localisation, at most to sweep `last`. Returns the number of sweeps.
 int run_until_localised(RoomRig& rig, int last = kLocalised) {
   int k = 0;
   while (k < last && !rig.odometry.localised().ok()) {
@@ -76,7 +76,7 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
   const int sweeps = run_until_localised(rig);
   ASSERT_TRUE(rig.odometry.localised().ok()) << rig.odometry.localised().message();
-  EXPECT_FALSE(rig.report.in_prior_map);  // the poses of the accepting sweep are still in the local frame
+  EXPECT_FALSE(rig.report.in_prior_map);  // poses of the accepting sweep are still in the local frame
   EXPECT_LT(rig.error_m(), 0.06);
 
   for (int k = sweeps; k < sweeps + 8; ++k) {
@@ -84,8 +84,8 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
     ASSERT_TRUE(rig.report.in_prior_map);
     ASSERT_EQ(rig.report.verdict, SweepVerdict::registered) << "sweep " << k;
     EXPECT_LT(error_in_map_m(rig), 0.06) << "sweep " << k;
-    // 16.8 is the 99.9 % quantile of chi-square with three degrees of freedom, doubled because errors of the map that
-    // both runs share are not in the covariance
+    // 16.8 is the 99.9 % quantile of chi-square with three degrees of freedom; it is doubled, because the covariance
+    // does not contain common map errors of both runs
     const double t = 1e-9 * static_cast<double>(rig.report.pose.time_ns);
     const Eigen::Vector3d error = rig.report.pose.p_WA_m - T_MW() * rig.motion.p_m(t);
     const Eigen::Matrix3d covariance = rig.report.pose.covariance.topLeftCorner<3, 3>();
@@ -132,7 +132,7 @@ TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
 }
 
 TEST(PriorMap, TwoEqualPlacesAreAmbiguous) {
-  RoomRig mapped(true_params(), test::slower(), Room::box());  // equal to itself after half a turn
+  RoomRig mapped(true_params(), test::slower(), Room::box());  // the room is symmetric under half a rotation
   mapped.run(0, kMapped);
   RoomRig rig(true_params(), second_motion(), Room::box());
   ASSERT_TRUE(rig.odometry.use_map({.points = moved(mapped.odometry.map(), T_MW())}).ok());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readings of an odometer against Kalman's closed form, and against an update of everything at once whose derivatives
-// are differences.
+// Compares odometer updates with Kalman's closed form, and with a joint update of all unknowns with numerical
+// derivatives.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -24,7 +24,7 @@ using Matrix = Registration::Matrix;
 constexpr int kUnknowns = Registration::kUnknowns, kMotionSize = Registration::kMotionSize;
 constexpr TimeNs kStart_ns = 3'000'000'000, kEnd_ns = 3'100'000'000;
 
-/// A tenth of a second of turning and pushing, half of it with a clipped axis.
+/// A tenth of a second of rotation and acceleration; one axis is clipped in half of it.
 std::vector<MotionSample> tumbling(double turn_rad_s = 4.0) {
   std::vector<MotionSample> samples;
   for (int k = 0; k < 12; ++k) {
@@ -52,7 +52,7 @@ struct Case {
   Prediction prediction;
   MotionWindow window{samples, kEnd_ns, 0};
 
-  /// Uncertain by about `scale` in all that is unknown.
+  /// State with a standard deviation of about `scale` for all unknowns.
   explicit Case(double scale) {
     MotionState& state = prediction.prior.mean.state;
     state.time_ns = kStart_ns;
@@ -71,7 +71,7 @@ struct Case {
   Case& operator=(const Case&) = delete;
 };
 
-/// What would be read if the start were off by `start` and the noise within were `noise`: nonlinear.
+/// Returns the nonlinear measurement for start error `start` and process noise `noise`.
 using Read = std::function<Eigen::VectorXd(const Registration::Vector& start, const Eigen::VectorXd& noise)>;
 
 MotionState moved(const Case& c, TimeNs time_ns, const Registration::Vector& start, const Eigen::VectorXd& noise) {
@@ -103,10 +103,10 @@ Eigen::Isometry3d read_motion(const Case& c, TimeNs from_ns, TimeNs to_ns, const
   return pose(from_ns).inverse() * pose(to_ns);
 }
 
-/// What is thought after the reading of what the border left, the noise at the start and that within, all at once:
-/// 28 + 28 + 9 unknowns, x = G x_last + n_0 + n.
+/// Posterior of the state at the sweep boundary, the noise at the start and the noise within, jointly: 28 + 28 + 9
+/// unknowns, x = G x_last + n_0 + n.
 struct Joint {
-  Eigen::MatrixXd covariance, errors, of_x;  ///< by the weights, by the errors, and x by the joint
+  Eigen::MatrixXd covariance, errors, of_x;  ///< by the gains and by the errors, and x from the joint update
   Eigen::VectorXd mean;
 };
 
@@ -147,7 +147,7 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   return out;
 }
 
-/// Holds the update to the joint one: `scale` of deviations, so small that both are linear.
+/// Compares the update with the joint update, with deviations of `scale` that are so small that both are linear.
 void expect_joint(Case& c, const OdometerReading& reading, const Read& off, const Eigen::MatrixXd& R, double scale) {
   const Joint joint = update_jointly(c, off, R);
   const Registration::Estimate before = c.prediction.prior.mean;
@@ -159,7 +159,7 @@ void expect_joint(Case& c, const OdometerReading& reading, const Read& off, cons
   EXPECT_LT((c.prediction.prior.covariance - expected).cwiseAbs().maxCoeff(), 1e-4 * far);
   const Eigen::MatrixXd errors = joint.of_x * joint.errors * joint.of_x.transpose();
   EXPECT_LT((c.prediction.errors - errors).cwiseAbs().maxCoeff(), 1e-4 * far);
-  // with what the border left, which the window smooths by
+  // includes the state at the boundary, which the window uses for smoothing
   const Eigen::MatrixXd with_last = joint.of_x * joint.covariance.leftCols(kUnknowns);
   EXPECT_LT((c.prediction.by_last * last - with_last).cwiseAbs().maxCoeff(), 1e-4 * far);
   const Registration::Vector step = c.prediction.prior.mean.minus(before);
@@ -208,7 +208,7 @@ TEST(OdometerReading, OfAMotionIsTheJointUpdateByDifferences) {
   }
 }
 
-/// Along one axis of a body that does not turn, at the start: the mean of two, by their variances.
+/// Along one axis of a body without rotation, at the start: the mean of two values, weighted by their variances.
 TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
   Case c(1e-3);
   for (MotionSample& sample : c.samples) sample.w_WI_I_rad_s.setZero();
@@ -229,7 +229,7 @@ TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
   EXPECT_EQ(u::variances(c.prediction.prior.covariance, u::position).maxCoeff(), 0.0) << "as sure as it was";
 }
 
-/// A reading that knows nothing changes nothing, to rounding; one from elsewhere nothing at all.
+/// A reading with infinite variance changes nothing, up to rounding; a rejected reading changes nothing at all.
 TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
   Case c(0.1), same(0.1);
   weigh_reading(VelocityReading{kEnd_ns, {5.0, 5.0, 5.0}, 1e6}, c.boundary, c.window, c.within, c.prediction);
@@ -248,7 +248,8 @@ TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
   EXPECT_GT(c.prediction.prior.mean.minus(same.prediction.prior.mean).norm(), 0.01) << "negative control";
 }
 
-/// A clipped axis hides half a radian of the sweep; a camera saw the turn. One step of Gauss-Newton would not do.
+/// A clipped axis hides half a radian of rotation in the sweep, and a camera measured the rotation. A single
+/// Gauss-Newton step would not be sufficient.
 TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
   Case c(1e-3);
   for (MotionSample& sample : c.samples) sample.clipped_axes = 1;

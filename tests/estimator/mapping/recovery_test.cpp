@@ -7,7 +7,7 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-// what the mapper is wrong about at the start, and what it loses on the way: found, and left again
+// tests wrong initial values and tracking failures: the mapper corrects them and recovers
 namespace tumble {
 namespace {
 
@@ -20,7 +20,7 @@ using test::slower;
 using test::true_params;
 using Rig = test::RoomRig;
 
-/// A spin whose axis turns in the body: about a fixed one, a late clock and a turned mounting look the same.
+/// A spin whose axis rotates in the body. For a fixed axis, a late clock and a rotated mounting have the same effect.
 test::Motion turning() {
   test::Motion motion;
   motion.spin_rad_s = 5.0;
@@ -28,7 +28,7 @@ test::Motion turning() {
   return motion;
 }
 
-/// Runs with a mounting that is wrong by a degree and a centimetre and a lidar clock that is late by 4 ms.
+/// Runs with a mounting error of a degree and a centimetre, and a lidar clock that is late by 4 ms.
 void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweeps) {
   constexpr std::int64_t kLate_ns = 4'000'000;
   const std::vector<ImuSample> imu = test::make_imu(motion, 0.1 * sweeps + 0.1);
@@ -47,7 +47,7 @@ void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweep
   }
 }
 
-/// A motion that a second without readings does not lose.
+/// A motion during which tracking survives a second without readings.
 test::Motion gentle() {
   test::Motion motion;
   motion.spin_rad_s = 0.8;
@@ -66,7 +66,7 @@ TEST(Calibration, FindsMountingAndClock) {
   params.expert.gravity_sigma_m_s2 = 0.03;
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
-  // the first map was drawn while the calibration was wrong: what it taught starts a second one
+  // the first map was built with a wrong calibration; a second run starts with the improved calibration
   const auto learnt_sigma = odometry.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
   params.T_IL = odometry.calibration().T_IL;
   params.time_offset_s = odometry.calibration().time_offset_s;
@@ -80,7 +80,7 @@ TEST(Calibration, FindsMountingAndClock) {
   truth.time_offset_s = 0.004;
   const auto error = odometry.calibration().minus(truth);
   const auto sigma = odometry.calibration_covariance().diagonal().cwiseSqrt().eval();
-  // given: 0.018 rad, 10 mm, 4 ms off; measured: 0.0022 rad, 0.4 mm, 0.44 ms
+  // initial errors: 0.018 rad, 10 mm, 4 ms; measured: 0.0022 rad, 0.4 mm, 0.44 ms
   EXPECT_LT(error.head<3>().norm(), 0.003);
   EXPECT_LT(error.segment<3>(3).norm(), 0.005);
   EXPECT_LT(std::abs(error[6]), 5e-4);
@@ -101,13 +101,13 @@ TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {
   ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);
   const double sigma_before = std::sqrt(rig.report.pose.covariance(0, 0));
   for (int k = 20; k < 50; ++k) {
-    // a gyro that drifts: the inertial prior alone ends 0.15 rad and half a metre or more away
+    // a gyro with drift: the inertial prior alone has a final error of at least 0.15 rad and half a metre
     rig.feed_imu(k, {0.03, -0.03, 0.03});
     EXPECT_EQ(rig.sweep(k, {}).error_code, ErrorCode::empty);
     ASSERT_EQ(rig.report.verdict, SweepVerdict::rejected);
     EXPECT_EQ(rig.report.consecutive_rejected_sweeps, k - 19);
   }
-  EXPECT_GT(rig.error_m(), 0.3);  // lost indeed
+  EXPECT_GT(rig.error_m(), 0.3);  // tracking has failed
   EXPECT_GT(std::sqrt(rig.report.pose.covariance(0, 0)), 10.0 * sigma_before);
   EXPECT_LT(rig.error_m(), 5.0 * std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace()));
   rig.run(50, 56);
@@ -119,7 +119,7 @@ TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {
 TEST(Recovery, BridgesAGapOfASecondInBothSensors) {
   Rig rig(true_params(), gentle());
   rig.run(0, 20);
-  rig.run(30, 39);  // sweeps and samples of a second are missing; the sample after it bridges the gap
+  rig.run(30, 39);  // sweeps and samples of a second are missing; the next sample bridges the gap
   EXPECT_NE(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_LT(rig.error_m(), 0.1);
 }
@@ -134,7 +134,7 @@ TEST(Recovery, ADegenerateSegmentIsSaidAndLeft) {
         test::make_sweep(test::Room::floor_only(), rig.motion, true_params().T_IL, k, kRoomNoise_m, kHalfColumns);
     ASSERT_TRUE(rig.sweep(k, floor).ok());
     EXPECT_EQ(rig.report.verdict, SweepVerdict::degenerate) << k;
-    // held by the prior in the free directions, by the floor in the others
+    // the prior constrains the free directions, the floor constrains the others
     EXPECT_LT(rig.error_m(), 0.1);
   }
   rig.run(20, 24);
@@ -142,7 +142,7 @@ TEST(Recovery, ADegenerateSegmentIsSaidAndLeft) {
   EXPECT_LT(rig.error_m(), 0.05);
 }
 
-// the same tumble told by an IMU that is mounted another way round
+// the same tumble, measured by an IMU with another mounting
 TEST(Equivariance, ToARotatedMounting) {
   const Eigen::Matrix3d turn = so3::exp({0.4, -1.1, 0.7}).toRotationMatrix();
   Odometry::Params turned = true_params();
@@ -164,15 +164,15 @@ TEST(Equivariance, ToARotatedMounting) {
     ASSERT_TRUE(a.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, ra).ok());
     ASSERT_TRUE(b.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, rb).ok());
   }
-  // yaw is zero at the start for either: the heading of the whole world differs by what levelling made of the mounting
+  // yaw is zero at the start of both runs, so the world headings differ by the effect of the mounting
   const Eigen::Quaterniond world = rb.pose.q_WA * Eigen::Quaterniond(turn) * ra.pose.q_WA.conjugate();
   EXPECT_LT(std::abs(world.x()) + std::abs(world.y()), 2e-3);
-  // which points are drawn into which voxel differs with the heading: the noise of a registration
+  // the assignment of points to voxels depends on the heading, which causes the noise of a registration
   EXPECT_LT((world * ra.pose.p_WA_m - rb.pose.p_WA_m).norm(), 0.03);
-  EXPECT_GT((ra.pose.p_WA_m).norm(), 0.3);  // it moved
+  EXPECT_GT((ra.pose.p_WA_m).norm(), 0.3);  // the sensor moved
 }
 
-/// Returns from one side of the room only, by where they truly lie.
+/// Returns only the points on one side of the room, by their true position.
 std::vector<LidarPoint> on_side(const Rig& rig, int sweep, double from_x_m, double to_x_m) {
   std::vector<LidarPoint> points = rig.points(sweep);
   std::erase_if(points, [&](const LidarPoint& point) {
@@ -183,7 +183,8 @@ std::vector<LidarPoint> on_side(const Rig& rig, int sweep, double from_x_m, doub
   return points;
 }
 
-// after eight sweeps of one side the ninth shows the other, farther off than any match: there is a prior to draw by
+// after eight sweeps of one side, the ninth shows the other side, farther away than any match; the prior allows
+// insertion
 void see_the_other_side(Rig& rig, SweepVerdict expected) {
   constexpr double kFar_m = 100.0;
   for (int k = 0; k < 8; ++k) {
@@ -199,7 +200,7 @@ void see_the_other_side(Rig& rig, SweepVerdict expected) {
   EXPECT_EQ(rig.odometry.map().size(), before + rig.report.map_points_added);
   rig.feed_imu(9);
   ASSERT_TRUE(rig.sweep(9, on_side(rig, 9, -kFar_m, 1.5)).ok());
-  EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);  // with what the sweep before drew
+  EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);  // to the points of the previous sweep
   EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   EXPECT_LT(rig.error_m(), 0.03);  // measured: 4 mm
 }
@@ -223,10 +224,10 @@ TEST(Recovery, SaysAndSurvivesAGapOfASecondInTheImuAlone) {
   for (int k = 20; k < 30; ++k) {
     EXPECT_EQ(rig.sweep(k, rig.points(k)).error_code, ErrorCode::too_few);
     EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
-    EXPECT_TRUE(rig.report.trajectory.empty());  // no pose is made up
+    EXPECT_TRUE(rig.report.trajectory.empty());  // no pose is reported
   }
   rig.feed_imu(30);
-  ASSERT_TRUE(rig.sweep(30, {}).error_code == ErrorCode::empty);  // the gap is bridged, by nothing but the prior
+  ASSERT_TRUE(rig.sweep(30, {}).error_code == ErrorCode::empty);  // only the prior bridges the gap
   EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_GT(std::sqrt(rig.report.pose.covariance(0, 0)), 10.0 * sigma_before);
   rig.run(31, 39);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sweeps that the motion has bent.
+// Tests sweeps with motion distortion.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using test::loose_prior;
 using test::map_of;
 
-/// A sweep in a spin, registered to the true map with a wrong prior of the motion inside the sweep.
+/// Registers a sweep in a spin to the true map, with a wrong prior of the motion within the sweep.
 class MovingSweep : public testing::Test {
  protected:
   void run(const Eigen::Vector3d& velocity_error, double clip_rad_s, double deficit_sigma) {
@@ -39,7 +39,7 @@ class MovingSweep : public testing::Test {
     prior.mean.state.p_WI_m = motion.p_m(1.0);
     prior.mean.state.q_WI = motion.q(1.0);
     prior.mean.state.v_WI_m_s = motion.v_m_s(1.0) + velocity_error;
-    // one deficit over the sweep: its knots hang together
+    // one deficit for the sweep: its knots are correlated
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
         prior.covariance.block<3, 3>(Registration::kDeficitStart + 3 * a, Registration::kDeficitStart + 3 * b) =
@@ -65,7 +65,8 @@ class MovingSweep : public testing::Test {
 TEST_F(MovingSweep, CorrectsTheVelocityInsideOfTheSweep) {
   run({0.5, -0.4, 0.3}, 100.0, 0.0);
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
-  // a wall is seen for some tenths of the sweep only: 1 cm of bend at edges is 0.2 m/s. Measured 0.28 of 0.7 m/s, 6 mm
+  // a wall is visible during some tenths of the sweep only, so 1 cm of distortion at edges is 0.2 m/s. Measured 0.28 of
+  // 0.7 m/s, 6 mm
   EXPECT_LT(velocity_error_m_s_, 0.35);
   EXPECT_LT(end_error_m_, 0.01);
   EXPECT_LT(end_error_rad_, 1e-3);
@@ -74,11 +75,11 @@ TEST_F(MovingSweep, CorrectsTheVelocityInsideOfTheSweep) {
 TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   run(Eigen::Vector3d::Zero(), 8.0, 5.0);
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
-  ASSERT_GT(deficit_, 1.0);         // one axis, 2 to 4 rad/s above the rail
-  EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; without the deficit see below
+  ASSERT_GT(deficit_, 1.0);         // one axis is 2 to 4 rad/s above the limit
+  EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; the test below is without the deficit
   const SweepUnknowns::Deficit& deficit = result_.mean.deficit_rad_s;
   EXPECT_NEAR(deficit.sum() / SweepTrajectory::kKnots, deficit_, 0.2);
-  // what the sweep as a whole lacks is held by the surfaces, whatever the single knots are
+  // the surfaces determine the deficit of the whole sweep, even if single knots are uncertain
   const int axis = deficit.rowwise().sum().cwiseAbs().maxCoeff() == std::abs(deficit.row(0).sum()) ? 0 : 2;
   double variance = 0.0;
   for (int a = 0; a < SweepTrajectory::kKnots; ++a) {

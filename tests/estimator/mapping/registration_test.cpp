@@ -15,7 +15,7 @@ namespace {
 using test::loose_prior;
 using test::map_of;
 
-/// A still IMU over 0.1 s at the origin.
+/// A stationary IMU at the origin for 0.1 s.
 std::vector<MotionSample> still_samples() {
   MotionSample sample;
   sample.time_ns = test::kSweep_ns;
@@ -26,7 +26,7 @@ std::vector<MotionSample> still_samples() {
 std::vector<SweepPoint> still_points(const test::Room& room, double noise_m = 0.0) {
   test::Motion still;
   still.rest_s = 1e9;
-  // tilted, so that the rings of the sweep do not lie on those of the map
+  // tilted, so that the rings of the sweep differ from the rings of the map
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();
   T_IL.linear() = so3::exp({0.5, -0.4, 0.3}).toRotationMatrix();
   std::vector<SweepPoint> points;
@@ -52,7 +52,7 @@ Registration::Result align(const test::Room& room, const Registration::Prior& pr
 TEST(Registration, DerivativesMatchDifferences) {
   const test::Motion motion;
   std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.2));
-  for (std::size_t i = 104; i < 109; ++i) samples[i].clipped_axes = 5;  // x and z, part of the sweep
+  for (std::size_t i = 104; i < 109; ++i) samples[i].clipped_axes = 5;  // x and z, in a part of the sweep
   MotionState start;
   start.time_ns = 1'000'000'000;
   start.q_WI = so3::exp({0.3, -0.2, 0.9});
@@ -75,7 +75,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     moved.v_WI_m_s += d.segment<3>(6);
     SweepCalibration calibration = nominal;
     calibration.add(d.tail<SweepCalibration::kErrorCount>());
-    // in doubles: the floats of a SweepPoint would hide steps this small
+    // in double precision, because the floats of a SweepPoint would hide such small steps
     const Eigen::Vector3d x_I = calibration.T_IL * measured.point_L_m.cast<double>();
     SweepTrajectory trajectory;
     const SweepUnknowns::Deficit moved_deficit =
@@ -97,18 +97,18 @@ TEST(Registration, DerivativesMatchDifferences) {
     Registration::Vector step = Registration::Vector::Zero();
     step[i] = h;
     const double numeric = (residual(step, unused) - residual(-step, unused)) / (2.0 * h);
-    // floats of the point and the plane over the lever: 1e-6 of it. Deficit: its effect within a sample is taken to
-    // first order, 1 %
+    // Float rounding of point and plane, relative to the lever: 1e-6. The effect of the deficit within a sample is
+    // linearised: 1 %
     const bool of_deficit = i >= Registration::kDeficitStart && i < Registration::kCalibrationStart;
     const double tolerance = (of_deficit ? 0.01 : 1e-5) * std::abs(numeric) + 1e-5;
     EXPECT_NEAR(analytic[i], numeric, tolerance) << "unknown " << i;
-    // negative control: the same comparison refuses a derivative that is a twentieth off
+    // negative control: the comparison detects a derivative with an error of a twentieth
     if (std::abs(numeric) > 1e-3) {
       EXPECT_GT(std::abs(1.05 * analytic[i] - numeric), tolerance) << "unknown " << i;
     }
   }
   EXPECT_EQ(analytic[10], 0.0);            // axis y was not clipped
-  EXPECT_GT(std::abs(analytic[9]), 1e-3);  // axis x was
+  EXPECT_GT(std::abs(analytic[9]), 1e-3);  // axis x was clipped
 }
 
 TEST(Registration, FindsAKnownPoseInARoom) {
@@ -117,7 +117,7 @@ TEST(Registration, FindsAKnownPoseInARoom) {
   prior.mean.state.q_WI = so3::exp({0.03, -0.02, 0.05});
   const Registration::Result result = align(test::Room::box_with_pillars(), prior);
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
-  // surfaces without noise, planes of pillars bend within a neighbourhood; measured 0.6 mm, 5e-5 rad
+  // surfaces without noise; a plane fitted to a pillar is curved; measured 0.6 mm, 5e-5 rad
   EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.004);
   EXPECT_LT(so3::log(result.mean.state.q_WI).norm(), 5e-4);
   EXPECT_GT(static_cast<double>(result.inliers) / static_cast<double>(result.points), 0.8);
@@ -130,7 +130,7 @@ TEST(Registration, NamesTheFreeDirectionsOfAFloor) {
   prior.mean.state.q_WI = so3::exp({0.02, -0.015, 0.03});
   const Registration::Result result = align(test::Room::floor_only(), prior);
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
-  // height, roll and pitch are found, the prior's x, y and yaw stay
+  // height, roll and pitch are corrected; x, y and yaw of the prior remain
   EXPECT_NEAR(result.mean.state.p_WI_m.z(), 0.0, 0.005);
   EXPECT_NEAR(result.mean.state.p_WI_m.x(), 0.08, 0.01);
   EXPECT_NEAR(result.mean.state.p_WI_m.y(), -0.06, 0.01);
@@ -138,14 +138,14 @@ TEST(Registration, NamesTheFreeDirectionsOfAFloor) {
   EXPECT_NEAR(turned.x(), 0.0, 1e-3);
   EXPECT_NEAR(turned.y(), 0.0, 1e-3);
   EXPECT_NEAR(turned.z(), 0.03, 2e-3);
-  // the three least eigenvalues vanish, the fourth does not, and their directions are x, y and yaw
+  // the three smallest eigenvalues vanish, and their directions are x, y and yaw
   EXPECT_LT(result.eigenvalues[2], 1e-4);
   EXPECT_GT(result.eigenvalues[3], 1e-2);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Matrix<double, 6, 1> d = result.directions.col(i);
     EXPECT_NEAR(std::hypot(d[0], d[1], d[5]), 1.0, 1e-2) << "direction " << i;
   }
-  // what the surfaces leave open stays as uncertain as the prior was
+  // unconstrained directions remain as uncertain as in the prior
   EXPECT_NEAR(std::sqrt(result.covariance(0, 0)), 0.1, 0.02);
   EXPECT_LT(std::sqrt(result.covariance(2, 2)), 0.01);
 }
@@ -157,7 +157,7 @@ TEST(Registration, BeginsElsewhereAndKeepsItsPrior) {
   const Registration::Result room = align(test::Room::box_with_pillars(), prior);
   ASSERT_EQ(room.verdict, RegistrationVerdict::converged);
   EXPECT_LT(room.mean.state.p_WI_m.norm(), 0.02);
-  // nothing holds the sensor along a floor: there the mean decides, not the start (0.64 m away)
+  // the floor does not constrain the position along it: the result is the prior mean, not the start (0.64 m away)
   const Registration::Result floor = align(test::Room::floor_only(), prior);
   ASSERT_EQ(floor.verdict, RegistrationVerdict::converged);
   EXPECT_LT(floor.mean.state.p_WI_m.norm(), 0.05);
@@ -168,7 +168,7 @@ TEST(Registration, NamesTheAxisOfACorridor) {
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.1, 0.08, -0.05);
   const Registration::Result result = align(test::Room::corridor(), prior);
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
-  // the prior holds the free direction but for false normals at the edges of floor and walls; measured 0.075
+  // the prior constrains the free direction, except for wrong normals at the edges of floor and walls; measured 0.075
   EXPECT_NEAR(result.mean.state.p_WI_m.x(), 0.1, 0.04);
   EXPECT_NEAR(result.mean.state.p_WI_m.y(), 0.0, 0.005);
   EXPECT_NEAR(result.mean.state.p_WI_m.z(), 0.0, 0.005);
@@ -177,29 +177,29 @@ TEST(Registration, NamesTheAxisOfACorridor) {
   EXPECT_NEAR(std::abs(result.directions(0, 0)), 1.0, 1e-2);
 }
 
-/// Ranges with noise tilt the normals of floor and walls, as if there were surfaces across the corridor.
+/// Range noise tilts the normals of floor and walls, which resembles surfaces across the corridor.
 TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
-  constexpr double kNoise_m = 0.02;  // of the RS-16
+  constexpr double kNoise_m = 0.02;  // range noise of the RS-16
   const Registration::Prior prior = loose_prior(0.5, 0.05);
   const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
   ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
   EXPECT_NEAR(std::abs(corridor.directions(0, 0)), 1.0, 1e-2);
-  // of the axis, whose information the covariance holds beside the prior's: 943 of 920; taken for true it would claim
-  // 3.3 cm
+  // information along the axis in the covariance, minus that of the prior: 943 of 920; without the correction, the
+  // stated deviation would be 3.3 cm
   const double along = 1.0 / corridor.covariance(0, 0) - 1.0 / (0.5 * 0.5);
   EXPECT_GT(along, 500.0);
   EXPECT_NEAR(corridor.normal_noise_information(0, 0) / along, 1.0, 0.2);
   EXPECT_GT(corridor.least_constrained_sigma_m, 0.1);
   const Registration::Result corner = align(test::Room::corner(), prior, {}, kNoise_m);
   ASSERT_EQ(corner.verdict, RegistrationVerdict::converged);
-  // and where surfaces hold all six, next to none: 610 of 33 800
+  // if surfaces constrain all six directions, the effect is small: 610 of 33 800
   EXPECT_LT(corner.normal_noise_information(0, 0) * corner.covariance(0, 0), 0.05);
   EXPECT_LT(corner.least_constrained_sigma_m, 0.05);
 }
 
-/// The lidar's place alone is seen: an IMU that is turned, with the mounting turned back, is seen by no surface, and
-/// by none of the noise in their normals either. Of the motion alone the noise holds it (the control), and the error of
-/// such a turn would grow with each sweep.
+/// The sweep only observes the pose of the lidar. A rotation of the IMU with an opposite rotation of the mounting is
+/// therefore unobservable, also through noise of the normals. For motion alone, this noise would constrain the rotation
+/// (control), and the error of the rotation would grow with each sweep.
 TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
   constexpr double kNoise_m = 0.02;
   Registration::Prior prior = loose_prior(0.5, 0.05);
@@ -220,7 +220,7 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
     const double of_motion = unseen.dot(B * unseen);
     unseen.segment<3>(Registration::kCalibrationStart) = turned;
     EXPECT_GT(of_motion, 100.0) << axis;
-    // the attitude in a sweep at rest is not one to the last digit
+    // the attitude in a stationary sweep is not exactly constant
     EXPECT_LT(std::abs(unseen.dot(B * unseen)), 1e-3 * of_motion) << axis;
   }
 }
@@ -241,7 +241,7 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   Registration::Result result;
   const std::vector<SweepPoint> points = still_points(test::Room::box());
   const Registration::Prior prior = loose_prior(0.3, 0.1);
-  // an empty map, then one out of reach
+  // an empty map, then a map out of range
   VoxelMap map({0.5, 0.1});
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
@@ -257,7 +257,7 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
 }
 
-/// A sweep of which the map holds little: some sixty points.
+/// A sweep of which the map contains only about sixty points.
 Registration::Result align_few(const Registration::Prior& prior, std::size_t agreeing_min) {
   const test::Room room = test::Room::box_with_pillars();
   std::vector<SweepPoint> points;
@@ -266,7 +266,7 @@ Registration::Result align_few(const Registration::Prior& prior, std::size_t agr
   }
   Registration::Params params;
   params.expert.agreeing_min = agreeing_min;
-  params.expert.correlation_discount = 1.0;  // the room has no noise to share
+  params.expert.correlation_discount = 1.0;  // the simulated noise has no correlation
   Registration registration(params);
   SweepTrajectory trajectory;
   Registration::Result result;
@@ -282,13 +282,13 @@ TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
   const Registration::Result result = align_few(prior, 30);
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
   EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.3 * prior.mean.state.p_WI_m.norm());
-  // fewer than enough, as they are unless told otherwise
+  // fewer matches than the default minimum
   EXPECT_EQ(align_few(prior, 1000).verdict, RegistrationVerdict::too_few);
   EXPECT_EQ(align_few(prior, Registration::Params{}.expert.agreeing_min).verdict, RegistrationVerdict::too_few);
 }
 
 TEST(Registration, BelievesNoFewMatchesWhereThePriorExpectsNone) {
-  Registration::Prior prior = loose_prior(0.05, 0.03);  // and yet off by seven deviations
+  Registration::Prior prior = loose_prior(0.05, 0.03);  // with an error of seven standard deviations
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.15);
   const Registration::Result result = align_few(prior, 30);
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A place that a search found: borne out by the sweeps after it, or taken back with all that it drew.
+// Tests relocalisation: the following sweeps confirm the found pose, or reject it together with its inserted points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,9 +17,9 @@ namespace {
 using test::RoomRig;
 using test::true_params;
 
-constexpr int kCovered = 20, kSeesAgain = 35;  // sweeps without points in between
+constexpr int kCovered = 20, kSeesAgain = 35;  // number of sweeps without points; first sweep with points
 
-/// The room as if the sensor stood elsewhere in it: fits the map wholly, where the sensor is not.
+/// Points as seen from another position in the room: they fit the map, but at a wrong pose.
 std::vector<LidarPoint> seen_from_elsewhere(const RoomRig& rig, int sweep, double shift_m) {
   test::Room room = rig.room;
   for (test::Room::Plane& plane : room.planes) plane.point_m.x() -= shift_m;
@@ -27,7 +27,7 @@ std::vector<LidarPoint> seen_from_elsewhere(const RoomRig& rig, int sweep, doubl
   return test::make_sweep(room, rig.motion, true_params().T_IL, sweep, test::kRoomNoise_m, test::kHalfColumns);
 }
 
-/// Returns at any range: they fit nothing.
+/// Returns at random ranges, which fit nothing.
 std::vector<LidarPoint> of_no_room(const RoomRig& rig, int sweep) {
   std::vector<LidarPoint> points = rig.points(sweep);
   std::uint64_t counter = 0;
@@ -36,7 +36,7 @@ std::vector<LidarPoint> of_no_room(const RoomRig& rig, int sweep) {
   return points;
 }
 
-/// Tracks, is covered, and then finds a place that is off by so much.
+/// Runs tracking, then sweeps without points, then relocalises at a pose with the given error.
 void find_again(RoomRig& rig, double shift_m) {
   rig.run(0, kCovered);
   ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);
@@ -63,11 +63,11 @@ TEST(Relocalised, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
   ASSERT_TRUE(rig.sweep(kSeesAgain + 1, of_no_room(rig, kSeesAgain + 1)).ok());
   EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_EQ(rig.report.consecutive_rejected_sweeps,
-            kSeesAgain + 1 - kCovered + 1);  // those before it, it, and this one
+            kSeesAgain + 1 - kCovered + 1);  // the sweeps before, the relocalised sweep and the current sweep
   EXPECT_FALSE(rig.report.relocalisation_unconfirmed);
   EXPECT_EQ(rig.odometry.map().size(), with_it - drawn + rig.report.map_points_added);
   const double sigma_m = std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace());
-  EXPECT_LT(rig.error_m(), 3.0 * sigma_m);  // as one who is lost says it
+  EXPECT_LT(rig.error_m(), 3.0 * sigma_m);  // the stated deviation is that of a tracking failure
 
   rig.run(kSeesAgain + 2, kSeesAgain + 8);
   EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
@@ -86,7 +86,7 @@ TEST(Relocalised, OnePlaceThatTwoSweepsBearOutStands) {
     EXPECT_EQ(rig.report.relocalisation_unconfirmed, relocalisation_unconfirmed);
     EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   }
-  // what was borne out by what the sensor saw is not taken back by one sweep
+  // one bad sweep does not reject a confirmed pose
   rig.feed_imu(kSeesAgain + 3);
   ASSERT_TRUE(rig.sweep(kSeesAgain + 3, of_no_room(rig, kSeesAgain + 3)).ok());
   EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 1);
@@ -129,7 +129,7 @@ TEST(Relocalised, GoesOnFromASavedStateWithTheSameBits) {
   EXPECT_NE(bytes(rig.odometry), saved);
 }
 
-/// A mapper's state with its members open: `head` is what is saved before them.
+/// State of a mapper with accessible members; `head` is the part of the saved bytes before them.
 struct OpenState {
   using Impl = LidarInertialOdometry::Impl;
   explicit OpenState(const LidarInertialOdometry& odometry) : members(std::make_unique<Impl>(true_params())) {
@@ -149,7 +149,7 @@ struct OpenState {
     Impl::members(std::as_const(*members), writer);
     return out;
   }
-  std::vector<std::byte> head;  ///< the parameters that another run may have taught
+  std::vector<std::byte> head;  ///< parameters, which may contain a calibration
   std::unique_ptr<Impl> members;
 };
 
@@ -160,7 +160,7 @@ void load(const std::vector<std::byte>& saved, LidarInertialOdometry& into) {
                                     << reader.status().bound;
 }
 
-// as after a motion of the second opinion that could not be built
+// as if the motion of the alternative could not be computed
 TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
@@ -179,7 +179,7 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
     EXPECT_EQ(agrees.report.relocalisation_unconfirmed, relocalisation_unconfirmed);
     EXPECT_EQ(agrees.report.consecutive_rejected_sweeps, 0);
   }
-  // nothing to go back to: what is there stands, and the sweep alone is lost
+  // without an alternative, the state remains, and only this sweep fails
   RoomRig contradicts(true_params());
   load(alone, contradicts.odometry);
   const std::size_t with_it = contradicts.odometry.map().size();
@@ -191,7 +191,7 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   EXPECT_EQ(contradicts.odometry.map().size(), with_it);
 }
 
-/// Keeps so little about itself that whole sweeps fall out of the map as it moves.
+/// Keeps a map radius so small that whole sweeps leave the map during the motion.
 OdometryParams keeps_little() {
   OdometryParams params = true_params();
   params.range_max_m = 40.0;
@@ -214,7 +214,7 @@ TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   const std::size_t with_it = rig.odometry.map().size();
   const std::uint32_t inserted_from = OpenState(rig.odometry).members->other->inserted_from;
 
-  // while the place is doubted nothing is pruned, since what it drew may be taken back
+  // while the pose is unconfirmed, no points are removed, because its inserted points may be removed later
   RoomRig agrees(keeps_little());
   load(suspect, agrees.odometry);
   agrees.feed_imu(kSeesAgain + 1);
@@ -223,7 +223,7 @@ TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   EXPECT_GE(agrees.odometry.map().size(), with_it);
   expect_loads_again(agrees.odometry);
 
-  // contradicted: the map is pruned to fewer sweeps than there were before the place
+  // after the rejection, the map is reduced to fewer sweeps than before the relocalisation
   RoomRig contradicts(keeps_little());
   load(suspect, contradicts.odometry);
   contradicts.feed_imu(kSeesAgain + 1);

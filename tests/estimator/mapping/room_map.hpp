@@ -7,10 +7,10 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/registration.hpp"
 
-/// What the tests of the registration align to, and from where.
+/// Map and start poses for tests of the registration.
 namespace tumble::test {
 
-/// A map sampled from a room's surfaces by still sensors at three places.
+/// A map of a room's surfaces, sampled by stationary sensors at three places.
 inline VoxelMap map_of(const Room& room, double noise_m = 0.0) {
   VoxelMap map({0.5, 0.1});
   Motion still;
@@ -29,7 +29,7 @@ inline VoxelMap map_of(const Room& room, double noise_m = 0.0) {
   return map;
 }
 
-/// Of a pose alone; the velocity is known.
+/// Prior with an uncertain pose and a known velocity.
 inline Registration::Prior loose_prior(double sigma_m, double sigma_rad) {
   Registration::Prior prior;
   prior.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);

@@ -10,7 +10,7 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// The mapper in a synthetic room, fed sweep by sweep.
+/// The mapper in a synthetic room, which gets data sweep by sweep.
 namespace tumble::test {
 
 inline OdometryParams true_params() {
@@ -27,7 +27,7 @@ inline Motion slower() {
   return motion;
 }
 
-/// An odometry with its sensors, and the truth beside it.
+/// An odometry with its sensors and the truth.
 struct RoomRig {
   explicit RoomRig(const OdometryParams& params, const Motion& m = slower(), const Room& r = Room::box_with_pillars())
       : odometry(params), motion(m), room(r), imu(make_imu(m, 7.0)) {}

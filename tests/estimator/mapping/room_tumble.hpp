@@ -7,7 +7,7 @@
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Sensor data of one tumble through a box room with pillars, and how the odometry is run over it.
+/// Sensor data of a tumble through a box room with pillars, and a function that runs the odometry.
 namespace tumble::test {
 
 LidarInertialOdometry::Params rig_params();
@@ -17,17 +17,17 @@ struct RoomTumble {
   std::vector<ImuSample> imu;
   std::vector<std::vector<LidarPoint>> sweeps;
 };
-/// Of 26 sweeps; made once.
+/// Returns the data of 26 sweeps, which are generated once.
 const RoomTumble& room_tumble();
 
-/// What a method reports that believes a gyro with a rail.
+/// Returns the rates of a method that ignores gyro saturation.
 RateState clipped_rate(const ImuSample& sample, double rail_rad_s);
 
-/// The samples of one sweep.
+/// Returns the samples of a sweep.
 void feed_imu(LidarInertialOdometry& odometry, int sweep, double rail_rad_s = 1e9);
 Status add_sweep(LidarInertialOdometry& odometry, int sweep, std::span<const LidarPoint> points,
                  LidarInertialOdometry::SweepReport& report);
-/// Sweeps `from` to `to` - 1 with their samples.
+/// Returns the sweeps `from` to `to` - 1 with their samples.
 std::vector<LidarInertialOdometry::SweepReport> run(LidarInertialOdometry& odometry, int from, int to,
                                                     double rail_rad_s = 1e9);
 
@@ -36,7 +36,7 @@ struct PoseError {
 };
 PoseError error_of(const PoseState& pose);
 
-/// Bit for bit, poses and what is said of the sweep.
+/// Compares poses and reports of sweeps bit by bit.
 bool same(const LidarInertialOdometry::SweepReport& a, const LidarInertialOdometry::SweepReport& b);
 
 }  // namespace tumble::test

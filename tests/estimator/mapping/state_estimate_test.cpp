@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Beliefs and predictions against closed forms, and against the nonlinear relations that they are first order of.
+// Compares estimates and predictions with closed forms, and with the nonlinear relations that they linearise.
 #include "estimator/src/mapping/state_estimate.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using Matrix = Registration::Matrix;
 
 constexpr double kForce_m_s2 = 4.0, kSegment_s = 0.5;
 
-/// Half a second in which the IMU does not turn and feels a force along x; gravity is left to the belief.
+/// Half a second without rotation, with a specific force along x; the state contains gravity.
 std::vector<MotionSample> pushed() {
   std::vector<MotionSample> samples;
   for (int k = 0; k < 50; ++k) {
@@ -57,7 +57,7 @@ StateEstimate carried(const StateEstimate& state_estimate, const std::vector<Mot
   return end;
 }
 
-/// Bit for bit, of a covariance without a zero in it.
+/// Compares bit by bit, for a covariance without zeros.
 TEST(Unknowns, PoseAndMountingAreThoseOfTheWholeProduct) {
   const std::vector<MotionSample> samples = pushed();
   const Matrix F = unknowns_at(along(uncertain(), samples, 500'000'000), 0.37);
@@ -70,7 +70,7 @@ TEST(Unknowns, PoseAndMountingAreThoseOfTheWholeProduct) {
   EXPECT_EQ(u::block(part, u::pose, u::mounting), u::block(whole, u::pose, u::mounting));
   EXPECT_EQ(u::block(part, u::mounting, u::pose), u::block(whole, u::mounting, u::pose));
   EXPECT_EQ(u::block(part, u::mounting), u::block(whole, u::mounting));
-  EXPECT_NE(u::block(part, u::pose), u::block(errors, u::pose));  // F did something
+  EXPECT_NE(u::block(part, u::pose), u::block(errors, u::pose));  // F changed the state
 }
 
 TEST(Unknowns, BlocksCoverEachUnknownOnce) {
@@ -98,7 +98,7 @@ TEST(StateEstimate, AtTheEndOfAPushIsTheClosedForm) {
   const Eigen::Vector3d force(kForce_m_s2, 0.0, g);
   EXPECT_LT((end.mean.state.p_WI_m - (start.mean.state.v_WI_m_s * t + 0.5 * t * t * force)).norm(), 1e-12);
   EXPECT_LT((end.mean.state.v_WI_m_s - (start.mean.state.v_WI_m_s + t * force)).norm(), 1e-12);
-  // mapping.md (R11): a turn moves by the force's integrals, across the force alone
+  // mapping.md (R11): a rotation moves the position by the integrals of the force, perpendicular to the force
   const double turned_m = 0.5 * kForce_m_s2 * t * t, turned_m_s = kForce_m_s2 * t;
   const double along_m2 = 0.01 + t * t * 0.09 + 0.25 * t * t * t * t * 0.16;
   const double across_m2 = along_m2 + turned_m * turned_m * 0.04;
@@ -124,8 +124,8 @@ TEST(StateEstimate, OverTwoHalvesIsThatOverTheWhole) {
   EXPECT_GT((half.weight - whole.weight).norm(), 1e-3);
 }
 
-/// Pose error of the IMU, and gravity's in the map, when the mounting is off by `m` and the lidar's pose is held:
-/// without any derivative.
+/// Returns the errors of the IMU pose, and of gravity in the map, for a mounting error of `m` and a fixed lidar pose.
+/// Computed without derivatives.
 Eigen::Matrix<double, 9, 1> displaced(const Eigen::Isometry3d& T_WI, const Eigen::Isometry3d& T_IL,
                                       const Eigen::Matrix<double, 6, 1>& m) {
   Eigen::Isometry3d T_true = T_IL;
@@ -174,7 +174,7 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
   EXPECT_LT((state_estimate.weight - expected).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_EQ(state_estimate.weight, state_estimate.error);
 
-  params.T_IL.translation().x() += 0.1;  // another lever is another covariance
+  params.T_IL.translation().x() += 0.1;  // another lever arm gives another covariance
   EXPECT_GT((estimate_at_start(params, levelled).weight - expected).cwiseAbs().maxCoeff(), 1e-5);
 }
 

@@ -18,7 +18,7 @@ struct Flight {
   std::vector<SweepReport> sweeps;
 };
 
-// Hops of 0.8 s, spinning about the vertical: a parabola each, p known in closed form; sweeps of 0.1 s.
+// Hops of 0.8 s with a spin about the vertical: each is a parabola with a closed-form p; sweeps of 0.1 s.
 Flight hops(double scale, double noise_m) {
   constexpr double kDt_s = 0.01, kSpin_rad_s = 4.0, kUp_m_s = 0.5 * kGravity * 0.8;
   constexpr int kHop = 80;
@@ -29,7 +29,7 @@ Flight hops(double scale, double noise_m) {
     const double t_s = kDt_s * k, in_hop_s = kDt_s * (k % kHop);
     ImuSample sample;
     sample.time_ns = TimeNs{k} * 10'000'000;
-    // the ground's impact, about the instant in which a hop begins
+    // impact on the ground at the start of a hop
     if (k >= kHop && k % kHop < 2) sample.specific_force_m_s2.z() = kUp_m_s / kDt_s;
     out.samples.push_back(sample);
     PoseState pose;
@@ -58,7 +58,7 @@ TEST(SweepScale, IsThatOfTheRanges) {
   }
 }
 
-// Sweep by sweep, as they come, it is the same slope, and what came later changes nothing of what was said.
+// A live run sweep by sweep gives the same slope, and later data do not change earlier results.
 TEST(SweepScale, IsToldWhileSweepsCome) {
   for (const double scale : {0.9, 1.0, 1.1}) {
     const Flight flight = hops(scale, 0.005);
@@ -89,7 +89,7 @@ TEST(SweepScale, ALidarThatIsSilentForTooLongIsNotCompared) {
   EXPECT_EQ(watch.scale().changes, 0u);
 }
 
-// What was felt inside of a gap of the IMU nobody knows: the blow of the second hop, say.
+// The specific force within an IMU gap is unknown, for example the impact of the second hop.
 TEST(SweepScale, NothingIsComparedOverAGapOfTheImu) {
   Flight flight = hops(1.0, 0.005);
   const std::size_t all = find_sweep_scale(flight.samples, flight.sweeps, kGravity).changes;
@@ -115,7 +115,7 @@ TEST(SweepScale, NothingIsSaidWhereNothingTells) {
   Flight railed = flight;
   for (ImuSample& sample : railed.samples) sample.device_clip_flags = kClipAccelZ;
   EXPECT_EQ(find_sweep_scale(railed.samples, railed.sweeps, kGravity).changes, 0u);
-  // at rest whatever size the map has: gravity and the ground's force are felt and cancel
+  // at rest, for any scale of the map: gravity and the force of the ground cancel
   Flight rest = flight;
   for (ImuSample& sample : rest.samples) sample.specific_force_m_s2 = {0.0, 0.0, kGravity};
   EXPECT_EQ(find_sweep_scale(rest.samples, rest.sweeps, kGravity).changes, 0u);

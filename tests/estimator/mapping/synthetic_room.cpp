@@ -16,7 +16,7 @@ constexpr int kRings = 16;
 
 const Room::Plane kFloor{{0, 0, -1.5}, {0, 0, 1}};
 
-/// Integral from 0 of a smooth step from 0 to 1 over `rise` seconds.
+/// Integral from 0 of a smooth step from 0 to 1 within `rise` seconds.
 double risen(double t, double rise) {
   if (t <= 0.0) return 0.0;
   if (t >= rise) return 0.5 * rise + (t - rise);
@@ -128,7 +128,7 @@ std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double 
     sample.angular_velocity_rad_s = so3::log(motion.q(t0).conjugate() * motion.q(t0 + dt)) / dt;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (int i = 0; i <= kParts; ++i) {
-      // a hair inside of the window, where the jump of acceleration at the end of rest belongs to one side
+      // slightly within the window, so that the jump of acceleration at the end of rest is on one side
       const double t = t0 + dt * (1e-6 + (1.0 - 2e-6) * i / kParts);
       const double weight = (i == 0 || i == kParts) ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
       force += weight * (motion.q(t).conjugate() * (motion.a_m_s2(t) + Eigen::Vector3d(0, 0, kRoomGravity_m_s2)));

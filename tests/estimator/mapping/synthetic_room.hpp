@@ -11,12 +11,12 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 
-/// An analytic world, motion and pair of sensors: what the mapping code must explain, made without any of it.
+/// An analytic world, motion and sensors. They are a reference for the mapping code, and independent of it.
 namespace tumble::test {
 
 inline constexpr double kRoomGravity_m_s2 = 9.80665;
 inline constexpr int kSamplesPerSweep = 10;
-inline constexpr int kHalfColumns = 450;  ///< of a sweep, where fewer do
+inline constexpr int kHalfColumns = 450;  ///< columns of a sweep, for tests with half of them
 inline constexpr double kRoomNoise_m = 0.01;
 
 /// Planes (point, normal towards the free side) and vertical round pillars.
@@ -33,22 +33,22 @@ struct Room {
 
   /// Box room of 24 m x 18 m x 8 m about the origin, floor at z = -1.5 m.
   static Room box();
-  /// The same with six pillars of various radii.
+  /// The same room with six pillars of different radii.
   static Room box_with_pillars();
   static Room floor_only();
   /// Two walls along x and a floor.
   static Room corridor();
-  /// Floor and two walls that meet.
+  /// A floor and two walls that meet.
   static Room corner();
 
-  /// Distance along a unit ray to the first surface; negative when there is none within 100 m.
+  /// Returns the distance along a unit ray to the first surface; negative if there is none within 100 m.
   double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
-  /// Distance of a point to the nearest surface (planes unbounded).
+  /// Returns the distance of a point to the nearest surface (planes are unbounded).
   double distance(const Eigen::Vector3d& point) const;
 };
 
-/// Motion of the IMU: rest until `rest_s`, then a spin that rises within half a second about axes that turn, while the
-/// position swings through metres. Smooth; position by closed form.
+/// Smooth motion of the IMU: rest until `rest_s`, then a spin that grows within half a second about changing axes,
+/// while the position oscillates by metres. The position is a closed form.
 struct Motion {
   double rest_s = 0.3;
   double spin_rad_s = 15.0;
@@ -62,20 +62,20 @@ struct Motion {
   Eigen::Isometry3d pose(double t) const;
 };
 
-/// Samples at 100 Hz, or another whole divisor of a second, up to `duration_s`: the rate is the exact increment of
-/// attitude over each window, the specific force the mean over the window in the turning axes.
+/// Returns samples up to `duration_s` at 100 Hz, or at another integer divisor of a second. The rate is the exact
+/// increment of attitude over each window; the specific force is the mean over the window in the rotating axes.
 std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double rate_hz = 100.0);
 std::vector<MotionSample> motion_samples(const std::vector<ImuSample>& imu);
-/// A rate as a method would give it that believes the gyro.
+/// Returns the rate of a method that ignores saturation.
 RateState believe(const ImuSample& sample);
 
-/// Sixteen rings by `columns` in 0.1 s, each ray from the pose of its own instant, noise of the range uniform with
-/// standard deviation `noise_m`, drawn from (sweep, point) alone.
+/// Returns a sweep with sixteen rings of `columns` in 0.1 s, each ray from the pose at its time. The range noise is
+/// uniform with standard deviation `noise_m`, and depends only on (sweep, point).
 std::vector<LidarPoint> make_sweep(const Room& room, const Motion& motion, const Eigen::Isometry3d& T_IL, int sweep,
                                    double noise_m = 0.0, int columns = 900);
 constexpr std::int64_t kSweep_ns = 100'000'000;
 
-/// Number in [0, 1) from a 64-bit counter.
+/// Converts a 64-bit counter to a number in [0, 1).
 double uniform(std::uint64_t counter);
 
 }  // namespace tumble::test

@@ -68,7 +68,7 @@ TEST_P(NeighbourSearch, AgreesWithBruteForce) {
     }
     seen += expected.size();
   }
-  EXPECT_GT(seen, 100u);  // the comparison was about something
+  EXPECT_GT(seen, 100u);  // the comparison covered enough points
 }
 
 INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
                                          Density{2000, 6.0f, 0.3, 2.0f}),
                          [](const auto& test) { return "n" + std::to_string(test.index); });
 
-/// What the registration relies on where it searches anew: a radius that holds all of them changes none of them.
+/// The registration relies on this when it searches again: a radius that contains all neighbours changes none of them.
 TEST(VoxelMap, FindsTheSameWithinANarrowerRadiusThatHoldsThem) {
   VoxelMap map({0.5, 0.0});
   for (std::uint64_t i = 0; i < 4000; ++i) ASSERT_TRUE(map.insert(random_point(i, 5.0f), 0.02f, 0));
@@ -99,7 +99,7 @@ TEST(SpatialHash, HoldsWhatAMapHolds) {
   SpatialHash hash(16);
   std::map<std::uint64_t, std::uint32_t> expected;
   for (std::uint32_t i = 0; i < 20'000; ++i) {
-    // a crowded surface about the origin, so that keys of either sign meet again and share blocks
+    // a dense surface about the origin, so that keys of both signs share blocks
     const Eigen::Vector3i cube = random_point(i, 120.0f).cast<int>().cwiseProduct(Eigen::Vector3i(1, 1, 0)) +
                                  Eigen::Vector3i(0, 0, static_cast<int>(i % 3) - 1);
     const std::uint64_t key = SpatialHash::key(cube);
@@ -119,7 +119,7 @@ TEST(VoxelMap, KeepsOnePointPerCubeOfTheSpacing) {
   EXPECT_TRUE(map.insert({0.01f, 0.01f, 0.01f}, 0.1f, 0));
   EXPECT_FALSE(map.insert({0.09f, 0.09f, 0.09f}, 0.1f, 0));
   EXPECT_TRUE(map.insert({0.11f, 0.01f, 0.01f}, 0.1f, 0));
-  EXPECT_TRUE(map.insert({-0.01f, 0.01f, 0.01f}, 0.1f, 0));  // cubes do not fold at zero
+  EXPECT_TRUE(map.insert({-0.01f, 0.01f, 0.01f}, 0.1f, 0));  // cells around zero are not merged
   EXPECT_EQ(map.size(), 3u);
 }
 

@@ -8,7 +8,7 @@
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-// sweeps refined together with those after them, the trajectory that can be asked at any time, and the caller's threads
+// tests that later sweeps refine earlier ones, the trajectory at any time, and the caller's threads
 namespace tumble {
 namespace {
 
@@ -26,7 +26,7 @@ Odometry::Params given() {
   return params;
 }
 
-/// A gyro on its rail, and what is known of it: nothing.
+/// A gyro at its limit, without any information about its rate.
 RateState railed(const ImuSample& sample) {
   RateState rate = test::believe(sample);
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,7 +42,7 @@ RateState railed(const ImuSample& sample) {
 struct Drive {
   explicit Drive(const Odometry::Params& params) : odometry(params) {}
 
-  /// Sweeps [from, to); those in [covered_from, covered_to) see nothing.
+  /// Runs the sweeps [from, to); those in [covered_from, covered_to) have no points.
   void sweeps(int from, int to, int covered_from = 0, int covered_to = 0) {
     for (int k = from; k < to; ++k) {
       const bool covered = k >= covered_from && k < covered_to;
@@ -80,7 +80,7 @@ TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
   params.expert.window_sweeps = 3;
   Drive run(params);
   run.sweeps(0, 15);
-  run.sweeps(15, 18, 15, 16);  // nothing but a gyro on its rail
+  run.sweeps(15, 18, 15, 16);  // only a clipped gyro
   run.sweeps(18, 19);
   const PoseState& at_once = run.reports[15].trajectory.back();
   const PoseState& smoothed = run.reports[17].smoothed.back();
@@ -121,7 +121,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   for (const auto& sweep : open) all.insert(all.end(), sweep.begin(), sweep.end());
   ASSERT_EQ(all.size(), 120u);
   for (std::size_t i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].time_ns - all[i - 1].time_ns, 10'000'000) << i;
-  // the newest is the filter's own
+  // the newest state is that of the filter
   EXPECT_EQ(open.back().back().p_WA_m, run.report.trajectory.back().p_WA_m);
 }
 
@@ -144,14 +144,14 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   EXPECT_EQ(pose.time_ns, 14 * test::kSweep_ns);
   EXPECT_LT(run.error_m(pose), 0.05);
   EXPECT_GT(pose.covariance.diagonal().head<3>().sum(), run.report.pose.covariance.diagonal().head<3>().sum());
-  // a velocity that is known is believed, and so is what it is said to be off by
+  // a velocity measurement is used with its stated deviation
   Odometry told(run.odometry);
   const Eigen::Vector3d v_I_m_s(3.0, 0.0, 0.0);
   ASSERT_TRUE(told.add_velocity(v_I_m_s, 0.01).ok());
   PoseState led;
   ASSERT_TRUE(told.predict(ahead, rates, led).ok());
   EXPECT_GT((led.p_WA_m - pose.p_WA_m).norm(), 0.1);
-  // one that comes twice is refused, and the odometry has not heard of any
+  // a repeated measurement is rejected and does not change the odometry
   std::swap(ahead[0], ahead[1]);
   std::swap(rates[0], rates[1]);
   EXPECT_EQ(run.odometry.predict(ahead, rates, pose).error_code, ErrorCode::time_order);
@@ -179,7 +179,7 @@ TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
   for (TimeNs t = 9 * test::kSweep_ns + 3'456'789; t < 12 * test::kSweep_ns; t += 7'654'321) {
     ASSERT_TRUE(run.odometry.pose_at(t, pose).ok());
     EXPECT_EQ(pose.time_ns, t);
-    // between samples of the IMU too; at 15 rad/s and metres a second. Measured: 12 mm
+    // also between IMU samples; at 15 rad/s and some metres per second. Measured: 12 mm
     EXPECT_LT(run.error_m(pose), 0.03);
     EXPECT_LT(so3::log(pose.q_WA * run.motion.q(1e-9 * static_cast<double>(t)).conjugate()).norm(), 0.02);
     EXPECT_GT(pose.covariance.diagonal().minCoeff(), 0.0);
@@ -209,7 +209,7 @@ TEST(ExecutorThreads, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
     };
     Drive run(params);
     run.sweeps(0, 8);
-    EXPECT_GT(calls, 20u);  // it was asked
+    EXPECT_GT(calls, 20u);  // the callback was called
     EXPECT_EQ(run.report.pose.p_WA_m, alone.report.pose.p_WA_m);
     EXPECT_EQ(run.report.pose.q_WA.coeffs(), alone.report.pose.q_WA.coeffs());
     EXPECT_EQ(run.report.pose.covariance, alone.report.pose.covariance);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What parts the map from the world, against closed forms: docs/maths/mapping.md, section 8.
+// Compares the covariance between map and world with closed forms: docs/maths/mapping.md, section 8.
 #include "estimator/src/mapping/world_covariance.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ WorldCovarianceParams without_tilt() {
   return params;
 }
 
-/// Without the part of the map's scale, which the last test checks.
+/// Covariance without the map scale, which the last test covers.
 Pose in_world(const WorldCovariance& covariance, const Matrix& joint = Matrix::Zero()) {
   Pose P = covariance.in_world(joint, kPlace_W_m);
   P.topLeftCorner<3, 3>() -= 0.003 * 0.003 * kPlace_W_m * kPlace_W_m.transpose();
@@ -38,7 +38,7 @@ TEST(WorldCovariance, ATiltOfTheStartTurnsThePathAboutIt) {
   WorldCovarianceParams params;
   params.tilt_sigma_rad = 0.01;
   const Pose P = in_world(WorldCovariance(params, kStart, kLever_m));
-  // about x: y and z of the place move, about y: x and z
+  // a rotation about x moves y and z of the position, a rotation about y moves x and z
   const double z = kPlace_W_m.z(), s2 = 1e-4;
   EXPECT_NEAR(P(0, 0), s2 * z * z, 1e-15);
   EXPECT_NEAR(P(1, 1), s2 * z * z, 1e-15);
@@ -47,8 +47,8 @@ TEST(WorldCovariance, ATiltOfTheStartTurnsThePathAboutIt) {
   EXPECT_EQ(P(5, 5), 0.0);
 }
 
-/// An error of the mounting displaces the first pose in the map, and with it all that follows: at the start, and
-/// wherever the body stands and is turned as there, it is none against the world.
+/// A mounting error displaces the first pose in the map, and therefore all following poses. The error relative to the
+/// world is zero at the start, and wherever the body has the position and attitude of the start.
 TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
   const WorldCovariance covariance(without_tilt(), kStart, kLever_m);
   Matrix joint = Matrix::Zero();
@@ -73,13 +73,13 @@ TEST(WorldCovariance, DriftGrowsAlongTheDirectionThatNothingHeld) {
   Pose expected = Pose::Zero();
   expected(1, 1) = 0.04;
   EXPECT_LT((in_world(covariance) - expected).cwiseAbs().maxCoeff(), 1e-15);
-  along << 0.6, 0.0, 0.0, 0.8, 0.0, 0.0;  // of a direction that turns too, the translation alone
-  covariance.add_drift(100.0, along);     // no direction counts as held less surely than by 3 m
+  along << 0.6, 0.0, 0.0, 0.8, 0.0, 0.0;  // of a direction that also rotates, only the translation counts
+  covariance.add_drift(100.0, along);     // the deviation of a constrained direction is at most 3 m
   expected(0, 0) = 0.09 * 0.36;
   EXPECT_LT((in_world(covariance) - expected).cwiseAbs().maxCoeff(), 1e-15);
 }
 
-/// A body that rests and sweeps, with no error of the mounting: a share d of the map is off as the pose was.
+/// A stationary body without mounting error: a share d of the map has the error of the pose.
 TEST(WorldCovariance, WhatIsInsertedMovesTheMapByItsShare) {
   std::vector<MotionSample> samples;
   for (int k = 0; k < 10; ++k) {
@@ -100,7 +100,7 @@ TEST(WorldCovariance, WhatIsInsertedMovesTheMapByItsShare) {
   covariance.add_insertion(0.1, trajectory, errors, kLever_m);
   const Pose P = in_world(covariance);
   const double d2 = 0.2 * 0.2 + 0.1 * 0.1;
-  // in the middle of the sweep, 50 ms after the errors: the velocity's part, and what a tilt makes of the force by then
+  // in the middle of the sweep, 50 ms after the errors: the part of the velocity, and the effect of a tilt on the force
   const double by_tilt_m = 0.5 * 9.8 * 0.05 * 0.05;
   EXPECT_NEAR(P(2, 2), d2 * (0.01 + 0.25 * 0.0025), 1e-12);
   EXPECT_NEAR(P(0, 0), d2 * (0.01 + 0.25 * 0.0025 + 0.0004 * by_tilt_m * by_tilt_m), 1e-9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingOdometry in the map of an earlier run.
+// Tests TumblingOdometry in the map of an earlier run.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -22,7 +22,7 @@ TumblingOdometry::Params rig_params() {
   return params;
 }
 
-/// A slow turn that swings through metres.
+/// A slow rotation with an oscillation of metres.
 test::Motion motion(double swing) {
   test::Motion out;
   out.rest_s = 0.6;
@@ -35,7 +35,7 @@ test::Motion motion(double swing) {
 struct RoomRun {
   explicit RoomRun(double swing) : moves(motion(swing)), imu(test::make_imu(moves, 4.0)), odometry(rig_params()) {}
 
-  /// Adds the data of the sweeps from..to-1, and keeps the newest report.
+  /// Adds the data of the sweeps from..to-1, and stores the newest report.
   void feed(int from, int to) {
     for (int sweep = from; sweep < to; ++sweep) {
       for (int k = sweep * test::kSamplesPerSweep; k < (sweep + 1) * test::kSamplesPerSweep; ++k)
@@ -56,7 +56,7 @@ struct RoomRun {
   SweepReport newest;
 };
 
-/// Map of a run, in the frame of the room.
+/// Returns the map of a run in the frame of the room.
 const std::vector<MapPoint>& map_of_first_run() {
   static const std::vector<MapPoint> points = [] {
     RoomRun run(1.0);

@@ -6,7 +6,7 @@
 
 namespace tumble::testing {
 
-/// Of the smoother, for the sphere of rolling_truth.hpp.
+/// Returns parameters of the smoother for the sphere of rolling_truth.hpp.
 inline RollingSmoother::Params lagged_params(double lag_s) {
   RollingSmoother::Params out;
   out.filter.radius_m = kRadius_m;

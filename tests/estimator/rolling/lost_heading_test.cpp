@@ -11,7 +11,7 @@
 #include "estimator/src/rolling/lost_heading.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-// a bounce that nobody read: the heading after it is not known, and no contact tells it
+// a bounce during a gap of the readings: the heading after it is unknown, and contact does not determine it
 namespace tumble {
 namespace {
 
@@ -19,7 +19,7 @@ using testing::kLeverArm;
 
 constexpr double kBounce_s = 5.0, kBounceLasts_s = 0.02, kTurn_rad = 1.7;
 
-/// 0.8 m/s along x, from 5 s on to the side, to rest.
+/// A roll at 0.8 m/s along x, to the side after 5 s, then to rest.
 Eigen::Vector3d bouncing(double t) {
   const auto ramp = [](double x) { return x <= 0.0 ? 0.0 : x >= 1.0 ? 1.0 : x * x * (3.0 - 2.0 * x); };
   const double speed = 0.8 * (ramp((t - 2.0) / 1.0) - ramp((t - 6.5) / 1.0));
@@ -31,7 +31,7 @@ struct End {
   double error_m = 0.0, deviations = 0.0;
 };
 
-/// Of a run that lost `gap_s`, of which `before_s` before the bounce.
+/// Runs with a gap of `gap_s`, which starts `before_s` before the bounce.
 End end_of(double gap_s, double before_s, double lag_s) {
   const testing::RollingTruth truth = testing::roll({.velocity_m_s = bouncing,
                                                      .contact_velocity_m_s = testing::no_slip,
@@ -52,7 +52,7 @@ End end_of(double gap_s, double before_s, double lag_s) {
   return {error.norm(), std::sqrt(error.dot(P.llt().solve(error)))};
 }
 
-// before, heading and velocity were learnt from the bounce as if both had gone on: up to 7.1 deviations
+// if heading and velocity count as continuous, the errors reach 7.1 standard deviations
 TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
   double worst_m = 0.0;
   for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
@@ -62,7 +62,7 @@ TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
       worst_m = std::max(worst_m, end.error_m);
     }
   }
-  EXPECT_GT(worst_m, 0.1);  // it is no easy case
+  EXPECT_GT(worst_m, 0.1);  // the test needs a difficult case
   EXPECT_LT(end_of(0.0, 0.0, RollingSmoother::kWholeRun).error_m, 0.03);
 }
 

@@ -24,7 +24,7 @@ using testing::RollingMotion;
 using testing::RollingTruth;
 using Contact = std::function<Eigen::Vector3d(double)>;
 
-/// Normal numbers that are the same everywhere: SplitMix64 and a sum of twelve.
+/// Normal random numbers that are equal on every machine: SplitMix64 and a sum of twelve.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : state_(seed) {}
@@ -51,7 +51,7 @@ class Noise {
   std::uint64_t state_;
 };
 
-/// Contact velocity that rises to `u` and falls again, each within a fifth of the event.
+/// Contact velocity that increases to `u` and decreases, each within a fifth of the event.
 Contact event(double start_s, double length_s, const Eigen::Vector3d& u) {
   return [=](double t) -> Eigen::Vector3d {
     const auto rise = [edge = 0.2 * length_s](double s) {
@@ -72,8 +72,8 @@ RollingTruth truth_of(const Contact& velocity, const Contact& contact, double du
                         .q_start = so3::exp({0.0, -0.2, 0.0}) * so3::exp({0.1, 0.0, 0.0})});
 }
 
-/// A gyro and an accelerometer of the Phidget class: bias 0.017 deg/s and 3 mg, scale and misalignment 0.2 and 0.3 %,
-/// noise 0.23 deg/s and 3 mg per sample at 250 Hz.
+/// Gyro and accelerometer of the Phidget class: bias of 0.017 deg/s and 3 mg, scale and misalignment errors of 0.2 and
+/// 0.3 %, noise of 0.23 deg/s and 3 mg per sample at 250 Hz.
 void add_errors(std::uint64_t seed, RollingTruth& truth) {
   Noise noise(seed);
   const Eigen::Vector3d w_bias = 3e-4 * noise.vector(), f_bias = 0.03 * noise.vector();
@@ -87,7 +87,7 @@ void add_errors(std::uint64_t seed, RollingTruth& truth) {
 struct Result {
   double end_error_m = 0.0, end_sigma_m = 0.0;
   double recall = 1.0, precision = 1.0;  ///< of samples without grip, contact velocities of 1 to 50 mm/s not counted
-  double delay_s = 0.0;                  ///< from a contact velocity of 50 mm/s to the first sample not gripping
+  double delay_s = 0.0;                  ///< from 50 mm/s of contact velocity to the first sample without grip
 };
 
 Result filtered(const RollingTruth& truth, const Contact& contact, const RollingFilter::Params& params) {
@@ -125,7 +125,7 @@ double rolling_error(const RollingTruth& truth) {
 struct Case {
   const char* name;
   Contact velocity, contact;
-  double rolling_at_least_m;  ///< what rolling alone must get wrong, or the case tests nothing
+  double rolling_at_least_m;  ///< lower bound for the error of pure rolling, so that the case is meaningful
 };
 
 std::vector<Case> cases() {
@@ -159,13 +159,13 @@ TEST(RollingFilter, StandsStillWhereTheSphereDoes) {
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
     const double time_s = seconds(truth.samples[k].time_ns);
-    if (time_s < 8.3) continue;  // the way ends at 8.0 s
+    if (time_s < 8.3) continue;  // the roll ends at 8.0 s
     if (still++ == 0) first = state->p_WG_m;
     drift_m = std::max(drift_m, (state->p_WG_m - first).norm());
   }
   EXPECT_EQ(still, 426);
   EXPECT_EQ(drift_m, 0.0);
-  EXPECT_LT((first - truth.p_WG_m.back()).norm(), 0.02);  // and not before the way was mended
+  EXPECT_LT((first - truth.p_WG_m.back()).norm(), 0.02);  // the path before must not be corrected yet
 }
 
 TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
@@ -187,7 +187,7 @@ TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
   EXPECT_LT(deepest, 1e-3);
 }
 
-/// With a bound as low as this every event is uncertain, with a high one none is; without an event never.
+/// With such a low bound, every event counts as uncertain, with a high bound none; a run without events never does.
 TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
   const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
   const auto called = [&](const Contact& contact, double uncertain_m) {
@@ -212,7 +212,7 @@ TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
 
 TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
   for (const Case& c : cases()) {
-    for (const std::uint64_t seed : {1001, 1002, 1003}) {  // others than those of development
+    for (const std::uint64_t seed : {1001, 1002, 1003}) {  // seeds that were not used in development
       RollingTruth truth = truth_of(c.velocity, c.contact);
       add_errors(seed, truth);
       const Result r = filtered(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
@@ -221,14 +221,15 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
       EXPECT_LT(r.end_error_m, 0.02) << c.name << " " << seed;  // 1 % of the path; measured up to 0.5 %
       EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << c.name << " " << seed;
       EXPECT_GT(r.recall, 0.9) << c.name << " " << seed;
-      EXPECT_GT(r.precision, 0.8) << c.name << " " << seed;  // live: an end is believed late; measured 0.85 to 1
+      // live: the end of an event is detected late; measured 0.85 to 1
+      EXPECT_GT(r.precision, 0.8) << c.name << " " << seed;
       EXPECT_LE(r.delay_s, 0.03) << c.name << " " << seed;
     }
   }
 }
 
-/// A slide over two seconds during which the spin is held: its contact velocity stands on a plateau, which looks like
-/// grip at another speed until the floor grips again.
+/// A slide of two seconds during which the rotation is held. Its contact velocity is constant for a time, which
+/// resembles grip at another speed until the floor grips again.
 TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
   const auto along = [](double speed) { return Eigen::Vector3d(speed, 0.0, 0.0); };
   const auto rise = [](double s) {
@@ -247,7 +248,7 @@ TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
     const Result r = filtered(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
     std::printf("held spin %.2f m/s: end %.4f m, sigma %.4f, recall %.2f\n", position_constrained, r.end_error_m,
                 r.end_sigma_m, r.recall);
-    EXPECT_LT(r.end_error_m, 0.03) << position_constrained;  // of 2.5 m
+    EXPECT_LT(r.end_error_m, 0.03) << position_constrained;  // path of 2.5 m
     EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << position_constrained;
   }
 }
@@ -333,7 +334,7 @@ TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
   EXPECT_EQ(filter.step(bad, *state).error_code, ErrorCode::non_finite);
   EXPECT_EQ(filter.step(truth.samples[599], *state).error_code, ErrorCode::time_order);
   ImuSample late = truth.samples[640];
-  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // gap_max_s is 1 by default
+  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // the default of gap_max_s is 1
   EXPECT_EQ(filter.step(late, *state).error_code, ErrorCode::gap);
   EXPECT_TRUE(*state == *before);
   EXPECT_TRUE(filter.step(truth.samples[600], *state).ok());

@@ -14,11 +14,11 @@
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace {
-// bytes that this program holds, and the most it has held
+// allocated bytes of this program, and their maximum
 thread_local std::size_t position_constrained = 0, held_most = 0;
 }  // namespace
 
-// not inlined, so that the compiler does not take the pair for mismatched
+// not inlined, so that the compiler does not report a mismatched pair of new and delete
 [[gnu::noinline]] void* operator new(std::size_t size) {
   void* memory = std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();
@@ -48,7 +48,7 @@ testing::RollingTruth path(double duration_s) {
 }
 
 struct Held {
-  double nodes = 0.0, state = 0.0, at_the_end = 0.0;  ///< bytes; those at the end beside the state
+  double nodes = 0.0, state = 0.0, at_the_end = 0.0;  ///< bytes; at_the_end is in addition to the state
 };
 
 Held held_by(double duration_s) {
@@ -73,20 +73,20 @@ Held held_by(double duration_s) {
   return out;
 }
 
-// What a node costs is the growth from a run to one of twice the length: a node's record alone is more than 10 KiB.
+// The memory of a node is the growth from a run to one of twice the length: the record of a node alone exceeds 10 KiB.
 TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   const Held one = held_by(60.0), two = held_by(120.0);
   const double nodes = two.nodes - one.nodes;
   ASSERT_NEAR(nodes, 3000.0, 2.0);
-  // five samples of 64 bytes and a step of 152, in vectors that double; measured 557
+  // five samples of 64 bytes and a step of 152 bytes, in vectors that double; measured 557
   EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::NodeModes)) + 16.0);
-  // two filters in each segment, a mode and a variance for each node; measured 288
+  // two filters in each segment, and a mode and a variance for each node; measured 288
   EXPECT_LT((two.at_the_end - one.at_the_end) / nodes, 320.0);
   EXPECT_GT(sizeof(rolling::NodeRecord), 10'000u) << "the bound says nothing any more";
   EXPECT_LT(two.at_the_end, 5e6);
 }
 
-// A lag of three years is within its bound: storage for it is not set aside at once.
+// A lag of three years is within its bounds, so memory for it must not be reserved at once.
 TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   RollingSmoother::Params params;
   params.filter.radius_m = testing::kRadius_m;
@@ -103,7 +103,7 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   EXPECT_GT(position_constrained - before, 100u << 20) << "the bound says nothing any more";
 }
 
-/// All that the last pass tells of a way, in one row.
+/// Returns all results of the last pass for a path, in one row.
 std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
                          std::optional<rolling::LastPass::Distance> distance, std::size_t segment) {
   RollingParams params;

@@ -5,7 +5,7 @@
 
 #include "estimator/src/rolling/rolling_node.hpp"
 
-// rolling.md (R7), (R8): forces of which some axes met the accelerometer's rail.
+// rolling.md (R7), (R8): forces with axes at the accelerometer's limit.
 namespace tumble::rolling {
 namespace {
 
@@ -15,7 +15,7 @@ struct Gained {
   Eigen::Vector3d velocity_m_s, hidden_m_s;
 };
 
-/// By one reading of a sphere that stood still in W, at a steady rate.
+/// Estimates from one reading of a sphere that is stationary in W, at a constant rate.
 Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, std::uint8_t flags,
               Force known = Force::read) {
   RollingParams params;
@@ -32,8 +32,8 @@ Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_
   return {nominal.v_WI_m_s, sums.subsample_saturation_W_m_s};
 }
 
-// An impact of which a part of the window met the rail is at least what was read, as without the flag; before, its
-// velocity was nothing, give or take 16 mm/s.
+// An impact whose window was partly clipped is at least as large as its reading, as without the flag. Before it, the
+// velocity was zero within 16 mm/s.
 TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
   const Eigen::Vector3d read(-3.0, 17.0, 57.0);
   const double gravity = RollingParams{}.gravity_m_s2;
@@ -43,12 +43,12 @@ TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
   const double share = RollingParams{}.expert.rails.subsample_saturation_share;
   EXPECT_NEAR(railed.hidden_m_s.z(), share * kRepeated_s * 57.0, 1e-12) << "and how much more is not known";
   EXPECT_LT((gained(Eigen::Vector3d::Zero(), read, 0).velocity_m_s - expected).norm(), 1e-12);
-  // negative control: of a force that nobody read nothing is taken
+  // negative control: a force without a reading is not used
   EXPECT_LT(gained(Eigen::Vector3d::Zero(), read, kClipAccel, Force::unknown).velocity_m_s.norm(), 1e-12);
 }
 
-// A fast turn about z puts x at its rail: it takes 160 m/s^2 to keep the centre where it is, and no impact. The other
-// axes are what they read.
+// A fast rotation about z saturates x: keeping the centre in place needs 160 m/s^2, without an impact. The other axes
+// are correct.
 TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
   constexpr double kRate_rad_s = 40.0;
   const double gravity = RollingParams{}.gravity_m_s2;
@@ -57,12 +57,12 @@ TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
   EXPECT_NEAR(turning.velocity_m_s.norm(), kRepeated_s * kRate_rad_s * kRate_rad_s * 0.1, 0.01);
   EXPECT_NEAR(turning.velocity_m_s.z(), 0.0, 1e-12);
   EXPECT_LT(turning.hidden_m_s.norm(), 1e-12);
-  // negative control: of another sense it is an impact
+  // negative control: with the opposite sign, the force is an impact
   const Gained struck = gained({0.0, 0.0, kRate_rad_s}, -read, kClipAccelX);
   EXPECT_GT(struck.hidden_m_s.norm(), 0.05);
 }
 
-// A force that is ignored has no bias that moves the velocity.
+// A force that is ignored has no bias that affects the velocity.
 TEST(RollingRails, AnIgnoredForceHasNoBias) {
   const Eigen::Vector3d rate(0.0, 0.0, 5.0), force(0.0, 0.0, 9.8);
   const auto by_bias = [&](std::uint8_t flags) {

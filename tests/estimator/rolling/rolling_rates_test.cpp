@@ -10,7 +10,7 @@
 #include "estimator/rolling/rolling_truth.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-// the rate of the IMU, its jitter, its gaps: the same motion must give the same answer
+// the same motion must give the same result for every sample rate, with jitter and with gaps
 namespace tumble {
 namespace {
 
@@ -20,7 +20,7 @@ Eigen::Vector3d spins(double t) {
   return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.05 * testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0};
 }
 
-/// An L of 2 m with a spell of slip; errors of the Phidget class, noise of 4e-4 rad/s and 2e-3 m/s^2 per root of Hz.
+/// An L of 2 m with slip; errors of the Phidget class, noise of 4e-4 rad/s and 2e-3 m/s^2 per root of Hz.
 testing::RollingTruth slipping_sampled(TimeNs period_ns) {
   testing::RollingTruth truth = testing::roll({.velocity_m_s = testing::l_shape,
                                                .contact_velocity_m_s = spins,
@@ -60,10 +60,10 @@ double end_error_m(const std::vector<ImuSample>& samples, const Eigen::Vector3d&
   return (smoothed_samples(samples, testing::lagged_params(lag_s)).out.back().p_WG_m - end_m).norm();
 }
 
-// 50 Hz to 8 kHz, and rates that divide nothing
+// 50 Hz to 8 kHz, including rates that do not divide a second evenly
 constexpr TimeNs kPeriods_ns[] = {20'000'000, 8'000'000, 3'000'000, 1'000'000, 700'000, 250'000, 125'000};
 
-// measured: 10 to 17 mm at every rate, whole and live, 14 mm at 250 Hz; what differs is the draw of the noise
+// measured: 10 to 17 mm at every rate, batch and live, 14 mm at 250 Hz; the random noise differs
 TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
   for (const TimeNs period_ns : kPeriods_ns) {
     const testing::RollingTruth truth = slipping_sampled(period_ns);
@@ -89,7 +89,7 @@ TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
   const double exact = end_error_m(truth.samples, end_m, RollingSmoother::kWholeRun);
   std::vector<ImuSample> position_constrained = truth.samples, jittered = slipping_sampled(4'000'000).samples;
-  // a device of 200 Hz read at 1 kHz
+  // a device with 200 Hz that is read at 1 kHz
   for (std::size_t k = 0; k < position_constrained.size(); ++k) {
     position_constrained[k].angular_velocity_rad_s = truth.samples[k - k % 5].angular_velocity_rad_s;
     position_constrained[k].specific_force_m_s2 = truth.samples[k - k % 5].specific_force_m_s2;
@@ -177,7 +177,7 @@ TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
     }
     const Smoothed moving = smoothed_samples(samples, testing::lagged_params(RollingSmoother::kWholeRun));
     EXPECT_TRUE(moving.state->live.started_in_motion);
-    // heading and place of the start are those of the world: about its own heading the path is as long
+    // heading and position of the start are those of the world; relative to the start heading, the path length is equal
     const Eigen::Quaterniond q = truth.q_WI[first] * moving.out.front().q_WI.conjugate();
     const Eigen::Quaterniond yaw = Eigen::Quaterniond(q.w(), 0.0, 0.0, q.z()).normalized();
     const Eigen::Vector3d path = truth.p_WG_m.back() - truth.p_WG_m[first];

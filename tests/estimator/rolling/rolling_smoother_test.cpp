@@ -18,7 +18,7 @@ namespace {
 
 using testing::kLeverArm;
 
-/// An L of 2 m with a spell of slip of 0.8 s by `slip_m`, seen by sensors without errors.
+/// An L of 2 m with slip by `slip_m` for 0.8 s, measured by sensors without errors.
 testing::RollingTruth seen_exactly(const Eigen::Vector3d& lever_arm_m,
                                    const Eigen::Vector3d& slip_m = {-0.25, 0.0125, 0.0}) {
   return testing::roll({.velocity_m_s = testing::l_shape,
@@ -29,7 +29,7 @@ testing::RollingTruth seen_exactly(const Eigen::Vector3d& lever_arm_m,
                         .q_start = so3::exp({0.1, -0.2, 0.0})});
 }
 
-/// The same; gyro and accelerometer with constant errors of the Phidget class.
+/// The same path; gyro and accelerometer have constant errors of the Phidget class.
 testing::RollingTruth slipping() {
   testing::RollingTruth truth = seen_exactly(kLeverArm);
   for (ImuSample& sample : truth.samples) {
@@ -54,7 +54,7 @@ TEST(RollingSmoother, OneEstimateForEachSampleWithWholeRunAndWithLag) {
     const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     ASSERT_EQ(out.size(), truth.samples.size()) << lag_s;
     for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, truth.samples[k].time_ns) << lag_s;
-    // 1 % of the path; measured 0.6 %: the error of scale alone is 0.2 %
+    // 1 % of the path; measured 0.6 %: the scale error alone causes 0.2 %
     EXPECT_LT((out.back().p_WG_m - truth.p_WG_m.back()).norm(), 0.02) << lag_s;
   }
 }
@@ -78,8 +78,8 @@ TEST(RollingSmoother, MendsThePathInsideAnEvent) {
   EXPECT_GT(in_event, 0.5 * 0.8 / 0.004) << "the event was not seen at all";
 }
 
-/// The same way with a slip of its own, the constant errors of gyro, accelerometer and lever arm drawn as the filter
-/// holds them possible.
+/// The same path with another slip. Constant errors of gyro, accelerometer and lever arm are random, with the
+/// deviations that the filter assumes.
 testing::RollingTruth drawn_path(std::uint64_t seed, const RollingParams& believed) {
   oracles::Gaussian normal(seed);
   const Eigen::Vector3d slip_m(-normal.uniform(0.1, 0.4), 0.02 * normal(), 0.0);
@@ -97,15 +97,15 @@ testing::RollingTruth drawn_path(std::uint64_t seed, const RollingParams& believ
   return truth;
 }
 
-/// Mean over draws of the squared error of a position over its reported covariance, per unknown: of the last one, and
-/// of one within the way, which a smoother with a lag has given out with what followed for so long.
+/// Mean over draws of the squared position error divided by its reported covariance, per unknown: for the last
+/// position, and for one within the path that a smoother with a lag has reported.
 struct Normalised {
   double within = 0.0, end = 0.0;
 };
 
 Normalised normalised_errors(double lag_s) {
   constexpr int kDraws = 16;
-  constexpr std::size_t kWithin = 1500;  // 6 s: the slip is over, the second leg is not
+  constexpr std::size_t kWithin = 1500;  // 6 s: after the slip, within the second leg
   Normalised mean;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     const testing::RollingTruth truth = drawn_path(seed, testing::lagged_params(1.0).filter);
@@ -124,7 +124,7 @@ Normalised normalised_errors(double lag_s) {
 TEST(RollingSmoother, ItsCovarianceIsNeitherTooSmallNorTooLarge) {
   for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
     const Normalised mean = normalised_errors(lag_s);
-    // 48 unknowns: an honest covariance gives 0.46 to 1.81 in 99.9 % of cases
+    // 48 unknowns: a consistent covariance gives 0.46 to 1.81 in 99.9 % of cases
     for (const double each : {mean.within, mean.end}) {
       EXPECT_GT(each, 0.46) << lag_s;
       EXPECT_LT(each, 1.81) << lag_s;
@@ -147,8 +147,8 @@ TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
   }
 }
 
-/// With a lag the way before a rest is out: what rest teaches of it must not move a sphere that stands still. The way
-/// stops from 4.5 to 5.5 s and from 8 s on.
+/// With a lag, the path before a rest is already reported. The calibration at rest must not move a stationary sphere.
+/// The path pauses from 4.5 to 5.5 s, and ends at 8 s.
 TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
   const testing::RollingTruth truth = slipping();
   for (const double lag_s : {0.3, 1.0}) {
@@ -158,18 +158,18 @@ TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
       const auto first = static_cast<std::size_t>(from_s / 0.004), end = static_cast<std::size_t>(to_s / 0.004);
       for (std::size_t k = first; k < end; ++k) ASSERT_EQ(out[k].p_WG_m, out[first].p_WG_m) << lag_s << " " << k;
     }
-    // and it goes on when the motion does
+    // and the estimate continues when the motion does
     for (std::size_t k = 0; k < out.size(); ++k) ASSERT_LT((out[k].p_WG_m - truth.p_WG_m[k]).norm(), 0.03) << k;
   }
 }
 
-/// A sphere that stands still but goes on turning about its contact, by less than what passes for rest: its rate is no
-/// bias, or the whole way would turn with it.
+/// A stationary sphere that continues to rotate about its contact point, below the threshold of the rest detector. Its
+/// rate is not a gyro bias; otherwise, the whole path would be rotated.
 TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
   const testing::RollingTruth still = slipping();
   testing::RollingTruth turning = still;
   for (std::size_t k = 0; k < turning.samples.size(); ++k) {
-    if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the way ends at 8.0 s
+    if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the roll ends at 8.0 s
     turning.samples[k].angular_velocity_rad_s += turning.q_WI[k].conjugate() * Eigen::Vector3d(0.0, 0.0, 0.014);
   }
   const std::vector<RollingEstimate> without = smoothed_truth(still, RollingSmoother::kWholeRun);
@@ -180,7 +180,8 @@ TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
   EXPECT_LT((with.back().p_WG_m - turning.p_WG_m.back()).norm(), 0.02);
 }
 
-/// A sphere 2 % larger than believed, over a way whose ends are known: the radius comes out, and the way with it.
+/// A sphere whose radius is 2 % larger than stated, on a path with known ends: the smoother estimates the radius, and
+/// corrects the path.
 TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   constexpr double kBelieved_m = 0.148, kTrue_m = 0.145;
   const testing::RollingTruth truth = slipping();
@@ -207,11 +208,11 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   EXPECT_EQ(sure->constants.radius_error_m, 0.0);
   const double radius_m = kBelieved_m + with->constants.radius_error_m;
   EXPECT_NEAR(radius_m, kTrue_m, 3.0 * with->radius_sigma_m);
-  EXPECT_NEAR(radius_m, kTrue_m, 4e-4);  // 0.28 %; measured 0.1 %: the gyro's error of scale is one with it
-  // accelerations alone tell it to 0.7 mm, the distance makes it 0.35
+  EXPECT_NEAR(radius_m, kTrue_m, 4e-4);  // 0.28 %; measured 0.1 %: the scale error of the gyro has the same effect
+  // accelerations alone determine the radius to 0.7 mm, with the known distance to 0.35 mm
   EXPECT_LT(with->radius_sigma_m, 0.6 * without->radius_sigma_m);
   EXPECT_GT(wrong_m, 0.03);
-  EXPECT_LT(told_m, 0.5 * wrong_m);  // 12 of 32 mm; what is left is across the distance
+  EXPECT_LT(told_m, 0.5 * wrong_m);  // 12 of 32 mm; the rest is perpendicular to the distance
 }
 
 TEST(RollingSmoother, SplitRunsEqual) {
@@ -239,7 +240,7 @@ TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
   const testing::RollingTruth truth = slipping();
   for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());
   ASSERT_TRUE(smoother.check_state(*state).ok()) << "negative control";
-  for (int k = 0; k < 5000; ++k) {  // 2.2 s at 500 Hz, four times over, are 4400
+  for (int k = 0; k < 5000; ++k) {  // four times 2.2 s at 500 Hz are 4400 samples
     state->samples.push_back(state->samples.back());
     state->samples.back().time_ns += 1000;
   }

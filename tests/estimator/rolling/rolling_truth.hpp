@@ -11,7 +11,7 @@
 
 namespace tumble::testing {
 
-/// A sphere that moves over a plane as prescribed, and what an ideal IMU inside says, from exact increments.
+/// A sphere with a prescribed motion over a plane, and the readings of an ideal IMU inside, from exact increments.
 struct RollingTruth {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;
@@ -19,12 +19,12 @@ struct RollingTruth {
   std::vector<bool> gripping;  ///< contact velocity below 1 mm/s
 };
 
-inline const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);  ///< of the IMU in them, where it is not in the middle
-inline constexpr double kRadius_m = 0.145;  ///< of the spheres of these tests, unless they say otherwise
+inline const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);  ///< position of the IMU in tests with an off-centre IMU
+inline constexpr double kRadius_m = 0.145;                  ///< default radius of the spheres in these tests
 
 struct RollingMotion {
-  std::function<Eigen::Vector3d(double)> velocity_m_s;          ///< of the centre, horizontal
-  std::function<Eigen::Vector3d(double)> contact_velocity_m_s;  ///< of the contact point; zero while it grips
+  std::function<Eigen::Vector3d(double)> velocity_m_s;          ///< velocity of the centre, horizontal
+  std::function<Eigen::Vector3d(double)> contact_velocity_m_s;  ///< of the contact point; zero with grip
   double duration_s = 10.0;
   double radius_m = kRadius_m;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
@@ -69,13 +69,13 @@ inline RollingTruth roll(const RollingMotion& motion) {
   return truth;
 }
 
-/// Speed of a move of `length` from rest to rest over [start, start + duration]: the minimum-jerk profile.
+/// Speed of a motion of `length` from rest to rest over [start, start + duration], with a minimum-jerk profile.
 inline double minimum_jerk_speed(double t, double start_s, double duration_s, double length_m) {
   const double x = std::clamp((t - start_s) / duration_s, 0.0, 1.0);
   return length_m / duration_s * 30.0 * x * x * (1.0 - x) * (1.0 - x);
 }
 
-/// One metre along x, then one along y, each in 2.5 s, with rests of 2 s at both ends; 10 s.
+/// One metre along x, then one metre along y, each in 2.5 s, with rests of 2 s at both ends; 10 s in total.
 inline Eigen::Vector3d l_shape(double t) {
   return {minimum_jerk_speed(t, 2.0, 2.5, 1.0), minimum_jerk_speed(t, 5.5, 2.5, 1.0), 0.0};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Links where it lays out memory as the library does, and nowhere else.
+// Must link only if its memory layout is that of the library.
 #include <cstdio>
 #include <tumble/common/status.hpp>
 

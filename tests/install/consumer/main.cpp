@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot's board: after a second of rest a 29 cm sphere rolls half a turn about y without slip, theta(t) = pi/2 (1 -
-// cos(pi t)), seen by an IMU at its centre; that is half of its circumference along x.
+// Example for a robot: after a second of rest, a 29 cm sphere rolls half a revolution about y without slip, theta(t) =
+// pi/2 (1 - cos(pi t)). An IMU at its centre measures the motion, which is half of the circumference along x.
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -7,7 +7,7 @@
 
 using Cloud = pcl::PointCloud<pcl::PointXYZINormal>;
 
-// a map to PCD and PLY by PCL's own writers, and back with normals and uncertainty
+// writes a map to PCD and PLY by PCL's writers, and reads it back with normals and uncertainty
 int main() {
   std::vector<tumble::MapPoint> map(3);
   for (std::size_t k = 0; k < map.size(); ++k) {

@@ -39,9 +39,9 @@ TYPED_TEST(Baseline, RefusesBadParams) {
   }
 }
 
-/// How far a filter may come from a turn at a constant rate of 1.37 rad/s with gravity alone in the accelerometer.
-/// Those that correct the attitude that they have predicted, with a force that agrees, stay on it to rounding; Mahony's
-/// compares the force with the attitude of the step before, |w| dt behind, and its integral takes that for a bias.
+/// Returns the bound on a filter's error for a rotation at a constant rate of 1.37 rad/s with only gravity in the
+/// accelerometer. Filters that correct the predicted attitude have only rounding errors. Mahony's filter compares the
+/// force with the attitude of the previous step, which lags by |w| dt, and its integral counts this as a bias.
 template <typename Filter>
 double rotation_error_max_rad() {
   return 1e-10;  // measured 1e-12
@@ -92,7 +92,7 @@ TEST(Complementary, TiltDecaysWithItsTimeConstantAtAnyRate) {
 TEST(Complementary, BiasLeavesATiltOfBiasTimesTau) {
   const Complementary filter({.tau_s = 0.396});
   const double bias = 0.005;
-  // steady state: what a step adds and what it takes away; the discrete sum differs from bias tau by half a step
+  // steady state: correction per step equals bias per step; the discrete sum differs from bias tau by half a step
   const double expected = bias * 0.396;
   EXPECT_NEAR(tilt(rest_with_bias(filter, bias, 10.0).q_WI), expected, bias * seconds(kPeriod_ns));
 }
@@ -122,7 +122,7 @@ TEST(Complementary, LevelsItselfFromUpsideDown) {
 TEST(Mahony, IntegralTakesUpTheBiasWithTheRightSign) {
   const Mahony filter({.proportional_rad_s = 1.0, .integral_rad_s2 = 0.3});
   const Mahony::State state = rest_with_bias(filter, 0.005, 60.0);
-  // poles at -0.5 +- 0.22i rad/s: the rest after 60 s is exp(-30)
+  // poles at -0.5 +- 0.22i rad/s: the remaining error after 60 s is exp(-30)
   EXPECT_NEAR(state.integral_rad_s.x(), -0.005, 1e-10);
   EXPECT_NEAR(tilt(state.q_WI), 0.0, 1e-10);
 }
@@ -147,7 +147,8 @@ TEST(Eskf, FindsTheBiasAndKnowsHowWell) {
 }
 
 TEST(Eskf, SteadyTiltVarianceOfTheScalarFilter) {
-  // no bias in the state: P^2 = q r for the continuous scalar filter, q the gyro's and r the accelerometer's density
+  // no bias in the state: P^2 = q r for the continuous scalar filter, with the densities q of the gyro and r of the
+  // accelerometer
   const Eskf::Params params{.gyro_noise_rad_sqrts = 1e-3,
                             .bias_walk_rad_s_sqrts = 0.0,
                             .bias_sigma_start_rad_s = 0.0,
@@ -169,7 +170,7 @@ TEST(Vqf, RestGivesTheBiasMotionDoesNotNeedToStop) {
 }
 
 TEST(Vqf, OscillatingAccelerationAveragesOut) {
-  // 3 m/s^2 at 1 Hz, no rotation: tilt of the basic filter is acceleration / g times the low-pass's (f_c / f)^2
+  // 3 m/s^2 at 1 Hz without rotation: the tilt of the basic filter is acceleration / g times the low-pass's (f_c / f)^2
   const Vqf filter({.rest_bias_estimation = false, .motion_bias_estimation = false});
   Vqf::State state;
   double worst = 0.0;
@@ -184,7 +185,7 @@ TEST(Vqf, OscillatingAccelerationAveragesOut) {
   EXPECT_NEAR(worst, 3.0 / kGravity_m_s2 * gain, 0.05 * 3.0 / kGravity_m_s2 * gain);
 }
 
-/// The slope form of the low-pass against the printed biquad (direct form II transposed) on an irregular signal.
+/// Compares the slope form of the low-pass with the printed biquad (direct form II transposed) on an irregular signal.
 TEST(LowPass, IsTheButterworthBiquad) {
   const double tau = 0.5, dt = 0.004, warp = low_pass_prewarp(tau, dt);
   const double d = warp * warp + std::numbers::sqrt2 * warp + 1.0;
@@ -199,7 +200,7 @@ TEST(LowPass, IsTheButterworthBiquad) {
     mean += (input(k) - mean) / (k + 1);
     ASSERT_NEAR(filter.value[0], mean, 1e-12);
   }
-  // both forms at rest on the mean
+  // both forms start at rest on the mean
   filter.input[0] = mean;
   double s0 = mean * (1.0 - b0), s1 = mean * (b2 - a2);
   for (const int end = k + 1000; k < end; ++k) {

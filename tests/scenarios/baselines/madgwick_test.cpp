@@ -19,13 +19,13 @@ using testing::kGravity_m_s2;
 using testing::kPeriod_ns;
 using testing::tilt;
 
-/// The published step written a second way: q as (w, x, y, z), the rate as a 4x4 matrix, the objective through the
-/// rotation matrix R(q), and its gradient by central differences instead of a printed Jacobian.
+/// A second implementation of the published step: q as (w, x, y, z), the rate as a 4x4 matrix, the objective through
+/// the rotation matrix R(q), and its gradient by central differences instead of a printed Jacobian.
 Eigen::Vector4d reference_step(const Eigen::Vector4d& q, const Eigen::Vector3d& w, const Eigen::Vector3d& f,
                                double gain, double dt) {
   const Eigen::Vector3d up = f.normalized();
   const auto objective = [&up](const Eigen::Vector4d& p) {
-    // third row of R(q) in the form of the report (eq 25): not the one of a general |q|, which is where forms differ
+    // third row of R(q) in the form of the report (eq 25); the forms differ for |q| other than 1
     const Eigen::Vector3d row(2 * (p[1] * p[3] - p[0] * p[2]), 2 * (p[0] * p[1] + p[2] * p[3]),
                               2 * (0.5 - p[1] * p[1] - p[2] * p[2]));
     return 0.5 * (row - up).squaredNorm();
@@ -55,12 +55,13 @@ TEST(Madgwick, AgreesWithAMatrixFormStepByStep) {
     const Eigen::Vector4d got(state.q_WI.w(), state.q_WI.x(), state.q_WI.y(), state.q_WI.z());
     worst = std::max(worst, (got - expected).cwiseAbs().maxCoeff());
   }
-  // differences of 1e-5 leave ~1e-10 of the gradient, more where it is small, times gain dt = 4e-4; measured 8.6e-12
+  // differences of 1e-5 leave an error of ~1e-10 of the gradient, larger if the gradient is small, times gain dt =
+  // 4e-4; measured 8.6e-12
   EXPECT_LT(worst, 1e-10);
   EXPECT_GT(worst, 0.0) << "nothing was compared";
 }
 
-/// The same filter written out once more with the Jacobian of the report, on one sample with numbers done by hand.
+/// A second implementation with the Jacobian of the report, for one sample computed by hand.
 TEST(Madgwick, OneStepByHand) {
   // q = identity, f along +y: F = (0, -1, 1), s = J^T F = (w 0, x -2, y 0, z 0) -> unit (0, -1, 0, 0)
   const Madgwick filter({.gain_rad_s = 0.5});
@@ -75,7 +76,7 @@ TEST(Madgwick, OneStepByHand) {
 }
 
 TEST(Madgwick, CorrectsSmallTiltAtTwiceTheGainAndLargeTiltMoreSlowly) {
-  // the published gradient has a part along q, lost in the normalisation: 2 gain / sqrt(1 + 4 tan^2(tilt / 2))
+  // the published gradient has a component along q, which normalisation removes: 2 gain / sqrt(1 + 4 tan^2(tilt / 2))
   const double gain = 0.05;
   const Madgwick filter({.gain_rad_s = gain});
   for (const double angle : {0.01, 0.1, 0.6, 1.5, 2.9}) {
@@ -99,7 +100,7 @@ TEST(Madgwick, ChattersByTwiceGainTimesStepOnPerfectData) {
   for (int k = 1; k <= 50; ++k) {
     const Eigen::Quaterniond before = state.q_WI;
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, state).ok());
-    // a fixed-size step to and fro about the truth: the sign alternates and the size never shrinks
+    // a step of fixed size alternates around the truth: the sign changes and the size never decreases
     const double moved = so3::log(before.conjugate() * state.q_WI).x();
     EXPECT_NEAR(std::abs(moved), step, 1e-6 * step);
     if (k > 1) {
@@ -120,12 +121,12 @@ TEST(Madgwick, UpsideDownIsASaddleThatTheGyroLeaves) {
   state.last_time_ns = 0;
   for (int k = 1; k <= 1000; ++k)
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, -kGravity_m_s2}, 0}, state).ok());
-  // 4 s at 1 rad/s suffice for half a turn; what is left is the chatter of 4 mrad
+  // 4 s at 1 rad/s suffice for half a revolution; the remaining error is an oscillation of 4 mrad
   EXPECT_NEAR(tilt(state.q_WI), std::numbers::pi, 0.0041);
 }
 
 TEST(Madgwick, StandingGyroStillCorrects) {
-  // reference implementations return q unchanged when the rate is exactly zero; that is an error, not the filter
+  // reference implementations return q unchanged if the rate is exactly zero, which is an error of the implementations
   const Madgwick filter({.gain_rad_s = 0.1});
   Madgwick::State state;
   state.q_WI = so3::exp({0.1, 0.0, 0.0});

@@ -13,7 +13,7 @@ namespace {
 
 constexpr TimeNs kStep_ns = 10'000'000;
 
-/// Level, at rest for the first sample and from then on accelerated along x by 1 m/s^2; 100 Hz.
+/// A level sensor at 100 Hz, at rest for the first sample, then accelerated along x by 1 m/s^2.
 std::vector<ImuSample> accelerated(int count) {
   std::vector<ImuSample> samples(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
@@ -36,11 +36,11 @@ TEST(PublishedImuOdometry, StaysUntilAVelocityIsFedBackAndIntegratesTheForceFrom
   // v t + a t^2 / 2 over 0.1 s
   EXPECT_NEAR(odometry.pose(20 * kStep_ns).translation().x(), 0.205, 1e-9);
   EXPECT_NEAR(odometry.velocity_m_s(20 * kStep_ns).x(), 2.1, 1e-9);
-  // one of 50 ms ago: what was added since is added again
+  // a correction of 50 ms ago: the later motion is added again
   odometry.feed_back({5.0, 0.0, 0.0}, 15 * kStep_ns);
   odometry.advance(21 * kStep_ns);
   EXPECT_NEAR(odometry.velocity_m_s(21 * kStep_ns).x(), 5.06, 1e-9);
-  // between samples, and not beyond the last that was integrated
+  // between samples, and at most until the last integrated sample
   EXPECT_NEAR(odometry.pose(5 * kStep_ns / 2 + 15 * kStep_ns).translation().x(),
               0.5 * (odometry.pose(17 * kStep_ns).translation().x() + odometry.pose(18 * kStep_ns).translation().x()),
               1e-12);
@@ -54,7 +54,7 @@ struct InARoom {
   std::vector<std::vector<LidarPoint>> sweeps;
 };
 
-/// So gentle that the chain's own errors hardly show.
+/// A motion so gentle that the chain's own errors are small.
 InARoom gentle(int sweeps) {
   InARoom out;
   out.motion.spin_rad_s = 0.5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The families of methods that stand beside ours, each on the motion that it was made for, in closed form, and on one
-// that it cannot do.
+// Tests the other families of rate methods, each on the motion that it is made for, in closed form, and on a motion for
+// which it must fail.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double kRail = 10.5, kPeriod = 0.01, kGravity = 9.80665;
 
-// A swing about a fixed horizontal axis, smooth, from rest to rest, past the rail once: rate = peak sin^2(pi t / T).
+// A smooth swing about a fixed horizontal axis from rest to rest, beyond the limit once: rate = peak sin^2(pi t / T).
 struct Swing {
   Vector3d axis = Vector3d(0.2, 1.0, 0.1).normalized();
   double peak = 13.0, duration = 0.6, rest = 1.0;
@@ -42,7 +42,7 @@ struct Swing {
   std::size_t count() const { return static_cast<std::size_t>(std::lround((2.0 * rest + duration) / kPeriod)); }
   double middle(std::size_t k) const { return (static_cast<double>(k) + 0.5) * kPeriod; }
   Vector3d truth(std::size_t k) const { return axis * rate(middle(k)); }
-  // a constant vector of the world, in the turning axes
+  // a constant world vector in the rotating axes
   Vector3d turned(const Vector3d& v_W, std::size_t k) const { return Eigen::AngleAxisd(-angle(middle(k)), axis) * v_W; }
   Vector3d force_at(const Vector3d& p_I_m, std::size_t k) const {
     const Vector3d w = truth(k), alpha = axis * acceleration(middle(k));
@@ -79,7 +79,7 @@ double worst_of(const Swing& swing, Run run) {
   EXPECT_TRUE(status.ok()) << status.message();
   if (states.size() != swing.count()) return std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < states.size(); ++k) {
-    EXPECT_GE(states[k].clipped_axes != 0, swing.clipped(k)) << k;  // the ragged edge may count too
+    EXPECT_GE(states[k].clipped_axes != 0, swing.clipped(k)) << k;  // partly clipped windows at the edge may count too
     EXPECT_GT(states[k].covariance_rad2_s2(1, 1), 0.0) << k;
   }
   return swing.worst([&](std::size_t k) { return states[k].w_WI_I_rad_s; });
@@ -103,7 +103,7 @@ TEST(ClippedBaseline, BridgesASwingThatPassesTheRailOnce) {
   // measured 0.21 and 0.02: the snap of a sine is small
   EXPECT_LT(worst_baseline(swing, ClippedBaseline::Kind::interpolate), 0.35 * raw(swing));
   EXPECT_LT(worst_baseline(swing, ClippedBaseline::Kind::constant_jerk), 0.2 * raw(swing));
-  // a random walk stands still over the gap: nothing is recovered, nothing is made worse
+  // a random walk is constant over the gap: it neither improves nor worsens the rate
   EXPECT_NEAR(worst_baseline(swing, ClippedBaseline::Kind::reject), raw(swing), 0.05 * raw(swing));
 }
 
@@ -124,7 +124,7 @@ TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
     });
   };
   EXPECT_LT(run(auxiliary_imus), 0.1 * raw(swing));
-  // negative control: nothing to tell the rate from
+  // negative control: no sensor measures the rate
   EXPECT_GT(run({}), 0.3 * raw(swing));
   auxiliary_imus[1].specific_force_m_s2.pop_back();
   std::vector<RateState> out;
@@ -134,7 +134,7 @@ TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
 
 TEST(StandstillSmoother, SpreadsTheTiltBetweenTwoRests) {
   Swing swing;
-  swing.peak = 11.4;  // a few samples: what is lost must stay a fraction of a radian
+  swing.peak = 11.4;  // few clipped samples: the missing rotation must remain a fraction of a radian
   const std::vector<ImuSample> samples = swing.samples();
   const double worst = worst_of(swing, [&](std::vector<RateState>& out) {
     return StandstillSmoother({.rails = rails()}).estimate(samples, out);
@@ -152,7 +152,7 @@ TEST(PublishedFamilies, RefuseBadInput) {
     EXPECT_EQ(estimate(std::span<const ImuSample>{}).error_code, ErrorCode::empty);
     EXPECT_EQ(estimate(std::span<const ImuSample>(spoilt)).error_code, ErrorCode::non_finite);
     EXPECT_EQ(estimate(std::span<const ImuSample>(falling)).error_code, ErrorCode::time_order);
-    EXPECT_EQ(out.size(), 3u);  // nothing is written
+    EXPECT_EQ(out.size(), 3u);  // the output is unchanged
   };
   refuses([&](std::span<const ImuSample> s) { return ClippedBaseline(ClippedBaseline::Params{}).estimate(s, out); });
   refuses([&](std::span<const ImuSample> s) {
@@ -166,10 +166,10 @@ TEST(PublishedFamilies, RefuseBadInput) {
   EXPECT_THROW(StandstillSmoother({.rails = {}, .gravity_m_s2 = 0.0}), InvalidParams);
 }
 
-// A rate that passes the rail with constant slope: loss and reading in closed form.
+// A rate that crosses the limit with constant slope: deficit and reading in closed form.
 TEST(SubsampleSaturation, IsExactForAConstantSlope) {
-  for (const double slope : {0.5, 2.0, 5.0}) {    // per window
-    for (const double share : {0.2, 0.5, 0.8}) {  // of the window that is hidden
+  for (const double slope : {0.5, 2.0, 5.0}) {    // slope per window
+    for (const double share : {0.2, 0.5, 0.8}) {  // clipped share of the window
       const double free = 1.0 - share, reading = kRail - 0.5 * free * free * slope;
       const double unclipped = reading + 0.5 * share * share * slope, neighbour = unclipped - slope;
       const SubsampleSaturation loss = subsample_saturation(reading, neighbour, kRail, 1e-6);
@@ -178,15 +178,16 @@ TEST(SubsampleSaturation, IsExactForAConstantSlope) {
       EXPECT_GT(loss.sigma_rad_s, 0.0);
     }
   }
-  EXPECT_FALSE(subsample_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // hidden all along
-  EXPECT_FALSE(subsample_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // but for a hundredth
-  // a plateau that sinks, as of a rail tilted by a thousandth: flagged throughout, and no step to a neighbour
+  EXPECT_FALSE(subsample_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // completely clipped
+  EXPECT_FALSE(subsample_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // clipped except for a hundredth
+  // a slowly decreasing plateau, as for a limit tilted by a thousandth: all readings are flagged, without a step to a
+  // neighbour
   EXPECT_FALSE(subsample_saturation(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).saturated);
   EXPECT_TRUE(subsample_saturation(kRail - 0.05, kRail - 0.3, kRail, 5e-3).saturated);
 }
 
-// Readings that sink from sample to sample along a tilted rail, all of them flagged: none of them met it in a part of
-// its window, but for the one that comes after a free one.
+// All readings decrease from sample to sample along a tilted limit and are flagged. None of them has a partly clipped
+// window, except a reading after an unclipped reading.
 TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
   RailDetector::State state;
   state.channels[0].rail = kRail;
@@ -205,7 +206,7 @@ TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
     now.clipping.gyro = 1;
     mark_subsample_saturation(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
     EXPECT_EQ(now.subsample_saturated, k == 1 ? 1 : 0) << k;
-    // negative control: as if the one before had been free
+    // negative control: as if the previous reading had been unclipped
     ImuSample before = samples[k - 1];
     before.device_clip_flags = 0;
     mark_subsample_saturation(rails, state, 5e-3, &before, now, &samples[k + 1]);

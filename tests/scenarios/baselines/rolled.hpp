@@ -10,7 +10,7 @@
 
 namespace tumble::baselines {
 
-/// State of a method that was given the samples `from` to `to` - 1 of the way and their true attitudes.
+/// Returns the state of a method after the samples `from` to `to` - 1 of the path, with their true attitudes.
 template <typename Method>
 typename Method::State rolled(const Method& method, const testing::RollingTruth& truth, std::size_t from,
                               std::size_t to, typename Method::State state = {}) {

@@ -29,7 +29,7 @@ TEST(RollingOdometry, SignsOfTheRollingLaw) {
 }
 
 TEST(RollingOdometry, StraightRollInTurningBodyAxes) {
-  // the body turns with the roll about a world axis in the plane: two metres, 13.8 rad
+  // the body rotates about a world axis in the plane as it rolls: two metres, 13.8 rad
   const Eigen::Vector3d w_W(0.6, 2.0, 0.0);
   const Eigen::Quaterniond start = so3::exp({0.3, -1.1, 0.7});
   const RollingOdometry odometry({.radius_m = kRadius_m});
@@ -43,8 +43,8 @@ TEST(RollingOdometry, StraightRollInTurningBodyAxes) {
 }
 
 TEST(RollingOdometry, CircleClosesOnItself) {
-  // heading turns at 1 rad/s, speed 0.3 m/s: a circle of 0.3 m; whole turn sampled evenly, so the trapezoid closes
-  // exactly
+  // the heading rotates at 1 rad/s, with a speed of 0.3 m/s: a circle of 0.3 m; a whole revolution is sampled evenly,
+  // so the trapezoid rule is exact
   constexpr int kSteps = 1571;
   const double dt = 2.0 * std::numbers::pi / kSteps, speed = 0.3;
   const TimeNs period_ns = std::llround(dt * 1e9);
@@ -58,7 +58,7 @@ TEST(RollingOdometry, CircleClosesOnItself) {
     widest = std::max(widest, state.p_WG_m.norm());
   }
   EXPECT_NEAR(state.p_WG_m.norm(), 0.0, 1e-12);
-  EXPECT_NEAR(widest, 2.0 * 0.3, 1e-5);  // diameter; the trapezoid falls short by dt^2 / 12 = 1.3e-6 of it
+  EXPECT_NEAR(widest, 2.0 * 0.3, 1e-5);  // diameter; the trapezoid rule is short by dt^2 / 12 = 1.3e-6 of it
 }
 
 TEST(RollingOdometry, TrapezoidIsExactForLinearRateAndUnevenSteps) {
@@ -75,7 +75,8 @@ TEST(RollingOdometry, TrapezoidIsExactForLinearRateAndUnevenSteps) {
 }
 
 TEST(RollingOdometry, SlopeMovesAlongThePlane) {
-  const Eigen::Vector3d normal = Eigen::Vector3d(-std::sin(0.3), 0.0, std::cos(0.3));  // climbing towards +x by 0.3 rad
+  // slope of 0.3 rad, upwards towards +x
+  const Eigen::Vector3d normal = Eigen::Vector3d(-std::sin(0.3), 0.0, std::cos(0.3));
   const RollingOdometry odometry({.radius_m = kRadius_m, .normal_W = normal});
   RollingOdometry::State state;
   for (int k = 0; k <= 250; ++k) ASSERT_TRUE(odometry.step(k * kSample_ns, {0, 2, 0}, kLevel, state).ok());

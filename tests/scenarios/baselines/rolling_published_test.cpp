@@ -73,8 +73,8 @@ TEST(DoubleIntegration, FollowsASphereThatRollsAndSlidesWhileNothingIsWrong) {
                        return {t > 3.0 && t < 4.0 ? -0.3 * std::sin(std::numbers::pi * (t - 3.0)) : 0.0, 0, 0};
                      }});
   const DoubleIntegration::State end = rolled(DoubleIntegration({}), truth);
-  // the mean force of a window is turned as if the body stood at its middle: (w dt)^2 / 24 of g at up to 5 rad/s is
-  // 1.6e-4 m/s^2, for some seconds; measured 2.6 mm
+  // the mean force of a window is rotated with the attitude at its middle: an error of (w dt)^2 / 24 of g, which is
+  // 1.6e-4 m/s^2 at up to 5 rad/s, for some seconds; measured 2.6 mm
   EXPECT_NEAR((end.p_WI_m - truth.p_WG_m.back()).norm(), 0.0, 5e-3);
   EXPECT_NEAR(truth.p_WG_m.back().norm(), std::numbers::sqrt2, 1e-6) << "the truth itself";
 }
@@ -89,7 +89,7 @@ TEST(DoubleIntegration, TiltErrorGrowsWithTheSquareOfTime) {
 TEST(AutogainFusion, CleanRollEndsFarOffAsPublished) {
   const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
   const double error = (rolled(AutogainFusion({}), truth).p_WG_m - truth.p_WG_m.back()).norm();
-  // 0.77 m on another L of the same size; a fusion that did well here would not be the published one
+  // the paper has 0.77 m on another L of the same size; a small error would show that this is not the published fusion
   EXPECT_GT(error, 0.4);
   EXPECT_LT(error, 1.2);
 }
@@ -97,12 +97,12 @@ TEST(AutogainFusion, CleanRollEndsFarOffAsPublished) {
 TEST(AutogainFusion, WithoutAccelerationItIsHalfOfRolling) {
   const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
   const AutogainFusion half({.limiter = 0.0});
-  // eq 12 takes the apparent climb from it as well: measured 0.076 m
+  // eq 12 also subtracts the apparent climb: measured 0.076 m
   EXPECT_NEAR((rolled(half, truth).p_WG_m.head<2>() - 0.5 * truth.p_WG_m.back().head<2>()).norm(), 0.0, 0.1);
 }
 
-/// With the integral at its limit the fused step is a fixed multiple of the rolling step: what the published figures
-/// show.
+/// While the integral is at its limit, the fused step is a fixed multiple of the rolling step, as in the published
+/// figures.
 TEST(AutogainFusion, SaturatedStepsHaveTheRatiosOfThePublishedFigures) {
   const auto ratio = [](double rotation_weight, double sign) {
     const AutogainFusion method({.limiter = 1.1, .rotation_weight = rotation_weight});
@@ -113,7 +113,7 @@ TEST(AutogainFusion, SaturatedStepsHaveTheRatiosOfThePublishedFigures) {
     EXPECT_TRUE(method.step(sample, Eigen::Quaterniond::Identity(), state).ok());
     return state.v_WG_m_s.x() / (0.145 * 3.0);
   };
-  // what is left is the climb that the turn within the sample leaves to eq 12; measured 1.3e-12
+  // the remaining error is the climb in eq 12 due to the rotation within the sample; measured 1.3e-12
   EXPECT_NEAR(ratio(0.5, 1.0), 1.05, 1e-9);
   EXPECT_NEAR(ratio(0.5, -1.0), -0.05, 1e-9);
   EXPECT_NEAR(ratio(1.0, 1.0), 1.55, 1e-9);
@@ -154,7 +154,7 @@ TEST(AutogainFusion, MountingDoesNotMatterWithTheNormBasedFactor) {
 }
 
 TEST(AutogainFusion, EachSwitchChangesTheResult) {
-  // a start that is turned, so that no world axis is a body axis
+  // a rotated start, so that no world axis is a body axis
   const RollingTruth truth = testing::roll({.velocity_m_s = [](double t) -> Eigen::Vector3d {
                                               return Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) * l_shape(t);
                                             },

@@ -20,7 +20,7 @@ using testing::RollingTruth;
 
 constexpr TimeNs k125Hz_ns = 8'000'000;
 
-/// A smooth pulse of contact velocity along x: rises and falls over a fifth of its length.
+/// A smooth pulse of contact velocity along x: increases and decreases over a fifth of its length.
 std::function<Eigen::Vector3d(double)> pulse(double start_s, double length_s, double speed_m_s) {
   return [=](double t) -> Eigen::Vector3d {
     const double edge = 0.2 * length_s;
@@ -63,7 +63,7 @@ TEST(SlipObserver, CleanRollOpensNoEvent) {
 }
 
 TEST(SlipObserver, IdealSlipAndSlideAreFound) {
-  for (const double speed : {-0.6, 0.3}) {  // spins too fast; turns too slowly
+  for (const double speed : {-0.6, 0.3}) {  // rotates too fast; rotates too slowly
     const RollingTruth truth = truth_with(pulse(2.8, 0.8, speed));
     const double rolling = rolling_end_error(truth);
     EXPECT_GT(rolling, 0.15) << speed;

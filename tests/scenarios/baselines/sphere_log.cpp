@@ -25,7 +25,7 @@ std::size_t column(const std::vector<std::string>& names, const std::string& nam
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// "1617333602.223639727" without the rounding of a double.
+/// Converts "1617333602.223639727" without the rounding of a double.
 TimeNs parse_stamp(const std::string& text) {
   const std::size_t point = text.find('.');
   if (point == std::string::npos || text.size() != point + 10) throw std::runtime_error("stamp " + text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The line that is published: it comes back as it was, and any other is refused.
+// Tests the published line of results: reading restores it, and invalid lines are rejected.
 #include "scenarios/bench/bench_result.hpp"
 
 #include <gmock/gmock.h>

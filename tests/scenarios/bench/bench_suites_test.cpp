@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The standard suites never change, and the results that the tree holds are of them.
+// The standard suites never change, and the stored results belong to them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace tumble::scenarios {
 namespace {
 
-/// A digest that fails: the suite was changed. Results that people have published are of the old one: leave it, and
-/// make a successor of another version.
+/// If this digest differs, the suite was changed. Published results belong to the old suite, so keep it and add a suite
+/// of a new version.
 const std::map<Kind, std::string> kDigests = {{Kind::rate, "dc13261d5f058cc69759763879448e51"},
                                               {Kind::attitude, "c48d311ba1ac626af0433af99f04e552"},
                                               {Kind::position, "489bd161b35d595dade7d9c9d5e3889a"},

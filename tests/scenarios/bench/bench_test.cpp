@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a page of the bench says of results whose medians are known by heart.
+// Tests the page of the bench for results with known medians.
 #include "scenarios/bench/bench.hpp"
 
 #include <gmock/gmock.h>
@@ -76,7 +76,7 @@ TEST(Bench, ResultsOfAnotherSimulationAreTold) {
   const BenchResult a = some_result("a", {0.1, 0.2, 0.3});
   BenchResult b = some_result("b", {0.1, 0.2, 0.3});
   EXPECT_EQ(other_recording(a, b), "");
-  b.draws[2].recording = "";  // of a draw whose process died
+  b.draws[2].recording = "";  // a draw whose process crashed
   EXPECT_EQ(other_recording(a, b), "");
   b.draws[2].recording = "another";
   EXPECT_EQ(other_recording(a, b), "hill 3");

@@ -11,8 +11,8 @@ namespace tumble::scenarios::testing {
 
 inline constexpr const char* kError = "rate_error_clipped_median_rad_s";
 
-/// A result of the draws `hill 1`, `hill 2`, ... with these errors; a negative one: the run crashed; none: nothing was
-/// clipped. The first draw is mild, all others are wild.
+/// Returns a result of the draws `hill 1`, `hill 2`, ... with these errors. A negative error means a crash; a missing
+/// error means no clipping. The first draw is mild, all others are wild.
 inline BenchResult some_result(const std::string& method, const std::vector<double>& errors, std::size_t none = 99) {
   BenchResult result;
   result.suite = "small";

@@ -18,9 +18,11 @@ Scenario fixed(const std::string& name) {
   return fixed_as(scenario, draw(tree_data(), scenario, 1));
 }
 
-/// Of every scenario: each can be taken away by itself, what is left can be drawn, and nothing is left to take of it.
+/// For every scenario: each complication can be removed separately, the rest can be simulated, and no removal is
+/// possible twice.
 TEST(Complications, EachGoesAndTheDrawStays) {
-  const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};  // all are many seconds
+  // testing all scenarios takes many seconds
+  const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};
   for (const std::string& name : scenario_names(tree_data())) {
     const Scenario scenario = fixed(name);
     const std::vector<Complication> all = complications(scenario);
@@ -44,7 +46,7 @@ TEST(Complications, EachGoesAndTheDrawStays) {
   }
 }
 
-/// A line whose numbers no type has would never be found by the test above.
+/// The test above would not find a line for numbers that no type has.
 TEST(Complications, TheErrorsOfTheRigsSensorsAreThere) {
   std::set<std::string> names;
   for (const Complication& each : complications(fixed("hill_consumer"))) names.insert(each.name);

@@ -15,7 +15,7 @@ using Indices = std::vector<std::size_t>;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Fails when all of `causes` are there.
+/// Fails if all `causes` are present.
 struct Conjunction {
   std::set<std::size_t> causes;
   int trials = 0;
@@ -63,7 +63,7 @@ TEST(LeastFailingSet, WhatNeedsAllKeepsAll) {
   EXPECT_TRUE(least.complete);
 }
 
-// one cause of 32: all at once, two halves at each of five levels, the cause alone once more, less what is known
+// one cause of 32: all at once, two halves at each of five levels, the cause alone again, minus known results
 TEST(LeastFailingSet, ASingleCauseCostsTwoTrialsALevel) {
   for (std::size_t cause = 0; cause < 32; ++cause) {
     Conjunction test{{cause}};
@@ -90,7 +90,7 @@ TEST(LeastFailingSet, ASpentBudgetLeavesASetThatFailsAndSaysSo) {
   }
 }
 
-// either of two causes will do: which one is left is a matter of order, that only one is left is not
+// either of two causes is sufficient: which one remains depends on the order, but only one remains
 TEST(LeastFailingSet, OfTwoSufficientCausesOneIsLeft) {
   const LeastSet least = least_failing_set(10, [](const Indices& kept) -> std::optional<bool> {
     return std::binary_search(kept.begin(), kept.end(), 1u) || std::binary_search(kept.begin(), kept.end(), 8u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The named cases of the tree, as files; tools/tumble/gate_cases.cpp runs them.
+// Tests the named cases of the tree as files; tools/tumble/gate_cases.cpp runs them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ TEST(NamedCases, AreCompleteAndExpectWhatThereIs) {
     EXPECT_NO_THROW(require_known(scenario)) << name;
     const Scenario drawn = load_scenario(data, scenario.named_case->scenario);
     const sim::ResolvedSituation situation = draw(data, scenario, scenario.named_case->seed);
-    // every number of the draw stands in the file: what becomes of sheets and defaults moves nothing
+    // the file contains every number of the draw, so later changes of data sheets and defaults have no effect
     EXPECT_EQ(to_yaml(fixed_as(scenario, situation)), to_yaml(scenario)) << name;
     EXPECT_LE(complications(scenario).size(),
               complications(fixed_as(drawn, draw(data, drawn, scenario.named_case->seed))).size())

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 constexpr std::uint64_t kSeed = 5;
 constexpr double kDrawn_s = 6.0, kShortest_s = 3.1;
 
-/// The beginning of a pendulum's swing, whose IMU loses samples: the cheapest of all draws.
+/// The start of a pendulum's swing with lost IMU samples, which is the cheapest draw.
 Scenario losing_samples() {
   Scenario scenario = load_scenario(tree_data(), "swing");
   fix_number(scenario, "duration_s", kDrawn_s);
@@ -35,8 +35,8 @@ bool has_gap(const sim::ImuRecord& imu) {
   return false;
 }
 
-/// Its failure has a known cause: samples are lost, the gyro has a stated range of less than 50 rad/s, and the run is
-/// longer than `kShortest_s`. Nothing else matters to it.
+/// A method that fails for a known cause: samples are lost, the stated gyro range is below 50 rad/s, and the run is
+/// longer than `kShortest_s`. All other parts of the draw have no effect.
 Method breaks_on(bool gaps, bool range) {
   Method method = *find_methods("rate/raw").front();
   method.info.name = "toy";
@@ -69,20 +69,20 @@ TEST(Shrink, FindsTheKnownCauseOfAToyExactly) {
   EXPECT_THAT(names_with(shrunk, Fate::not_tried), ElementsAre());
   EXPECT_GT(names_with(shrunk, Fate::removed).size(), 8u);
 
-  // shorter than a threshold nothing fails; the length found is within its resolution of it
+  // runs below a threshold length do not fail; the found length is within its resolution of the threshold
   const double left_s = shrunk.scenario.duration_s.numbers.front();
   EXPECT_GE(left_s, kShortest_s);
   EXPECT_LE(left_s, kShortest_s + 0.05 * kDrawn_s + 0.02);
   EXPECT_LT(shrunk.scenario.sensors.front().numbers.at("dropout_share").numbers.front(), 0.2);
   EXPECT_EQ(shrunk.scenario.sensors.front().numbers.at("gyro_noise_rad_s_sqrt_hz").numbers.front(), 0.0);
 
-  // the evidence of what is needed: a run that came to its end without it
+  // evidence that a part is needed: a run without it ends without failure
   for (const ShrinkLine& line : shrunk.lines) {
     if (line.without) {
       EXPECT_EQ(line.without->status, OutcomeStatus::ok) << line.what;
     }
   }
-  // what is left fails by itself
+  // the remaining draw fails
   ShrinkOptions once;
   once.budget = 1;
   EXPECT_EQ(shrink(tree_data(), shrunk.scenario, kSeed, toy, once).drawn.status, OutcomeStatus::failed);
@@ -113,7 +113,8 @@ TEST(Shrink, ADrawThatDoesNotFailIsRefused) {
   EXPECT_EQ(runs, 0);
 }
 
-/// Whatever is taken away, the toy fails: without a control nothing is left, with one only what the control bears.
+/// The toy method always fails: without a control method, everything is removed; with one, only the parts that the
+/// control tolerates.
 TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   const Method toy = breaks_on(false, false);
   ShrinkOptions options;
@@ -122,7 +123,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   EXPECT_THAT(names_with(alone, Fate::needed), ElementsAre());
   EXPECT_FALSE(alone.controlled);
 
-  Method control = *find_methods("rate/raw").front();  // needs a rail
+  Method control = *find_methods("rate/raw").front();  // needs a saturation limit
   control.run = [run = control.run](const sim::Sensors& sensors, const sim::Values& values, const OracleInput& oracle) {
     const sim::ImuRecord& imu = sensors.imus.front();
     if (imu.stated_gyro_range_rad_s > 50.0) throw BadInput("no rail");
@@ -134,8 +135,8 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   EXPECT_THAT(names_with(held, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
 }
 
-/// The drawn failure comes from clipped readings. Without a rail the toy fails for another reason, which no true rate
-/// cures: such a reduction is not kept.
+/// The failure is caused by clipped readings. Without a saturation limit, the toy method fails for another reason,
+/// which true rates do not prevent. Such a reduction is rejected.
 TEST(Shrink, OnlyWhatTheSameInputCuresIsKept) {
   Scenario scenario = losing_samples();
   fix_number(scenario, "sensors.imu.gyro_range_rad_s", 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every row of the certificate passes on this build, and fails when one thing of its set-up is wrong.
+// Every row of the certificate passes on this build, and fails if one part of its set-up is wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ CertificateInput input() {
   return {DataRoot{test::source_dir()}, test::program()};
 }
 
-/// "row (subject)" of every entry that does not pass.
+/// Returns "row (subject)" of every entry that does not pass.
 std::vector<std::string> failures(const std::vector<CertificateEntry>& entries) {
   std::vector<std::string> names;
   for (const CertificateEntry& entry : entries) {
@@ -39,7 +39,7 @@ TEST(Certificate, OfThisBuildPassesAndSaysWhatItMeasured) {
   std::vector<std::string> announced;
   CertifyOptions options;
   options.on_row = [&](const CertificateRow& row, double) { announced.push_back(row.name); };
-  // over the data of the tests of sweeps, which then measure none of their own
+  // stored in the test data of sweeps, which then use this certificate
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("tumble_certificate_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
@@ -104,12 +104,12 @@ TEST(Rows, ALeverArmOfOneMillimetreFailsTheSpecificForce) {
   const std::vector<CertificateEntry> entries = certify_flight_force(input(), setup);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_FALSE(entries[0].passes());
-  EXPECT_NEAR(entries[0].value, 18.0 * 18.0 * 0.001, 0.02);  // w^2 r; the small rates beside it change little
+  EXPECT_NEAR(entries[0].value, 18.0 * 18.0 * 0.001, 0.02);  // w^2 r; the small rates of the other axes change little
 }
 
 TEST(Rows, ADropFromElsewhereFailsTheFreeFall) {
   FreeFallSetup setup;
-  setup.stated_height_m = 0.99;  // 2.3 ms sooner, 4.5 steps
+  setup.stated_height_m = 0.99;  // 2.3 ms earlier, 4.5 steps
   EXPECT_THAT(failures(certify_free_fall(input(), setup)), testing::SizeIs(1));
 }
 
@@ -144,7 +144,7 @@ TEST(Rows, ALongStepFailsTheImpactPeak) {
 
 TEST(Rows, SoftnessThatTheEngineCannotFollowFailsItsExponent) {
   ImpactSetup setup;
-  // the engine keeps the time constant of a contact above two steps: below, nothing changes any more
+  // the engine keeps the time constant of a contact above two steps, so smaller values have no effect
   setup.soft_s = 0.008;
   setup.hard_s = 0.005;
   setup.step_s = 0.004;
@@ -202,7 +202,7 @@ TEST(Rows, ATiltOfTwoTenThousandthsFailsTheTiltedRail) {
   TiltedRailSetup setup;
   setup.devices = 1;
   EXPECT_THAT(failures(certify_tilted_rail(input(), setup)), IsEmpty());
-  setup.assumed_tilt = 2e-4;  // a tenth of what real devices keep their tilt to
+  setup.assumed_tilt = 2e-4;  // a tenth of the tilt tolerance of real devices
   EXPECT_THAT(failures(certify_tilted_rail(input(), setup)),
               testing::ElementsAre("tilted_rail_slope (mti30 gyro)", "tilted_rail_slope (mti30 accel)"));
 }
@@ -213,7 +213,7 @@ TEST(Rows, WithoutADeviceTheTiltedRailSaysNothing) {
   EXPECT_EQ(failures(certify_tilted_rail(input(), setup)).size(), 4u);
 }
 
-/// What fails of the planes measured on real gyros, after one of them has been shown to pass.
+/// Returns the failures of the planes measured on real gyros; one of the planes must pass first.
 std::vector<std::string> real_rail_failures(RealRailsSetup setup) {
   setup.devices = 100;
   return failures(certify_real_rails(input(), setup));
@@ -221,7 +221,7 @@ std::vector<std::string> real_rail_failures(RealRailsSetup setup) {
 
 TEST(Rows, ALevelRailIsNoneOfTheRealOnes) {
   EXPECT_THAT(real_rail_failures({}), IsEmpty());
-  // what would be measured against the axis where the interval holds 0 is level too
+  // if the interval contains 0, the measurement relative to the axis is zero too
   EXPECT_THAT(real_rail_failures({.tilt_factor = 0.0}),
               testing::ElementsAre("real_rail_slope (wand x, z)", "real_rail_slope (wand y, z)",
                                    "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)"));
@@ -253,7 +253,7 @@ TEST(Rows, ElementsDrawnHalfAsWideDoNotReachTheRealRails) {
     EXPECT_THAT(failed, testing::Contains("real_rail_slope_drawn (" + std::string(device) + " gyro)"));
   for (const char* device : {"mti30", "vn100", "phidget1044"})
     EXPECT_THAT(failed, testing::Contains("real_rail_offset_drawn (" + std::string(device) + " gyro)"));
-  // the sheet of the fourth states offsets more than twice as wide
+  // the data sheet of the fourth device states offsets more than twice as wide
   EXPECT_THAT(real_rail_failures({.spread_factor = 0.3}), testing::Contains("real_rail_offset_drawn (mpu6050 gyro)"));
 }
 
@@ -264,7 +264,7 @@ TEST(Rows, UprightElementsDoNotReachTheRealRails) {
 
 TEST(Rows, APendulumOfAnotherLengthFailsEnergyAndPeriods) {
   PendulumSetup setup;
-  setup.stated_segment_m = 0.25001;  // of 0.25
+  setup.stated_segment_m = 0.25001;  // instead of 0.25
   EXPECT_THAT(failures(certify_pendulum(input(), setup)),
               testing::ElementsAre("pendulum_energy (pendulum)", "pendulum_period (pendulum)"));
 }

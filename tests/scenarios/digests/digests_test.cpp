@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws give the same bits on every x86-64 with AVX2 and FMA: their digests are kept here, and compared on whatever
-// machine the tests run. A change of the simulation, the models or the catalogue changes them, and then they are
-// accepted anew: the failure prints the line.
+// Draws give identical bits on every x86-64 with AVX2 and FMA. This file stores their digests, and the tests compare
+// them on any machine. A change of simulation, models or catalogue changes the digests. To accept the new digests, copy
+// the line from the failure message.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 struct Kept {
   std::string scenario;
   std::uint64_t seed;
-  std::string lidars;  ///< "lidars", or "none": motion and IMUs alone
+  std::string lidars;  ///< "lidars", or "none": only motion and IMUs
   std::string digest;
 };
 
@@ -63,7 +63,7 @@ std::string name_of(const testing::TestParamInfo<Kept>& of) {
 
 INSTANTIATE_TEST_SUITE_P(, Digests, testing::ValuesIn(kept()), name_of);
 
-// more draws of each scenario, which take minutes
+// additional draws of each scenario, which take minutes
 class DigestsSoak : public Digests {};
 
 TEST_P(DigestsSoak, AreTheKeptOnes) {
@@ -72,7 +72,7 @@ TEST_P(DigestsSoak, AreTheKeptOnes) {
 
 INSTANTIATE_TEST_SUITE_P(, DigestsSoak, testing::ValuesIn(kept("digests_soak.txt")), name_of);
 
-// every scenario of the catalogue has a draw here, and a dozen together with those of the long runs
+// every scenario of the catalogue has a draw here, and a dozen together with the long runs
 TEST(DigestsOf, TheWholeCatalogueAreKept) {
   const std::vector<Kept> all = kept(), more = kept("digests_soak.txt");
   std::size_t with_lidars = 0;

@@ -76,7 +76,7 @@ TEST(DataSheet, UnknownDeviceNamesTheNearest) {
   EXPECT_THAT(fixture::complaint([&] { device_names(nowhere); }), HasSubstr("no_such_folder"));
 }
 
-// it would be simulated as the default, whatever the device has
+// otherwise, the simulation would use the default, whatever the device has
 TEST(DataSheet, ANumberThatIsMissingIsNamed) {
   const DataRoot whole{test::source_dir()}, own{std::filesystem::path(testing::TempDir()) / "data_sheet_without"};
   std::filesystem::create_directories(own.data_sheets());

@@ -25,7 +25,8 @@ std::vector<double> draws(const Distribution& distribution) {
   return out;
 }
 
-/// Largest distance between the empirical distribution of `sample` and the one expected (Kolmogorov-Smirnov).
+/// Returns the largest distance between the empirical distribution of `sample` and the expected distribution
+/// (Kolmogorov-Smirnov).
 double ks_distance(std::vector<double> sample, const std::function<double(double)>& below) {
   std::sort(sample.begin(), sample.end());
   double distance = 0.0;
@@ -41,7 +42,7 @@ double normal_below(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }
 
-/// 1.95 / sqrt(n) is passed by one sample in 1000; seeds are fixed, so a pass stays a pass.
+/// One sample in 1000 exceeds 1.95 / sqrt(n). Seeds are fixed, so a passing test always passes.
 const double kKsBound = 1.95 / std::sqrt(static_cast<double>(kDraws));
 
 TEST(Distribution, DrawsFollowTheStatedLaw) {
@@ -75,7 +76,7 @@ TEST(Distribution, StaysWithinItsEnds) {
 TEST(Distribution, ChoiceTakesEachValueAsOften) {
   const std::vector<double> sample = draws({Shape::choice, {1.0, 2.0, 4.0, 8.0}});
   for (const double value : {1.0, 2.0, 4.0, 8.0}) {
-    // binomial: mean 1000, standard deviation 27; four of them
+    // binomial: mean 1000, standard deviation 27; the bound is four standard deviations
     EXPECT_NEAR(static_cast<double>(std::count(sample.begin(), sample.end(), value)), 1000.0, 110.0) << value;
   }
 }

@@ -55,7 +55,7 @@ TEST(Draw, AddedNumbersAndSensorsLeaveTheOthersAlone) {
   EXPECT_EQ(after.robot, before.robot);
   ASSERT_EQ(after.sensors.size(), 3u);
   EXPECT_EQ(after.sensors[1], before.sensors[0]);
-  // negative control: equal distributions in different places differ
+  // negative control: equal distributions at different places of the file differ
   EXPECT_NE(after.sensors[0].mount_error.at("x_m") * 0.3, after.sensors[1].mount_error.at("x_m"));
 }
 
@@ -69,7 +69,7 @@ TEST(Draw, RefusesADeviceOfAnotherKind) {
       "hill.yaml:11: sensors.imu_reference: device 'mti30' is of kind 'spinning_lidar'; it must be of kind 'imu'");
 }
 
-/// A data root in a folder of its own, gone afterwards.
+/// A data root in a separate folder, which is deleted afterwards.
 class DrawFiles : public testing::Test {
  protected:
   DrawFiles() : data_{std::filesystem::path(testing::TempDir()) / "scenarios_draw_tests_root"} {
@@ -102,7 +102,7 @@ TEST_F(DrawFiles, AbsentOrUnreadableFilesAreNamed) {
   EXPECT_THAT(complaint_of("big"), HasSubstr("larger than 4 MiB"));
 }
 
-/// Written against the simulation's own registries and the project's data sheets.
+/// Scenario with the registries of the simulation and the data sheets of the project.
 const std::string kReal = R"(name: slope
 doc: a rig is pushed down a hill
 duration_s: {uniform: [5, 6]}

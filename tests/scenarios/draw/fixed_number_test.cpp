@@ -30,7 +30,7 @@ TEST(FixNumber, SetsOneNumberAndLeavesTheDrawsOfAllOthersAlone) {
   Scenario scenario = load_scenario(kData, "hill");
   fix_number(scenario, "world.trunk_count", 7);
   fix_number(scenario, "sensors.lidar.mount_error.yaw_rad", 0.125);
-  fix_number(scenario, "sensors.imu.output_rate_hz", 200);  // of the data sheet, until now
+  fix_number(scenario, "sensors.imu.output_rate_hz", 200);  // the data sheet's value before
   fix_number(scenario, "duration_s", 3);
   sim::Situation after = draw(kData, scenario, 5001);
   EXPECT_EQ(after.world.values.at("trunk_count"), 7.0);
@@ -38,7 +38,7 @@ TEST(FixNumber, SetsOneNumberAndLeavesTheDrawsOfAllOthersAlone) {
   EXPECT_EQ(after.sensors[0].values.at("output_rate_hz"), 200.0);
   EXPECT_EQ(after.duration_s, 3.0);
   EXPECT_NE(before.sensors[0].values.at("output_rate_hz"), 200.0) << "or the test shows nothing";
-  // undone by hand, all else is equal
+  // if the change is reverted by hand, all other parts are equal
   after.world.values.set("trunk_count", before.world.values.at("trunk_count"));
   after.sensors[2].mount_error.set("yaw_rad", before.sensors[2].mount_error.at("yaw_rad"));
   after.sensors[0].values.set("output_rate_hz", before.sensors[0].values.at("output_rate_hz"));

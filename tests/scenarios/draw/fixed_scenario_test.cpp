@@ -35,7 +35,7 @@ TEST(FixedScenario, DrawsTheSameOfEveryScenarioAlsoThroughItsText) {
     const Scenario read = parse_scenario(to_yaml(fixed), name, Registry::of_simulation());
     EXPECT_EQ(draw(data(), read, 7), drawn) << name;
     EXPECT_EQ(to_yaml(read), to_yaml(fixed)) << name;
-    // of another seed the numbers are the same, what is random beyond them is not
+    // with another seed, the numbers are the same, but other random parts differ
     sim::Situation other = draw(data(), fixed, 8);
     other.seed = 7;
     EXPECT_EQ(other, static_cast<const sim::Situation&>(drawn)) << name;
@@ -84,7 +84,7 @@ TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_THAT(complaint_after("duration_s: 10", "duration_s: {uniform: [5, 6]}"), HasSubstr("duration_s is drawn"));
 }
 
-/// A tree of its own, with the models of this one.
+/// A separate tree with the models of this tree.
 class CaseFiles : public testing::Test {
  protected:
   CaseFiles() : data_{std::filesystem::path(testing::TempDir()) / "scenarios_draw_cases"} {

@@ -22,7 +22,7 @@ inline const std::array<sim::ComponentType, 1> kRobots = {{{"rig", "a rig", kRig
 inline const std::array<sim::ComponentType, 1> kMotions = {{{"push", "a push", kPush}}};
 inline const std::array<sim::ComponentType, 1> kSensors = {{{"imu", "an IMU", kImu}}};
 
-/// A small registry that stands still while the simulation's grows.
+/// A small registry that remains constant when the simulation's registry grows.
 inline Registry registry() {
   return {kWorlds, kRobots, kMotions, kSensors, kMount};
 }
@@ -48,22 +48,22 @@ values:
   output_rate_hz: {value: 400, unit: Hz, source: "MTi user manual"}
 )";
 
-/// `text` with its only occurrence of `from` replaced; a fixture that no longer holds it is a mistake in the test.
+/// Replaces the only occurrence of `from` in `text`. A missing occurrence is a mistake in the test.
 inline std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("fixture does not hold '" + from + "'");
   return text.replace(at, from.size(), to);
 }
 
-/// A text with a mistake, and what is said of it.
+/// A text with a mistake, and parts of the expected message.
 struct Wrong {
   const char* from;
   const char* to;
-  const char* where;  ///< how the message begins
-  const char* what;   ///< what it holds
+  const char* where;  ///< start of the message
+  const char* what;   ///< part of the message
 };
 
-/// Message of the BadInput that `call` throws; empty when it throws none.
+/// Returns the message of the BadInput that `call` throws; empty if it throws none.
 template <class Call>
 std::string complaint(Call&& call) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library's own sheets of devices say what models/sensors says, where each number has its source.
+// The library's data sheets must agree with models/sensors, where each number has its source.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// Holds each number of a library's sheet to the device's of that name.
+/// Compares each number of a library's sheet with the device's number of the same name.
 class Compare {
  public:
   explicit Compare(sim::Values device) : device_(std::move(device)) {}

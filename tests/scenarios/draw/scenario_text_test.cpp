@@ -121,7 +121,7 @@ TEST(ScenarioText, AcceptsEveryDistributionWithinItsBounds) {
   }
 }
 
-// Cutting or garbling a file must end in a scenario or in BadInput: no crash, no other exception.
+// A truncated or corrupted file must give a scenario or BadInput, never a crash or another exception.
 TEST(ScenarioText, SurvivesTruncationAndFlippedBytes) {
   int refused = 0;
   const auto feed = [&](const std::string& text) {

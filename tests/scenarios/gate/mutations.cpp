@@ -9,19 +9,19 @@ namespace tumble::scenarios::testing {
 namespace {
 
 constexpr double kShift_ns = 1e6;
-constexpr double kBumpLeast_m = 0.004;  // above its height at the start, the sphere stands on something
+constexpr double kBumpLeast_m = 0.004;  // the sphere is on an obstacle if it is this far above its start height
 constexpr double kMapRotation_rad = 0.02;
 constexpr double kBorder_m_s = 0.02;
 constexpr double kTilt_rad = 0.05;
 constexpr double kTurn_rad_s = 0.005;
 constexpr double kSink_m_s = 0.005;
 
-/// Every IMU on the other side of the body's origin.
+/// Mirrors the position of every IMU at the body's origin.
 void flip_lever_arms(sim::Sensors& sensors) {
   for (sim::ImuRecord& imu : sensors.imus) imu.T_BI.translation() *= -1.0;
 }
 
-/// The lidar's place in the body added where it has to be taken away.
+/// Adds the lidar's position in the body instead of subtracting it.
 void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate) {
   const Eigen::Vector3d arm = recording.sensors.lidars.front().T_BL.translation();
   const auto flip = [&](PoseState& pose) { pose.p_WA_m += 2.0 * (pose.q_WA * arm); };
@@ -47,7 +47,7 @@ void double_covariances(const sim::Recording&, Estimate& estimate) {
   scale_covariances(2.0, estimate);
 }
 
-/// The first segment of the truth that lies higher than the start: [begin, end] in ns; empty without one.
+/// Returns the first interval of the truth that is higher than the start: [begin, end] in ns; empty if there is none.
 std::array<std::int64_t, 2> first_bump_ns(const sim::Truth& truth) {
   std::array<std::int64_t, 2> bump = {0, 0};
   for (std::size_t k = 0; k < truth.p_WB_m.size(); ++k) {
@@ -60,7 +60,7 @@ std::array<std::int64_t, 2> first_bump_ns(const sim::Truth& truth) {
   return bump;
 }
 
-/// The way over the first bump is not counted: the estimate stays where it met it.
+/// Omits the path over the first bump: the estimate remains where the sphere met the bump.
 void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   const auto [begin_ns, end_ns] = first_bump_ns(recording.truth);
   Eigen::Vector3d met = Eigen::Vector3d::Zero(), lost = Eigen::Vector3d::Zero();
@@ -71,12 +71,12 @@ void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   }
 }
 
-/// No pose is said to slip or slide.
+/// Classifies no pose as slip or slide.
 void lose_slips(const sim::Recording&, Estimate& estimate) {
   for (sim::ContactLabel& contact : estimate.contacts) contact = sim::ContactLabel::grip;
 }
 
-/// Every second event is said to begin half a second before it does.
+/// Moves the start of every second event half a second earlier.
 void claim_slips_early(const sim::Recording&, Estimate& estimate) {
   constexpr std::int64_t kEarly_ns = 500'000'000;
   bool early = false;
@@ -92,7 +92,7 @@ void claim_slips_early(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// What lies beyond the middle of its points is not kept.
+/// Removes all map points beyond their middle.
 void lose_half_the_map(const sim::Recording&, Estimate& estimate) {
   if (estimate.map.empty()) return;
   const std::size_t half = estimate.map.size() / 2;
@@ -101,14 +101,14 @@ void lose_half_the_map(const sim::Recording&, Estimate& estimate) {
   estimate.map.resize(half);
 }
 
-/// The velocity of every second sweep is a little off: it jumps where two of them meet.
+/// Adds a small error to the velocity of every second sweep, so that it jumps between sweeps.
 void break_sweep_borders(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = 0; k < estimate.sweeps.size(); k += 2) {
     for (PoseState& pose : estimate.sweeps[k].trajectory) pose.v_WA_m_s.x() += kBorder_m_s;
   }
 }
 
-/// The last sweeps are turned by a degree.
+/// Rotates the last sweeps by a degree.
 void turn_the_end(const sim::Recording&, Estimate& estimate) {
   constexpr std::size_t kLast = 5;
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(kMapRotation_rad, Eigen::Vector3d::UnitZ()));
@@ -118,7 +118,7 @@ void turn_the_end(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// The map stands where the run did not.
+/// Displaces the map from the trajectory.
 void move_the_map(const sim::Recording&, Estimate& estimate) {
   for (MapPoint& point : estimate.map) point.position_W_m += Eigen::Vector3f(0.7f, 0.7f, 1.5f);
 }
@@ -128,7 +128,7 @@ void tilt_attitudes(const sim::Recording&, Estimate& estimate) {
   for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = tilt * attitude.q_WA;
 }
 
-/// About the vertical, the further the later.
+/// Rotates poses about the vertical, increasingly with time.
 void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   for (AttitudeState& attitude : estimate.attitudes) {
     const double since_s = 1e-9 * static_cast<double>(attitude.time_ns - estimate.attitudes.front().time_ns);
@@ -136,14 +136,14 @@ void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// Below the ground, the further the later.
+/// Moves poses below the ground, increasingly with distance.
 void sink_poses(const sim::Recording&, Estimate& estimate) {
   for (PoseState& pose : estimate.poses) {
     pose.p_WA_m.z() -= kSink_m_s * 1e-9 * static_cast<double>(pose.time_ns - estimate.poses.front().time_ns);
   }
 }
 
-/// How far towards the state before lies what was true one millisecond ago.
+/// Returns the interpolation weight of the previous state for the truth one millisecond ago.
 template <typename State>
 double share_of_shift(const State& before, const State& now) {
   return std::min(1.0, kShift_ns / static_cast<double>(now.time_ns - before.time_ns));
@@ -157,7 +157,7 @@ void shift_poses(std::vector<PoseState>& poses) {
   }
 }
 
-/// What was true one millisecond before, under the stamps of now: linear between states.
+/// Returns the truth of one millisecond ago with the current time stamps, linear between states.
 void shift_by_1_ms(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = estimate.rates.size(); k-- > 1;) {
     RateState &now = estimate.rates[k], &before = estimate.rates[k - 1];
@@ -176,13 +176,13 @@ void shift_by_1_ms(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// Every point a second time, at its very place.
+/// Inserts every point twice, at the same position.
 void draw_map_twice(const sim::Recording&, Estimate& estimate) {
   const std::vector<MapPoint> once = estimate.map;
   estimate.map.insert(estimate.map.end(), once.begin(), once.end());
 }
 
-/// Every point a second time, from a pose that was a degree off.
+/// Inserts every point a second time, from a pose with an error of a degree.
 void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
   if (estimate.poses.empty()) return;
   const Eigen::Vector3d centre = estimate.poses.front().p_WA_m;

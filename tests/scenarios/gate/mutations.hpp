@@ -7,18 +7,18 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// Faults that somebody might build into a method by mistake, as methods of their own: the true one with something done
-/// to what it is given, or to what it returns. The gate has to refuse each.
+/// Faults that a developer might add to a method by mistake. Each mutation is the true method with changed input or
+/// changed output. The gate must reject each mutation.
 namespace tumble::scenarios::testing {
 
-/// One line of registration each; at least one of `given` and `returned`.
+/// Each mutation is one line of registration, with at least one of `given` and `returned`.
 struct Mutation {
   const char* name;
   const char* scenario;
-  const char* method;                                           ///< "slam/tumble"
-  std::vector<std::string> metrics;                             ///< each of whose rows has to refuse it
-  void (*given)(sim::Sensors& sensors);                         ///< null: as it is
-  void (*returned)(const sim::Recording&, Estimate& estimate);  ///< null: as it is
+  const char* method;                                           ///< for example "slam/tumble"
+  std::vector<std::string> metrics;                             ///< the gate must reject the row of each metric
+  void (*given)(sim::Sensors& sensors);                         ///< changes the input; null: unchanged
+  void (*returned)(const sim::Recording&, Estimate& estimate);  ///< changes the output; null: unchanged
 };
 
 std::span<const Mutation> mutations();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gate of this tree against methods with a fault built in: each has to fail it, the method as it is has to pass. Of
-// the gate are held the rows of the method alone on its first draws. The gate divides its risk by its rows, and a draw
-// less doubles the chance of pairs that all shift: ten rows on ten draws (2 * 10 * 2^-10, on both sides) see less than
-// all 143 rows on all 18 draws do (2 * 143 * 2^-18). A shift that is refused here the whole gate refuses.
+// Tests the gate of this tree with methods that contain a fault. Each must fail the gate, and the unchanged method must
+// pass. The test uses only the rows of the method on its first draws. The gate divides its risk by its rows, and each
+// missing draw doubles the chance that all pairs shift. Ten rows on ten draws (2 * 10 * 2^-10, on both sides) are
+// therefore less sensitive than all 143 rows on all 18 draws (2 * 143 * 2^-18). The whole gate also rejects every shift
+// that this test rejects.
 #include "scenarios/gate/mutations.hpp"
 
 #include <gtest/gtest.h>
@@ -26,13 +27,13 @@ namespace {
 using testing::Mutation;
 using testing::mutations;
 
-/// A method, and the first draws of the gate that its mutations are held on.
+/// A method, and the first draws of the gate for its mutations.
 struct Asked {
   std::string method;
   std::size_t draws;
 };
 
-/// The accepted run of one method on a scenario, cut to its first draws.
+/// Returns the accepted run of one method on a scenario, restricted to its first draws.
 Gate rows_of(Gate gate, const std::string& scenario, const Asked& asked) {
   std::erase_if(gate.accepted.methods, [&](const MethodRun& run) {
     return run.scenario != scenario || full_name(run.kind, run.method) != asked.method;
@@ -45,7 +46,7 @@ Gate rows_of(Gate gate, const std::string& scenario, const Asked& asked) {
   return gate;
 }
 
-/// What each mutation made of the draws of a scenario; "" is the methods as they are.
+/// Results of each mutation on the draws of a scenario; "" is the unchanged method.
 using Outcomes = std::map<std::string, std::vector<Outcome>>;
 
 void run_draw(const SimulatedDraw& draw, const sim::Surface* surface, const std::string& method_name, Outcomes& all) {
@@ -71,8 +72,8 @@ void run_draw(const SimulatedDraw& draw, const sim::Surface* surface, const std:
   }
 }
 
-/// What each method's mutations made of the draws; each draw is simulated once for all of them. Rates alone need no
-/// lidar, and are the same without.
+/// Results of all mutations of a method. Each draw is simulated once for all of them. Rate methods need no lidar, and
+/// have the same results without it.
 std::map<std::string, Outcomes> run_scenario(const DataRoot& data, const std::string& scenario,
                                              const std::vector<Asked>& asked) {
   std::map<std::string, Outcomes> all;
@@ -134,13 +135,13 @@ void expect_refused(const DataRoot& data, const std::string& scenario, const Ask
             })));
 }
 
-/// What one test asks of a scenario's draws.
+/// Draws of a scenario for one test.
 struct Group {
   std::string scenario;
   std::vector<Asked> asked;
 };
 
-/// On some draws of hill nothing clips: of twelve, ten are left.
+/// In some draws of hill, nothing clips: ten of twelve remain.
 const std::map<std::string, Group>& groups() {
   static const std::map<std::string, Group> kGroups = {
       {"rates and maps", {"hill", {{"rate/tumble", 12}, {"rate/tumble_lag", 12}, {"slam/tumble", 10}}}},
@@ -169,7 +170,7 @@ TEST(GateMutations, OfRatesAndMapsAreRefused) {
   expect_refused("rates and maps");
 }
 
-// the same faults of other methods, which map each draw twice more: `tools/test --all`
+// the same faults in other methods, which map each draw twice more: `tools/test --all`
 TEST(GateMutationsSoak, OfTheOdometryAreRefused) {
   expect_refused("the odometry");
 }
@@ -190,7 +191,7 @@ TEST(GateMutations, OfTheCarriedBodyAreRefused) {
   expect_refused("hand-held motion");
 }
 
-// a metric that no fault moves could as well not be held
+// a metric that no fault changes would be useless in the gate
 TEST(GateMutations, EachMetricThatIsHeldRefusesOne) {
   std::set<std::string> refuse, held;
   for (const Mutation& mutation : mutations()) refuse.insert(mutation.metrics.begin(), mutation.metrics.end());

@@ -57,7 +57,7 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& record = recording.sensors.imus.front();
   std::vector<ImuSample> samples;
-  record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a rail beyond what is stated
+  record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a saturation limit above the stated range
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
   const std::vector<Eigen::Vector3d> read = record.gyro_rad_s;
   for (std::size_t k = 40; k < 90; ++k) record.gyro_rad_s[k].y() = -3e5;
@@ -69,7 +69,7 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   record.gyro_rad_s = read;
   record.accel_m_s2[7].x() = record.accel_m_s2[8].x() = 1e4;  // lasts for two samples
   EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e4);
-  record.stated_accel_range_m_s2 = 0.0;  // nothing is stated
+  record.stated_accel_range_m_s2 = 0.0;  // no range is stated
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
 }
 
@@ -85,8 +85,8 @@ TEST(Bridge, ASingleReadingThatNoDeviceOfThatRangeMeasuresIsLeftOut) {
   EXPECT_EQ(samples[40].time_ns, record.time_ns[41]);
 }
 
-// the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless,
-// shows the force w x (w x t) at the IMU, which points from the IMU to the axis
+// tests frame and sign of the lever arm together: a weightless body rotates at a constant rate about its centre of
+// mass, so the force at the IMU is w x (w x t), which points from the IMU to the axis
 TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
   const sim::Recording recording = testing::synthetic_rig();
   const sim::ImuRecord& record = recording.sensors.imus.front();
@@ -98,7 +98,7 @@ TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
   const Eigen::Vector3d e = record.T_BI.linear().transpose() * w_B.normalized();
   const Eigen::Vector3d l = t.dot(e) * e - t;
   EXPECT_NEAR(force_I.dot(l.normalized()), l.norm() * w_B.squaredNorm(), 1e-12);
-  // negative control: the arm left in body axes does not
+  // negative control: a lever arm in body axes fails
   const Eigen::Vector3d wrong = record.T_BI.translation().dot(e) * e - record.T_BI.translation();
   EXPECT_GT(std::abs(force_I.dot(wrong.normalized()) - wrong.norm() * w_B.squaredNorm()), 0.5);
 }
@@ -132,19 +132,19 @@ TEST(Bridge, ASweepEndsWhereTheNextBegins) {
   const bridge::Sweep sweep = bridge::sweep(lidar, 7);
   EXPECT_EQ(sweep.end_ns, whole.end_ns - 20);
   EXPECT_EQ(sweep.points.size(), whole.points.size());
-  // of a millisecond the points that were measured in it are gone, a hundredth
+  // points measured within a millisecond are lost, a hundredth of all points
   lidar.sweep_start_ns[8] -= 1'000'000;
   const bridge::Sweep shorter = bridge::sweep(lidar, 7);
   EXPECT_LT(shorter.points.size(), whole.points.size());
   EXPECT_GT(shorter.points.size(), 98 * whole.points.size() / 100);
   for (const LidarPoint& point : shorter.points) EXPECT_LE(point.offset_ns, shorter.end_ns - shorter.start_ns);
-  // one that lies within what rounding does stays, at the end
+  // a point beyond the end by rounding is kept at the end
   const std::size_t last = lidar.sweep_first[8] - 1;
   lidar.offset_ns[last] = static_cast<std::uint32_t>(shorter.end_ns - shorter.start_ns + 200);
   const bridge::Sweep rounded = bridge::sweep(lidar, 7);
   EXPECT_EQ(rounded.points.back().position_L_m, lidar.position_L_m[last]);
   EXPECT_EQ(rounded.points.back().offset_ns, rounded.end_ns - rounded.start_ns);
-  // a gap between two sweeps lengthens none
+  // a gap between two sweeps does not lengthen a sweep
   lidar.sweep_start_ns[8] += 20'000'000;
   EXPECT_EQ(bridge::sweep(lidar, 7).end_ns, whole.end_ns);
 }

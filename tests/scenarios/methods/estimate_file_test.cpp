@@ -48,7 +48,7 @@ class EstimateFile : public ::testing::Test {
 };
 
 TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
-  // half as long as other tests need it
+  // half as long as in other tests
   const sim::Recording rig =
       testing::synthetic_rig({.angle_rad = 12.0, .start_s = 1.0, .end_s = 2.6, .duration_s = 3.2});
   const sim::Recording sphere = testing::synthetic_sphere();
@@ -74,7 +74,7 @@ TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
     ASSERT_GT(before.size(), 0u);
     for (std::size_t k = 0; k < before.size(); ++k) {
       EXPECT_EQ(before[k].metric, after[k].metric);
-      // a quaternion is normalised on reading: its last bit
+      // reading normalises a quaternion, which changes its last bit
       EXPECT_NEAR(before[k].value, after[k].value, 1e-12 * (1.0 + std::abs(before[k].value))) << before[k].metric;
     }
   }
@@ -101,7 +101,7 @@ TEST_F(EstimateFile, WhatAProgramSaidStandsBesideItAndGoesWithIt) {
 }
 
 TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
-  // comments, several blanks, fewer digits, an epoch stamp that no double holds to the nanosecond
+  // comments, several blanks, fewer digits, and an epoch stamp that a double cannot represent to the nanosecond
   const auto path = write("theirs.tum",
                           "# time x y z qx qy qz qw\n"
                           "1689175049.435000123 1 2 3 0 0 0 1\n"
@@ -153,7 +153,7 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
 }
 
-// a device that gives zeros for ever would be read into memory
+// a device that returns zeros endlessly would fill the memory
 TEST_F(EstimateFile, ALineWithoutEndIsRefused) {
   const std::string said = complaint(write("z.tum", "0 1 2 3 0 0 0 1\n" + std::string((1 << 20) + 1, '\0')));
   EXPECT_NE(said.find("z.tum:2: the line has more than 1048576 bytes, so this is not a line of a table"),
@@ -232,7 +232,7 @@ TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
   EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).map.size(), 0u);
 }
 
-// beside its place and then renamed, as everything else that is written
+// written under a temporary name and then renamed, as all other files
 TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
   const std::filesystem::path path = write("rates.csv", "old\n");
   const auto text = [&] {
@@ -246,7 +246,7 @@ TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
       table.number(0.5);
       table.end_row();
     }
-  }  // as when the disk is full, or the run dies
+  }  // as with a full disk, or if the run crashes
   EXPECT_EQ(text(), "old\n");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
   TableWriter table(path, ',', "a,b");

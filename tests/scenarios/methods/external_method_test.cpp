@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody else's command as a method: what it is given, what it leaves, and every way in which it may end.
+// Tests an external command as a method: its input, its output, and every way in which it may end.
 #include "scenarios/methods/external_method.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The gyro as it is, by awk: columns 9 to 11 of the exported CSV hold it, an exact time is two whole numbers.
+/// Returns the unchanged gyro by awk: columns 9 to 11 of the exported CSV; an exact time consists of two integers.
 const std::string kRawByAwk =
     "awk -F, 'BEGIN { print \"time_ns,wx_rad_s,wy_rad_s,wz_rad_s\" } "
     "NR > 1 { printf \"%d%09d,%s,%s,%s\\n\", $1, $2, $9, $10, $11 }' {csv}/imu.csv > {output}";
@@ -80,14 +80,14 @@ TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
   EXPECT_THAT(what, HasSubstr("signal 11"));
   EXPECT_THAT(what, HasSubstr("out of luck"));
   EXPECT_THAT(no_answer(describe("rate", "exit 3 # {output}")).second, HasSubstr("exit status 3"));
-  // the cause, however much was traced behind it
+  // the message contains the cause, even after a long trace
   const std::string long_one =
       no_answer(describe("rate", "echo the cause; seq 5000; echo the end; exit 3 # {output}")).second;
   EXPECT_THAT(long_one, ::testing::AllOf(HasSubstr("the cause 1 2 3"), HasSubstr(" ... "), HasSubstr("5000 the end")));
   EXPECT_LT(long_one.size(), 1000u);
 }
 
-// whatever became of the run
+// for every result of the run
 TEST_F(ExternalMethod, WhatItSaysIsKept) {
   EXPECT_EQ(run(describe("rate", kRawByAwk + "; echo well; echo done >&2")).transcript, "well\ndone\n");
   const auto said = [&](const std::string& script) -> std::string {
@@ -116,7 +116,7 @@ TEST_F(ExternalMethod, AHangIsEndedWithAllItHasStarted) {
   pid_t child = 0;
   std::ifstream(pid) >> child;
   ASSERT_GT(child, 0);
-  bool gone = false;  // killed with its group; whoever adopts it collects it soon
+  bool gone = false;  // killed with its process group; the adopting process removes it soon
   for (int k = 0; k < 500 && !gone; ++k) {
     std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
     std::string number, name, state;
@@ -271,7 +271,7 @@ TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
               ::testing::AllOf(HasSubstr("theirs.yaml: its version command: "), HasSubstr("printed nothing")));
 }
 
-// else a sweep or a bench goes on with rows of the program as it was
+// otherwise, a sweep or a bench would continue with rows of the old program
 TEST_F(ExternalMethod, AProgramThatWasMadeAnewIsAnotherVersion) {
   const auto version = [&] { return external_method(folder_ / "theirs.yaml").info.version; };
   for (const char* command : {"sh {folder}/mine.sh {output}", "{folder}/mine.sh>{output}"}) {

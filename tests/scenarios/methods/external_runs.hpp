@@ -13,7 +13,7 @@
 
 namespace tumble::scenarios::testing {
 
-/// Runs of somebody else's methods on one recording in closed form.
+/// Runs external methods on one closed-form recording.
 class ExternalRuns : public TemporaryFolder {
  protected:
   static const sim::Recording& recording() {
@@ -23,7 +23,7 @@ class ExternalRuns : public TemporaryFolder {
   static Estimate run(const std::filesystem::path& file) {
     return external_method(file).run(recording().sensors, {}, {});
   }
-  /// Why a run gave no answer, and what it said.
+  /// Returns why a run failed, and its messages.
   static std::pair<NoAnswer::Why, std::string> no_answer(const std::filesystem::path& file) {
     try {
       run(file);

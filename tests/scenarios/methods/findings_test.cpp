@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 namespace {
 
-// What stands in files and databases.
+// Names that are stored in files and databases.
 TEST(Doubts, RowsAreNamedAsInFiles) {
   std::set<std::string> rows;
   for (const HealthFinding::About about : kAllFindings) rows.insert(row_of({about, 1.0, ""}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensors of a recording that do not start together.
+// Tests recordings whose sensors start at different times.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// The rig at rest for `rest_s`, then half a turn in three seconds.
+/// The rig rests for `rest_s`, then makes half a revolution in three seconds.
 sim::Recording rig_that_rests(double rest_s) {
   testing::SyntheticMotion motion;
   motion.angle_rad = 3.0;
@@ -47,7 +47,7 @@ void start_imu_at(double from_s, sim::ImuRecord& imu) {
   cut(imu.time_ns), cut(imu.gyro_rad_s), cut(imu.accel_m_s2), cut(imu.clip_flags), cut(imu.magnetic_field_t);
 }
 
-/// Declares the sweeps as deskewed: each belongs to one instant.
+/// Declares the sweeps as deskewed, so that each belongs to one instant.
 void deskew(sim::LidarRecord& lidar) {
   for (std::uint32_t& offset_ns : lidar.offset_ns) offset_ns = 0;
   lidar.point_times = sim::PointTimes::not_skewed;
@@ -106,7 +106,7 @@ TEST(LateImu, SweepsBeforeItAreLeftOutAndCounted) {
   }
 }
 
-// The lidar's clock is 5 ms late, so that its last sweep ends after the last reading of the IMU.
+// The lidar's clock is 5 ms late, so its last sweep ends after the last IMU sample.
 TEST(LastSweep, ThatTheImuDoesNotCoverIsCounted) {
   sim::Recording recording = rig_that_rests(1.5);
   for (std::int64_t& start_ns : recording.sensors.lidars.front().sweep_start_ns) start_ns += 5'000'000;

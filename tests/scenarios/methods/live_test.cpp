@@ -16,8 +16,8 @@
 #include "sim/random/stream.hpp"
 #include "tests/tree.hpp"
 
-// A live method gives an answer before it receives the following readings: whatever these are, and whether there are
-// any, the answer has the same bits.
+// A live method must answer before it receives the following readings. The answer must have identical bits for any
+// following readings, and without them.
 namespace tumble::scenarios {
 namespace {
 
@@ -57,7 +57,7 @@ const std::vector<Live> kLive = {
     {"slam/tumble_live", 0.0},
 };
 
-/// Sets the readings from sample `from` on to those of a fault.
+/// Replaces the readings from sample `from` on by those of a fault.
 using Fault = std::function<void(std::size_t from, sim::ImuRecord& imu)>;
 
 /// Clips each axis at half of its largest reading.
@@ -108,7 +108,7 @@ void keep_first(std::size_t count, std::vector<Row>& rows) {
   if (rows.size() > count) rows.resize(count);
 }
 
-/// Keeps the readings up to a time, as a robot has received them then.
+/// Keeps the readings up to a time, which a robot has received by then.
 void truncate(std::int64_t end_ns, sim::Sensors& sensors) {
   for (sim::ImuRecord& imu : sensors.imus) {
     const auto end = std::upper_bound(imu.time_ns.begin(), imu.time_ns.end(), end_ns);
@@ -147,7 +147,7 @@ bool same(const PoseState& a, const PoseState& b) {
          a.v_WA_m_s == b.v_WA_m_s && a.covariance == b.covariance;
 }
 
-/// What was compared: answers in all, and the time of the first that differs.
+/// Result of a comparison: number of answers, and time of the first that differs.
 struct Comparison {
   std::size_t answers = 0;
   std::int64_t differs_ns = -1;
@@ -177,7 +177,7 @@ sim::Sensors simulated(const char* scenario, std::uint64_t seed, sim::Truth& tru
   return draw.recording.sensors;
 }
 
-/// The rig in its room, with noise: readings without any would count as frozen.
+/// The rig in its room, with noise, because readings without noise would count as frozen.
 sim::Recording noisy_rig() {
   testing::SyntheticMotion motion;
   motion.start_s = 0.9;
@@ -228,7 +228,7 @@ const CutRecording& roll_run() {
 
 const CutRecording& mapped_run() {
   static const CutRecording run = {noisy_rig().sensors,
-                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // it saturates from 1.85 s
+                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // it saturates after 1.85 s
   return run;
 }
 
@@ -254,7 +254,7 @@ TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
       sim::Sensors later = run.sensors;
       apply(fault, cut_ns, later);
       const Estimate whole = method.run(later, {}, {});
-      if (!whole.status.ok()) {  // the harness refuses the recording
+      if (!whole.status.ok()) {  // the harness rejects the recording
         EXPECT_NE(name, "none") << whole.status.message();
         continue;
       }
@@ -273,7 +273,7 @@ std::string test_name(const ::testing::TestParamInfo<Live>& param) {
 
 INSTANTIATE_TEST_SUITE_P(Registered, LiveMeansLive, ::testing::ValuesIn(kLive), test_name);
 
-// The comparison sees a method that uses the whole recording, and the faults are such that health checks report them.
+// Negative control: the comparison detects a method that uses the whole recording, and health checks report the faults.
 TEST(LiveMethods, SeesAMethodThatUsesTheWholeRecording) {
   const CutRecording& run = tumble_run();
   sim::Sensors received = run.sensors, later = run.sensors;

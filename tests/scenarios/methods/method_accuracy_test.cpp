@@ -14,8 +14,7 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/tree.hpp"
 
-// methods on motion in closed form, judged by the scores: method, bridge and scoring agree on every convention or this
-// fails
+// scores methods on closed-form motion; the test fails unless method, bridge and scoring agree on all conventions
 namespace tumble::scenarios {
 namespace {
 
@@ -39,11 +38,11 @@ TEST(MethodAccuracy, OracleRateIsExactAndRawMissesWhatTheRailTook) {
   const auto raw = scores_of("raw", recording);
   EXPECT_EQ(raw.at("rate_error_free_median_rad_s"), 0.0);
   EXPECT_GT(raw.at("rate_error_clipped_median_rad_s"), 0.5);
-  // its sigma is the noise alone: what is within is the brim of the clipped segment
+  // its sigma is only the noise; the samples within three sigma are at the edge of the clipped segment
   EXPECT_LT(raw.at("rate_coverage_3sigma"), 0.05);
 }
 
-/// The rig's turn without the force on its centre of mass, as in a fall.
+/// Returns the rig's rotation without force on its centre of mass, as in a fall.
 sim::Recording falling_rig() {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
@@ -58,12 +57,13 @@ sim::Recording falling_rig() {
   return recording;
 }
 
-// in free flight about the centre of mass the assumptions of the method hold but for the slow change of the rate
+// in free flight about the centre of mass, the assumptions of the method are true, except for the slow change of the
+// rate
 TEST(MethodAccuracy, SaaveRecoversTheClippedRateOfAFlight) {
   const sim::Recording recording = falling_rig();
   const auto raw = scores_of("raw", recording);
   const auto saave = scores_of("saave", recording);
-  // measured: see the bound's twentieth
+  // measured: a twentieth of the bound
   EXPECT_LT(saave.at("rate_error_clipped_median_rad_s"), 0.1 * raw.at("rate_error_clipped_median_rad_s"));
 }
 
@@ -71,16 +71,16 @@ TEST(MethodAccuracy, IntegrationFollowsAGyroThatDoesNotClip) {
   testing::SyntheticMotion motion;
   motion.rail_rad_s = 100.0;
   const auto integrate = scores_of("integrate", testing::synthetic_rig(motion));
-  // fixed axis, mid-window rates: the midpoint rule's error, dt^2/24 times the change of acceleration, is below 1e-4
-  // rad
+  // fixed axis, rates at mid-window: the error of the midpoint rule, dt^2/24 times the change of acceleration, is below
+  // 1e-4 rad
   EXPECT_LT(integrate.at("attitude_rmse_rad"), 1e-4);
   EXPECT_LT(integrate.at("attitude_rmse_rest_rad"), 1e-4);
-  // negative control: clipped, the same motion loses a radian or more
+  // negative control: with clipping, the same motion has an error of at least a radian
   EXPECT_GT(scores_of("integrate", testing::synthetic_rig()).at("attitude_rmse_rad"), 0.5);
 }
 
 TEST(MethodAccuracy, TumbleAttitudeFollowsAGyroThatClips) {
-  // the forces before and after the flight, which level the filter
+  // the forces before and after the flight level the filter
   sim::Recording recording = falling_rig();
   const sim::Recording turn = testing::synthetic_rig();
   const testing::SyntheticMotion motion;
@@ -93,10 +93,10 @@ TEST(MethodAccuracy, TumbleAttitudeFollowsAGyroThatClips) {
   const double tumble = scores_of("attitude/tumble", recording).at("inclination_rmse_rad");
   EXPECT_GT(oracle, 0.0);
   EXPECT_LT(oracle, 1e-3);  // measured 0.00023: no noise
-  EXPECT_LT(tumble, 0.02);  // measured 0.0090: the turn is forced and no torque-free flight
-  // negative control: what the rail hides is not small
+  EXPECT_LT(tumble, 0.02);  // measured 0.0090: the rotation is forced, not a torque-free flight
+  // negative control: the saturation deficit is large
   EXPECT_GT(scores_of("integrate", recording).at("inclination_rmse_rad"), 0.5);
-  // and the oracle sees no rail: clipped or not, it answers the same
+  // the oracle ignores the limit: its result is the same with and without clipping
   testing::SyntheticMotion free;
   free.rail_rad_s = 100.0;
   EXPECT_EQ(scores_of("attitude/oracle", testing::synthetic_rig()),
@@ -109,7 +109,7 @@ TEST(MethodAccuracy, MadgwickHoldsTheVerticalAtRest) {
   EXPECT_GT(madgwick.at("attitude_step_rest_rms_rad"), 0.0);
 }
 
-// the bounds are two to ten times what was measured: a wrong frame, sign or unit costs far more
+// the bounds are two to ten times the measured values; a wrong frame, sign or unit causes far larger errors
 struct Bound {
   const char* method;
   double bound;
@@ -125,7 +125,7 @@ TEST(MethodAccuracy, AttitudeFiltersHoldTheVerticalThroughARoll) {
     EXPECT_LT(scores.at("inclination_rmse_rad"), check.bound) << check.method;
     EXPECT_GT(scores.at("inclination_rmse_rad"), 0.0) << check.method;
   }
-  // negative control: an accelerometer whose z axis is reversed turns every one of them over
+  // negative control: an accelerometer with a reversed z axis makes all of them fail
   sim::Recording reversed = testing::synthetic_sphere();
   for (Eigen::Vector3d& accel : reversed.sensors.imus.front().accel_m_s2) accel.z() = -accel.z();
   for (const char* method : {"attitude/madgwick", "attitude/vqf", "attitude/tumble"}) {
@@ -136,20 +136,20 @@ TEST(MethodAccuracy, AttitudeFiltersHoldTheVerticalThroughARoll) {
 TEST(MethodAccuracy, PositionMethodsFollowASphereThatGrips) {
   for (const double direction_rad : {0.0, 0.6, -2.5}) {
     const sim::Recording recording = testing::synthetic_sphere(2.0, direction_rad);
-    // measured: as rolling; up to 1e-4
+    // measured: same values as for rolling; up to 1e-4
     for (const Bound& check : {Bound{"position/observer", 1e-3}, Bound{"position/tumble", 1e-3}}) {
       EXPECT_LT(scores_of(check.method, recording).at("position_end_error_share"), check.bound) << check.method;
     }
   }
 }
 
-// the turn is forced, not a torque-free flight, and so outside of the method's model: it must still better the clipped
-// gyro
+// the rotation is forced, not a torque-free flight, so the method's model is wrong; the result must still be better
+// than the clipped gyro
 TEST(MethodAccuracy, TumbleBettersTheClippedGyroOfAForcedTurn) {
   const sim::Recording recording = testing::synthetic_rig();
   const auto raw = scores_of("raw", recording);
   const auto tumble = scores_of("rate/tumble", recording);
-  // measured: 0.51 of raw
+  // measured: 0.51 of the raw error
   EXPECT_LT(tumble.at("rate_error_clipped_median_rad_s"), 0.75 * raw.at("rate_error_clipped_median_rad_s"));
   EXPECT_LT(tumble.at("rate_error_free_median_rad_s"), 0.02);
 }
@@ -171,13 +171,13 @@ TEST(MethodAccuracy, RollingEstimatesItsGyroBiasAtRest) {
 }
 
 TEST(MethodAccuracy, RollingIsWrongWhenTheSphereSlips) {
-  // negative control: the radius that the method believes is a tenth too large, as if it spun more than it went
+  // negative control: the method's radius is a tenth too large, which resembles spin
   sim::Recording recording = testing::synthetic_sphere(2.0);
   recording.sensors.sphere_radius_m *= 1.1;
   EXPECT_NEAR(scores_of("rolling", recording).at("position_end_error_share"), 0.1, 2e-3);
 }
 
-/// Two walls along the path and the floor, seen with the noise of a Mid-100: nothing holds the position along the
+/// Two walls along the path and the floor, seen with the noise of a Mid-100. Nothing constrains the position along the
 /// walls.
 sim::Recording corridor_of_a_sphere(unsigned draw) {
   sim::Recording recording = testing::synthetic_sphere(2.0, 0.0);
@@ -196,7 +196,7 @@ sim::Recording corridor_of_a_sphere(unsigned draw) {
   return recording;
 }
 
-/// Means over draws of the ranges' noise.
+/// Means over random range noise.
 struct AlongARoll {
   double error_m = 0.0, nees = 0.0;
 };
@@ -211,22 +211,23 @@ AlongARoll registered_along_a_roll(unsigned draws, const sim::Values& parameters
   return mean;
 }
 
-/// Whether a mean over some draws lies where that of kMeasured others lets expect it: by Student's t with 47 degrees of
-/// freedom 99.9 % of such means do.
+/// Checks whether a mean over some draws agrees with the mean over kMeasured other draws: by Student's t with 47
+/// degrees of freedom, 99.9 % of such means do.
 bool is_as_measured(double mean, unsigned draws, double measured, double deviation) {
   constexpr double kMeasured = 48.0, kStudent = 3.5;
   return std::abs(mean - measured) < kStudent * deviation * std::sqrt(1.0 / draws + 1.0 / kMeasured);
 }
 
-// The roll is true, to 0.2 mm: what the ranges' noise moves it by is measured over draws 101 to 148 of that noise, as
-// is its part of the covariance. That is cautious, since it counts a roll and a levelled start that err.
+// The odometer is exact to 0.2 mm. The error due to range noise is measured over draws 101 to 148 of this noise, and so
+// is its part of the covariance. The covariance is larger, because it also includes errors of the odometer and of the
+// levelled start.
 TEST(MethodAccuracy, RegistrationDoesNotSpoilARollThatIsTrue) {
   constexpr unsigned kDraws = 16;
   constexpr double kError_m = 0.73e-3, kErrorDeviation_m = 0.25e-3, kNees = 0.0206, kNeesDeviation = 0.0148;
   const AlongARoll mean = registered_along_a_roll(kDraws, {});
   EXPECT_TRUE(is_as_measured(mean.error_m, kDraws, kError_m, kErrorDeviation_m)) << mean.error_m;
   EXPECT_TRUE(is_as_measured(mean.nees, kDraws, kNees, kNeesDeviation)) << mean.nees;
-  // negative controls: covariance of four times and of a quarter of the size; an odometer with a large uncertainty
+  // negative controls: four times and a quarter of the covariance; an odometer with a large uncertainty
   EXPECT_FALSE(is_as_measured(mean.nees / 4.0, kDraws, kNees, kNeesDeviation));
   EXPECT_FALSE(is_as_measured(mean.nees / 0.25, kDraws, kNees, kNeesDeviation));
   constexpr unsigned kControls = 4;
@@ -246,9 +247,9 @@ TEST(MethodAccuracy, SlamOracleEndsWhereTheTruthEnds) {
   EXPECT_GT(oracle.at("map_coverage"), 0.8);
 }
 
-// A pendulum whose plateaus look like a rail and are no clear one: they are doubted and not called clipped. What
-// stands for them is what the smoother says, not the reading: an attitude by the readings is 0.6 rad off from the first
-// on.
+// A pendulum whose plateaus resemble a limit, but not clearly. The readings are suspect, but not classified as clipped.
+// The smoother's rates replace these readings. An attitude from the readings has an error of 0.6 rad after the first
+// plateau.
 TEST(MethodAccuracy, AnAttitudeIsNotTurnedByReadingsThatAreDoubted) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "swing"), 91201, 1, Lidars::left_out);

@@ -10,7 +10,7 @@
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
-// one law for every method: what is registered is held to it without being named here
+// rules that every registered method must fulfil, without naming a method here
 namespace tumble::scenarios {
 
 void PrintTo(const Method& method, std::ostream* out) {
@@ -19,7 +19,7 @@ void PrintTo(const Method& method, std::ostream* out) {
 
 namespace {
 
-/// The motion of the synthetic rig between shorter rests: every method runs over it several times.
+/// Motion of the synthetic rig with shorter rests, because every method runs on it several times.
 testing::SyntheticMotion brief_motion() {
   testing::SyntheticMotion motion;
   motion.start_s = 0.9;
@@ -40,7 +40,7 @@ class MethodContract : public ::testing::TestWithParam<Method> {
     return method().run(recording.sensors, {}, OracleInput{method().info.needs_truth ? &recording.truth : nullptr});
   }
 
-  // a status that is not ok, or BadInput: anything else lets trouble pass for a result
+  // trouble must give a status other than ok, or BadInput; otherwise, it would count as a result
   void expect_refused(const sim::Recording& recording) const {
     try {
       const Estimate estimate = run(recording);
@@ -57,7 +57,7 @@ TEST_P(MethodContract, DescribesItself) {
   EXPECT_NE(info.name, "");
   EXPECT_NE(info.doc, "");
   EXPECT_NE(info.source, "");
-  // of one of ours, what it goes back to may follow; one that is kept to compare with is not shown as ours
+  // our methods may name the method that they replace; a comparison method is not shown as ours
   EXPECT_TRUE(info.ours ? info.source.starts_with("ours") : info.source != "ours") << "whose it is, told twice";
   for (const sim::Parameter& parameter : info.parameters) {
     EXPECT_NE(parameter.doc, "") << parameter.name;
@@ -87,7 +87,7 @@ void expect_of_kind(const Estimate& estimate, Kind kind, const sim::Sensors& sen
   }
 }
 
-// two runs say both: the second is given the truth as well, which no method that does not declare it may see
+// two runs test two rules: the second gets the truth as well, which only methods that declare it may use
 TEST_P(MethodContract, AnswersWithTheSameBitsWhateverTheTruth) {
   const sim::Recording given = recording();
   const Estimate estimate = run(given);
@@ -98,7 +98,7 @@ TEST_P(MethodContract, AnswersWithTheSameBitsWhateverTheTruth) {
   if (method().info.needs_truth) {
     EXPECT_THROW(method().run(given.sensors, {}, {}), BadInput);
   }
-  // negative control: the digest sees the data
+  // negative control: the digest depends on the data
   sim::Recording other = given;
   for (auto& rate : other.sensors.imus.front().gyro_rad_s) rate *= 1.001;
   for (auto& rate : other.truth.imus.front().gyro_unclipped_rad_s) rate *= 1.001;
@@ -118,7 +118,7 @@ TEST_P(MethodContract, RefusesAnEmptyRecording) {
   expect_refused(no_samples);
 }
 
-/// Spoils every tenth reading: more than a recording may leave out (bridge::imu_samples).
+/// Corrupts every tenth reading, more than a recording may omit (bridge::imu_samples).
 template <class Spoil>
 void spoil_a_tenth(sim::ImuRecord& imu, Spoil&& spoil) {
   for (std::size_t k = 1; k + 1 < imu.time_ns.size(); k += 10) spoil(k);
@@ -177,7 +177,7 @@ TEST_P(SlamContract, RefusesALidarThatNeverSawAnything) {
   expect_refused(spoilt);
 }
 
-// as an idealised simulator gives them, and a driver that loses the stamps
+// as from an idealised simulator, and as from a driver without time stamps
 TEST_P(SlamContract, RefusesPointsThatAllBearOneTimeStamp) {
   sim::Recording spoilt = recording();
   for (auto& offset : spoilt.sensors.lidars.front().offset_ns) offset = 0;
@@ -197,7 +197,7 @@ TEST_P(SlamContract, RefusesARecordingWithoutLidar) {
   expect_refused(spoilt);
 }
 
-/// One sweep loses all its points.
+/// Removes all points of one sweep.
 void empty_sweep(sim::LidarRecord& lidar, std::size_t sweep) {
   const auto first = static_cast<std::ptrdiff_t>(lidar.sweep_first[sweep]);
   const auto last = static_cast<std::ptrdiff_t>(lidar.sweep_first[sweep + 1]);
@@ -246,7 +246,7 @@ TEST(Registry, NamesAreUniqueWithinAKindAndSortedByKind) {
   }
 }
 
-// `tumble run SCENARIO` shows it beside the baseline
+// `tumble run SCENARIO` shows the method next to the baseline
 TEST(Registry, TheFirstOfOursIsTheOneThatIsCalledTumble) {
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     const auto is_ours = [&](const Method& method) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One wild reading in a recording costs our methods one reading.
+// A single wrong reading in a recording must only affect this reading.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// A wild reading of the first IMU at a time, on one axis; of the gyro, or else of the accelerometer.
+/// Adds a wrong reading of the first IMU's gyro or accelerometer at a time, on one axis.
 struct Wild {
   double time_s;
   bool of_gyro;
@@ -50,7 +50,7 @@ Estimate run(const std::string& method, const sim::Recording& recording) {
   return estimate;
 }
 
-/// Largest distance between states of the same time.
+/// Returns the largest distance between states of the same time.
 template <class State, class Distance>
 double farthest(const std::vector<State>& found, const std::vector<State>& expected, const Distance& distance) {
   if (found.size() + 1 < expected.size() || expected.empty()) return std::numeric_limits<double>::infinity();
@@ -64,7 +64,7 @@ double farthest(const std::vector<State>& found, const std::vector<State>& expec
   return out;
 }
 
-/// How far an estimate lies from another one: its rates [rad/s], attitudes [rad] or last place [m].
+/// Returns the distance between two estimates: of their rates [rad/s], attitudes [rad] or last positions [m].
 double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   switch (kind) {
     case Kind::rate:
@@ -81,10 +81,10 @@ double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   return 0.0;
 }
 
-/// At rest and in motion; the second reading is beyond twice the gyro's range.
+/// At rest and in motion; the second reading exceeds twice the gyro's range.
 constexpr Wild kWild[] = {{1.0, true, 0, 9.0}, {3.3, true, 2, 200.0}, {1.1, false, 2, 150.0}};
 
-/// The estimate must equal the one from a recording in which the sample is missing.
+/// The estimate must equal the estimate from a recording without this sample.
 void expect_one_sample_lost(const std::string& method, const sim::Recording& recording) {
   const Kind kind = find_methods(method).front()->info.kind;
   for (const Wild& wild : kWild) {
@@ -94,7 +94,7 @@ void expect_one_sample_lost(const std::string& method, const sim::Recording& rec
   }
 }
 
-/// The estimate must be within `bound` of the one from the sound recording.
+/// The estimate must be within `bound` of the estimate from the correct recording.
 void expect_nothing_lost(const std::string& method, const sim::Recording& recording, double bound) {
   const Kind kind = find_methods(method).front()->info.kind;
   const Estimate clean = run(method, recording);

@@ -9,13 +9,12 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 
-// errors of the published chain as cases: reproduced where they are a switch of slam/published, impossible elsewhere.
-// The trim that counts unmatched slots stands in the baselines' trimmed_icp_test, angles beyond 90 degrees in
-// score_test.
+// Known errors of the published chain: reproduced if they are a switch of slam/published, impossible otherwise.
+// trimmed_icp_test tests the trim that counts unmatched slots, score_test tests angles beyond 90 degrees.
 namespace tumble::scenarios {
 namespace {
 
-/// A swift translation that hardly turns, so that nothing but the velocity fed back differs.
+/// A fast translation with little rotation, so that only the velocity feedback matters.
 testing::SyntheticMotion dash() {
   testing::SyntheticMotion motion;
   motion.angle_rad = 0.5;
@@ -25,7 +24,7 @@ testing::SyntheticMotion dash() {
   return motion;
 }
 
-/// Median error of the chain's velocity while the acceleration is large.
+/// Returns the median error of the chain's velocity while the acceleration is large.
 double velocity_error_m_s(double late_velocity) {
   const testing::SyntheticMotion motion = dash();
   const sim::Recording recording = testing::synthetic_rig(motion);
@@ -37,7 +36,7 @@ double velocity_error_m_s(double late_velocity) {
   for (const auto& sweep : estimate.sweeps) {
     const double t = 1e-9 * static_cast<double>(sweep.pose.time_ns);
     if (t < motion.start_s + 0.5 || t > motion.end_s - 0.5) continue;
-    // the speed alone: the estimate's world is turned against the true one
+    // compares only the speed, because the estimate's world is rotated against the true world
     errors.push_back(std::abs(sweep.pose.v_WA_m_s.norm() - motion.velocity_m_s(t).norm()));
   }
   EXPECT_GT(errors.size(), 10u);
@@ -53,7 +52,7 @@ TEST(PublishedErrors, VelocityIsHalfASweepLateAsLaunched) {
   EXPECT_LT(in_time, 0.5 * late);
 }
 
-// a misspelt parameter ("fixed_frame_for_laser" where the node reads "fixed_frame_for_lidar") was silently ignored
+// the published node silently ignores a misspelt parameter ("fixed_frame_for_laser" instead of "fixed_frame_for_lidar")
 TEST(PublishedErrors, AMisspeltParameterIsRefusedByEverySlamMethod) {
   const sim::Recording recording = testing::synthetic_rig();
   int tried = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A function of Python as a method: what it is given, what it may return, and every way in which it may fail.
+// Tests a Python function as a method: its input, its possible results, and every way in which it may fail.
 #include "scenarios/methods/python_method.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ using ::testing::Not;
 
 class PythonMethod : public testing::ExternalRuns {
  protected:
-  // Debian's own, which tools/setup gives numpy; another may come first in PATH
+  // tools/setup installs numpy for Debian's interpreter; PATH may find another interpreter
   static void SetUpTestSuite() { setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0); }
 
   std::filesystem::path function(const std::string& kind, const std::string& body, const std::string& more = "") const {
@@ -112,7 +112,7 @@ TEST_F(PythonMethod, SeesTheSensorsAloneAndCannotChangeThem) {
 TEST_F(PythonMethod, SeesTheSeriesOfOtherSensors) {
   sim::Sensors sensors = recording().sensors;
   const std::size_t samples = sensors.imus[0].time_ns.size();
-  // a quantity may have any name of letters, digits and _, that of an entry of the exchange too
+  // the name of a quantity may consist of letters, digits and _, and may equal the name of an entry of the exchange
   sensors.series.push_back(
       {"barometer", "barometer", "bmp388", 20000000, Eigen::Isometry3d::Identity(), {}, {}, {{"air_k", 288.0}}});
   sim::SeriesRecord& series = sensors.series.back();
@@ -179,7 +179,7 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(refused(function("rate", "pass", "function: rote\n")), HasSubstr("no function 'rote'"));
 }
 
-// each was once taken for the numbers that a conversion makes of it
+// a conversion would turn each of these into valid numbers
 TEST_F(PythonMethod, WhatWouldLoseAPartOfItselfIsRefused) {
   const std::string q = "np.tile([0, 0, 0, 1], (n, 1))";
   EXPECT_THAT(wrong("rate", "imu.gyro * 1j"),
@@ -235,7 +235,7 @@ TEST_F(PythonMethod, AVersionTellsInterpreterAndFile) {
   EXPECT_NE(first, second);
 }
 
-/// A good answer, cut at any length and with any byte spoiled: taken or refused, and nothing else.
+/// A valid answer, truncated at any length or with any corrupted byte, is accepted or rejected, without a crash.
 TEST_F(PythonMethod, AnyAnswerInMemoryIsTakenOrRefused) {
   sim::Sensors one;
   one.imus.emplace_back();

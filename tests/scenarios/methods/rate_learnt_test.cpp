@@ -30,7 +30,7 @@ sim::Values defaults() {
   return resolve_settings("method.rate/tumble", {}, stages);
 }
 
-// the synthetic rig never flies: runs that learn nothing must not make the next ones know less than nothing
+// the synthetic rig never flies: runs without calibration must not reduce the calibration of later runs
 TEST(RateLearnt, RunsThatLearnNothingDoNotWearOutThePrior) {
   const sim::Recording recording = testing::synthetic_rig();
   std::optional<CalibratedRig> rig, next;
@@ -52,7 +52,7 @@ TEST(RateLearnt, TheNextRunStartsFromWhatItIsGiven) {
   given.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
   ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &given, &found).status.ok());
   ASSERT_TRUE(found);
-  // a deviation of 2e-6 after four times the covariance
+  // a deviation of 2e-6 after an increase of the covariance by four
   EXPECT_NEAR((found->calibration.constants.lever_arm_m - given.calibration.constants.lever_arm_m).norm(), 0.0, 1e-5);
 }
 
@@ -94,8 +94,8 @@ TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
     for (std::size_t k = 0; k < fresh.rates.size(); ++k) {
       moved = std::max(moved, (informed.rates[k].w_WI_I_rad_s - fresh.rates[k].w_WI_I_rad_s).norm());
     }
-    EXPECT_GT(moved, 1e-3) << name;  // the file counts
-    // in the middle of the first rest the rate is the reading less the bias: that of the other run is forgotten
+    EXPECT_GT(moved, 1e-3) << name;  // the calibration file has an effect
+    // in the middle of the first rest, the rate is the reading minus the bias; the bias of the other run is not used
     EXPECT_LT(informed.rates[150].w_WI_I_rad_s.norm(), 1e-3) << name;
     const bool held = informed.health.at("calibration_at_prior") > 0.5, batch = std::string(name) == "rate/tumble";
     const bool doubted = has_finding({HealthFinding::About::learnt_rig}, informed);
@@ -104,7 +104,7 @@ TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
   }
 }
 
-/// Draws of `hill` with one rig for all of them.
+/// Returns draws of `hill` with the same rig.
 sim::Sensors hill_of_one_rig(std::uint64_t seed) {
   constexpr std::uint64_t kRig = 96001;
   const DataRoot data{test::source_dir()};
@@ -117,7 +117,7 @@ sim::Sensors hill_of_one_rig(std::uint64_t seed) {
   return simulate_draw(data, scenario, seed, 1, Lidars::left_out).recording.sensors;
 }
 
-// the estimator is sure of what it was given, and takes what contradicts it for contact
+// the estimator assumes the given calibration exactly, so it classifies contradicting readings as contact
 TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
   const Method& batch = *find_methods("rate/tumble").front();
   RigCalibrationUse first;
@@ -149,7 +149,7 @@ RateModelParams assumed_model() {
   return model;
 }
 
-/// Of the wand's stand-in: what was read between two times.
+/// Returns the readings of the wand's stand-in between two times.
 sim::Sensors wand(double from_s, double to_s) {
   const auto folder = test::written(test::data_folders("repoimu").front());
   sim::Sensors out = import_repoimu(folder / test::kStandInWand, false).sensors;
@@ -176,7 +176,7 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   SaturationLevels rails;
   EXPECT_FALSE(with_rails(before, rails).has_value());
   rails.planes.element[0] = plane;
-  rails.planes.element[1] = before.planes().element[1];  // as a run gives it back that did not meet it
+  rails.planes.element[1] = before.planes().element[1];  // as in the result of a run without clipping on this element
   const std::optional<CalibratedRig> after = with_rails(before, rails);
   ASSERT_TRUE(after);
   EXPECT_EQ(after->gyro_planes_rad_s[0][1], 7.3);
@@ -188,8 +188,8 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   EXPECT_FALSE(with_rails(before, rails).has_value()) << "not sure";
 }
 
-// An accelerometer 10 ms late is found by the stream in the first tumble of a device and known from the start of the
-// next; of one in time nothing is said.
+// The stream finds a delay of 10 ms in the accelerometer in the first tumble of a device, and knows it from the start
+// of the next. Without a delay, health reports none.
 TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
   const DataRoot data{test::source_dir()};
   const Scenario hill = load_scenario(data, "hill");
@@ -214,9 +214,9 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
   }
 }
 
-// which rail, by how many samples of either sign, how steep and how sure
-// A wand tells nothing of lever arm and inertia, and its rails all the same: a run that is too short to show them knows
-// them from the one before.
+// which limit, by how many samples of either sign, with slope and deviation
+// A wand run determines neither lever arm nor inertia, but its limits. A run that is too short to detect the limits
+// uses those of the previous run.
 TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
   const DataRoot data{test::source_dir()};
   sim::Recording recording = simulate_draw(data, load_scenario(data, "twirl"), 99560, 1, Lidars::left_out).recording;

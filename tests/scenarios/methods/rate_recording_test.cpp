@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a recording says beside the primary IMU's readings reaches the methods `tumble` and `tumble_lag`: further IMUs,
-// clip flags of the device, stated ranges, rails of the accelerometer; and what looks wrong in it is told.
+// The methods `tumble` and `tumble_lag` must use all data of a recording: further IMUs, clip flags, stated ranges, and
+// accelerometer limits. They must report suspicious data.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ double clipped_median(const std::string& method, const sim::Recording& recording
   return NAN;
 }
 
-// a second IMU of the same kind elsewhere on the body, turned, half a period late
+// a second IMU of the same type at another position on the body, rotated, half a period late
 void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
   const testing::SyntheticMotion motion;
   sim::ImuRecord record = recording.sensors.imus.front();
@@ -53,7 +53,7 @@ void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool 
   recording.truth.imus.push_back(truth);
 }
 
-// the turn is forced: no torque-free flight, so that one IMU cannot tell the clipped rate
+// the rotation is forced, not a torque-free flight, so one IMU cannot determine the clipped rate
 TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   const sim::Recording alone = testing::synthetic_rig();
   sim::Recording reference = alone, gyro = alone, accelerometers = alone;
@@ -71,7 +71,7 @@ TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   EXPECT_EQ(estimated_rates("tumble", accelerometers).health.at("imus"), 3.0);
 }
 
-// a rail that shivers: no plateau and no stated range, the flags alone tell
+// an oscillating limit without plateau and stated range: only the flags show it
 TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
@@ -111,7 +111,7 @@ TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
     const Estimate estimate = estimated_rates("tumble", recording);
     EXPECT_GE(estimate.health.at("rails_disagreeing"), 1.0) << stated;
     EXPECT_EQ(estimate.health.at("learnt_gyro_rail_x_rad_s"), 10.5) << stated;
-    EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau counts
+    EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau is sufficient
   }
 }
 
@@ -135,8 +135,8 @@ TEST(RateRecording, UnitsThatLookWrongAreTold) {
   EXPECT_EQ(estimated_rates("tumble", in_g).health.at("force_unit_suspect"), 1.0);
 }
 
-// a fall about the centre of mass of which an accelerometer axis clips: stated, it is a bound; taken for a reading it
-// misleads
+// a fall about the centre of mass in which an accelerometer axis clips: with a stated range, the reading is a bound;
+// otherwise, it causes an error
 TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
@@ -158,7 +158,7 @@ TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
     force = force.cwiseMax(-rail).cwiseMin(rail);
   }
   ASSERT_GT(clipped, 20u);
-  // shivering a little, so that no plateau gives it away
+  // with a small oscillation, so that there is no plateau
   for (std::size_t k = 0; k < imu.accel_m_s2.size(); ++k) {
     imu.accel_m_s2[k] *= 1.0 - 1e-3 * std::abs(std::sin(0.9 * static_cast<double>(k)));
   }

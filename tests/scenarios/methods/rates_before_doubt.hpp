@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios::testing {
 
-/// The rates of an estimate with the covariances that they had before it doubted them: by those a run is wrong or
-/// right, whatever is said of it then. Exact to rounding beside what was added.
+/// Returns the rates of an estimate with the covariances before they were increased. These covariances determine
+/// whether a run is wrong. Exact up to the rounding of the added variance.
 inline std::vector<RateState> rates_before_doubt(const Estimate& estimate) {
   std::vector<RateState> rates = estimate.rates;
   for (std::size_t k = 0; k < estimate.suspect_rad2_s2.size(); ++k)

@@ -96,11 +96,11 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
   EXPECT_NE(complaint("\"accelerometer_elements\"", "\"gone\"").find("gone: unknown key"), std::string::npos);
   EXPECT_NE(complaint("3e-07", "1.0").find("device_errors_covariance"), std::string::npos);
   EXPECT_NE(complaint("\"device_errors\"", "\"gone\"").find("gone: unknown key"), std::string::npos);
-  EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a sound change is taken
+  EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a valid change is accepted
 }
 
-// Where two elements clipped together only, nobody knows where the plane cuts its row: the next run would meet it
-// elsewhere and believe a rail that is not there.
+// If two elements only clipped together, the offset of the plane along each row is unknown. The next run would clip
+// elsewhere and find a wrong limit.
 TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
   RailPlane plane;
   plane.row = {1.0, 0.05, 0.0};
@@ -114,22 +114,22 @@ TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
   told.keep(planes);
   EXPECT_EQ(told.gyro_planes_rad_s[0][1].value_or(0.0), 10.2);
   EXPECT_FALSE(told.gyro_planes_rad_s[0][0].has_value());
-  // a slope that is open by 0.03 where the other axis read 10 leaves the level open by 0.3
+  // a slope uncertainty of 0.03 at a reading of 10 on the other axis leaves a level uncertainty of 0.3
   planes.element[0]->covariance(1, 1) = 9e-4;
   planes.element[0]->covariance(1, 2) = planes.element[0]->covariance(2, 1) = 9e-3;
   planes.element[0]->covariance(2, 2) = 9e-2;
   untold.keep(planes);
   EXPECT_FALSE(untold.gyro_planes_rad_s[0][1].has_value());
   EXPECT_FALSE(untold.planes().any());
-  // one sign alone leaves offset and distance open, and their sum told
+  // readings of one sign leave offset and distance undetermined, but determine their sum
   planes.element[0] = plane;
   planes.element[0]->covariance.bottomRightCorner<2, 2>() << 4e-2, -4e-2, -4e-2, 4e-2;
   untold.keep(planes);
   EXPECT_TRUE(untold.gyro_planes_rad_s[0][1].has_value());
 }
 
-// A plane of a few readings, one of them a partial one, told slopes to 5e-4 that were off by 0.02: the next run on the
-// device met its true rail with them, and was wrong by twice as much.
+// A plane from a few readings, one of them partly clipped, had stated slope deviations of 5e-4 and errors of 0.02. With
+// this calibration, the next run of the device had twice the error at its true limit.
 TEST_F(RigCalibrationFile, SlopesOfUnsurePlanesAreDoubted) {
   RailPlane plane;
   plane.row = {1.0, 0.0244, 0.0107};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What methods show as defaults where the library has none is what models/ says.
+// Defaults of methods that the library lacks must be the values in models/.
 #include "scenarios/methods/robot_presets.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// What an attribute of the element of this name says in a model's file.
+/// Returns an attribute of the element of this name in a model's file.
 std::string attribute(const std::string& model, const std::string& element, const std::string& name) {
   std::ostringstream text;
   text << std::ifstream(test::source_dir() / "models" / (model + ".xml")).rdbuf();

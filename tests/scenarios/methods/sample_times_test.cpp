@@ -13,9 +13,9 @@
 namespace tumble::scenarios {
 namespace {
 
-constexpr double kJitter_ns = 6e5;  // of periods of 5 ms
+constexpr double kJitter_ns = 6e5;  // for a period of 5 ms
 
-/// The same readings, stamped by a host that jitters.
+/// Returns the same readings with time stamps of a host with jitter.
 sim::Recording stamped_by_a_host(sim::Recording recording) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -77,7 +77,7 @@ TEST(SampleTimes, StampsThatGoBackStayForTheBridgeToRefuse) {
   EXPECT_EQ(run("rate/tumble", recording).status.error_code, ErrorCode::time_order);
 }
 
-// Readings and truth are of the samples' own times, whatever their stamps.
+// Readings and truth belong to the sampling times, for any time stamps.
 TEST(SampleTimes, AHostThatJittersMovesNoRateOfOurs) {
   const sim::Recording exact = testing::synthetic_rig(), stamped = stamped_by_a_host(exact);
   for (const char* const method : {"rate/tumble", "rate/tumble_lag"}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every parameter of every method: its default stands, each value within its bounds takes effect, what lies beyond or
-// is half of what is whole is refused.
+// Tests every parameter of every method: its default is unchanged, each value within its bounds has an effect, and
+// values out of bounds or fractions of integers are rejected.
 #include "scenarios/methods/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ bool is_whole(const Stages& stages, std::string_view name) {
   return std::any_of(stages.begin(), stages.end(), [&](const SettingsTable* stage) { return stage->is_whole(name); });
 }
 
-/// A value within the bounds that is not the default.
+/// Returns a value within the bounds other than the default.
 double another(const sim::Parameter& p, bool whole) {
   const double d = p.default_value;
   for (const double value : whole ? std::vector{d + 1.0, d - 1.0}
@@ -51,7 +51,7 @@ double another(const sim::Parameter& p, bool whole) {
   return d;
 }
 
-/// Numbers of the stages that differ from their defaults.
+/// Returns the numbers of the stages that differ from their defaults.
 std::vector<double> changed(const Stages& stages, const sim::Values& values) {
   const sim::Values defaults = resolve_settings("method", {}, stages);
   std::vector<double> out;
@@ -64,7 +64,7 @@ std::vector<double> changed(const Stages& stages, const sim::Values& values) {
   return out;
 }
 
-/// What is wrong with the parameters of a method; empty when nothing is.
+/// Returns what is wrong with the parameters of a method; empty if they are correct.
 std::vector<std::string> complaints(const Stages& stages) {
   std::vector<std::string> out;
   std::set<std::string> names;
@@ -157,7 +157,7 @@ TEST(Settings, WhatARecordingStatesGivesWayOnlyToWhatSomebodyGave) {
   stated.gravity_m_s2 = 1.6;
   table.apply(resolve_settings("method", {}, stages), stated);
   EXPECT_EQ(stated.gravity_m_s2, 1.6);
-  table.apply(resolved(stages, "gravity_m_s2", 9.8), stated);  // the default's value, but given
+  table.apply(resolved(stages, "gravity_m_s2", 9.8), stated);  // the default's value, explicitly given
   EXPECT_EQ(stated.gravity_m_s2, 9.8);
 }
 
@@ -177,7 +177,7 @@ TEST(Settings, AStageBesideAnotherBearsItsPrefixWhereNamesMeet) {
   EXPECT_EQ(rates.read(values).count, 5);
 }
 
-/// Whether the method called `name` has every parameter of `stage`, by its name, bounds and default.
+/// Returns whether the method `name` has every parameter of `stage`, with its name, bounds and default.
 bool has_all_of(const std::string& name, const std::string& stage) {
   const MethodInfo &whole = find_methods(name).front()->info, &part = find_methods(stage).front()->info;
   return std::all_of(part.parameters.begin(), part.parameters.end(), [&](const sim::Parameter& p) {
@@ -221,14 +221,14 @@ TEST(GivenParameters, ReachTheMethodThatTheyName) {
   EXPECT_THROW(run({"made_up.count=5", "rate/made_up.count=6"}), BadInput);
 }
 
-/// A method that forgets what it is told.
+/// A method that ignores its parameters.
 class Deaf : public SettingsTable {
  public:
   Deaf() : SettingsTable({}) { add("share", 0.5, {"share", "1", 0.0, 1.0, "a share"}, false); }
   std::map<std::string, double> numbers(const sim::Values&) const override { return {{"share", 0.5}}; }
 };
 
-// negative control: the test of the registry sees a parameter without effect, and two of one name
+// negative control: the test detects a parameter without effect, and two parameters of one name
 TEST(Settings, FaultsAreSeen) {
   const Deaf deaf;
   EXPECT_EQ(complaints({&deaf}), std::vector<std::string>{"share is not read"});

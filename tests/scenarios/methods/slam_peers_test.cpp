@@ -12,11 +12,11 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-// the peers must be honest: on a motion that asks nothing of a gyro each of them works
+// comparison methods must work correctly: on a motion without clipping, each of them must succeed
 namespace tumble::scenarios {
 namespace {
 
-/// Half a turn in three seconds, a metre and a half of way; the rail is far off.
+/// Half a revolution in three seconds on a path of 1.5 m, far below the saturation limit.
 testing::SyntheticMotion gentle() {
   testing::SyntheticMotion motion;
   motion.angle_rad = 3.0;
@@ -44,7 +44,7 @@ PeerOutcome outcome_of(const std::string& name, const sim::Recording& recording)
   return out;
 }
 
-/// Sweeps that are cast within a microsecond at their end, as triage makes them, are the easier ones.
+/// Sweeps whose points belong to their end within a microsecond, as in triage, are easier.
 TEST(SeedChain, SweepsOfAnInstantDoNotLeadItAstray) {
   sim::Recording recording = testing::synthetic_rig(gentle());
   const double bent_m = outcome_of("slam/icp_raw", recording).end_error_m;
@@ -58,7 +58,7 @@ TEST(SeedChain, SweepsOfAnInstantDoNotLeadItAstray) {
   EXPECT_LT(unbent_m, 0.2);
 }
 
-/// The rest at the start is the mean of its samples, each of them once.
+/// The rest at the start is the mean of its samples, each used once.
 TEST(RigidChain, TheFirstSampleOfTheRestCountsOnce) {
   std::vector<ImuSample> samples(4);
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -71,18 +71,18 @@ TEST(RigidChain, TheFirstSampleOfTheRestCountsOnce) {
   EXPECT_NEAR((start.gyro_bias_rad_s - samples[0].angular_velocity_rad_s).norm(), 0.0, 1e-15);
   const Eigen::Vector3d up = start.q_WI * Eigen::Vector3d(0.1, 0.0, 9.8).normalized();
   EXPECT_NEAR(up.z(), 1.0, 1e-12);
-  // what is pushed meanwhile rests no more
+  // an acceleration ends the rest
   samples[2].specific_force_m_s2.x() = 2.0;
   samples[2].angular_velocity_rad_s.x() = 0.03;
   ASSERT_TRUE(start_at_rest(samples, start).ok());
   EXPECT_NEAR(start.gyro_bias_rad_s.x(), 0.01, 1e-15);
-  // one that turns from the start on is levelled by what there is
+  // a body that rotates from the start is levelled with the available samples
   samples[0].angular_velocity_rad_s.x() = 1.0;
   ASSERT_TRUE(start_at_rest(samples, start).ok());
   EXPECT_EQ(start.gyro_bias_rad_s.norm(), 0.0);
 }
 
-/// A number has one bound, that of the library.
+/// The bound of a number is that of the library.
 TEST(SlamParameters, AreBoundAsTheLibraryBindsThem) {
   for (const sim::Parameter& parameter : find_methods("slam/icp").at(0)->info.parameters) {
     if (parameter.name != "map_voxel_m") continue;
@@ -97,7 +97,7 @@ TEST(SlamParameters, AreBoundAsTheLibraryBindsThem) {
   FAIL() << "no such parameter";
 }
 
-/// All methods of attitude read their IMU through one check.
+/// All attitude methods check their IMU data with one function.
 TEST(ImuCheck, EveryAttitudeMethodSaysThatItsImuFroze) {
   sim::Recording recording = testing::synthetic_rig(gentle());
   sim::Stream noise(3, "noise");
@@ -133,10 +133,10 @@ TEST_P(SlamPeer, EndsWhereAGentleMotionEnds) {
   EXPECT_LT(outcome.end_error_rad, 0.02);
 }
 
-/// Those that believe the gyro.
+/// Returns the methods that ignore saturation.
 class SlamPeerWithGyro : public SlamPeer {};
 
-// negative control: the measure sees what a clipped gyro does to them
+// negative control: the test measures the effect of a clipped gyro on them
 TEST_P(SlamPeerWithGyro, EndsElsewhereWhereItClips) {
   testing::SyntheticMotion wild;
   wild.angle_rad = 40.0;  // 25 rad/s
@@ -166,7 +166,7 @@ TEST(ConstantVelocity, NeedsNoImu) {
 }
 
 TEST(ConstantVelocity, NeedsNoTimesOfThePointsWhereTheRecordingSaysSo) {
-  // hardly any skew: the points of a sweep within a millimetre of where they were at its start
+  // little motion distortion: all points of a sweep are within a millimetre of their position at its start
   testing::SyntheticMotion slow;
   slow.angle_rad = 0.02;
   slow.displacement_m = {0.05, -0.03, 0.0};
@@ -175,16 +175,16 @@ TEST(ConstantVelocity, NeedsNoTimesOfThePointsWhereTheRecordingSaysSo) {
   recording.sensors.imus.clear();
   sim::LidarRecord& lidar = recording.sensors.lidars.front();
   std::fill(lidar.offset_ns.begin(), lidar.offset_ns.end(), 0u);
-  // not said: a driver that lost the stamps
+  // not stated: a driver without time stamps
   const Estimate refused = find_methods("slam/constant_velocity").at(0)->run(recording.sensors, {}, {});
   EXPECT_FALSE(refused.status.ok());
   for (const sim::PointTimes times : {sim::PointTimes::not_skewed, sim::PointTimes::unknown}) {
     lidar.point_times = times;
     const PeerOutcome outcome = outcome_of("slam/constant_velocity", recording);
     EXPECT_EQ(outcome.estimate.sweeps.size(), 60u);
-    // without a prior a sweep creeps where its rings lie on those of the map; measured 0.04
+    // without a prior, a sweep drifts if its rings coincide with those of the map; measured 0.04
     EXPECT_LT(outcome.end_error_m, 0.06);
-    // a pose belongs to the sweep's only instant
+    // a pose belongs to the only time of its sweep
     EXPECT_EQ(outcome.estimate.sweeps[30].pose.time_ns, lidar.sweep_start_ns[30]);
   }
 }

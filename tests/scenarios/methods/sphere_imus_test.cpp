@@ -20,8 +20,8 @@ Eigen::Vector3d rate_at(double time_s) {
   return {2.0 * std::sin(3.0 * time_s), 1.5 * std::cos(4.1 * time_s), std::sin(2.3 * time_s)};
 }
 
-/// A unit at the centre of a body that turns about it. Its stamps are `stamped_late_s` after the times that its
-/// readings are of; they begin at `first_ns`.
+/// Readings of an IMU at the centre of a body that rotates about it. Its time stamps are late by `stamped_late_s`; they
+/// start at `first_ns`.
 sim::ImuRecord unit(const char* name, std::int64_t first_ns, double stamped_late_s) {
   sim::ImuRecord record;
   record.name = name;
@@ -60,11 +60,10 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   EXPECT_EQ(merged.merged.units.size(), 3U);
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
-  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2, a third of it in the mean of
-  // three
+  // linear interpolation has an error of w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2 between two samples, a third of it in the
+  // mean of three
   EXPECT_LT(worst_rate_error(merged), 1e-4);
-  // taken as they come, sample by sample, they would be off by their stamps' distance times the acceleration of 9
-  // rad/s^2
+  // without time correction, the error would be the time difference times the acceleration of 9 rad/s^2
   EXPECT_GT((rate_at(1.0013) - rate_at(1.0)).norm() / 3.0, 1e-3);
 }
 
@@ -75,7 +74,7 @@ TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.units.size(), 3U);
   EXPECT_EQ(merged.merged.units[2].unit, 2U);
-  // about the mean of the three, which is a third of it late itself
+  // relative to the mean of the three, which is late by a third itself
   EXPECT_NEAR(merged.merged.units[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
   EXPECT_NEAR(merged.merged.units[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
   EXPECT_GT(merged.merged.units[2].time_offset_sigma_s, 0.0);
@@ -88,7 +87,7 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   ends.time_ns.resize(kSamples / 2);
   ends.clip_flags.resize(kSamples / 2);
   sim::ImuRecord nan = unit("imu_3", 0, 0.0);
-  nan.gyro_rad_s[7].x() = std::nan("");  // one reading: made up for
+  nan.gyro_rad_s[7].x() = std::nan("");  // a single missing reading is interpolated
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
   EXPECT_EQ(merged.merged.units.size(), 3U);
@@ -109,7 +108,7 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
-// a cable that comes loose takes rows, not numbers
+// a loose cable removes rows, not numbers
 TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
   constexpr std::size_t kFrom = kSamples / 3, kTo = kFrom + 500;
   for (const bool returns : {true, false}) {
@@ -141,7 +140,7 @@ TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
     ASSERT_EQ(merged.faults.size(), 1U) << frozen;
     EXPECT_EQ(row_of(merged.faults[0]), record.name + "_frozen_since_s");
     EXPECT_NEAR(merged.faults[0].value, 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
-    EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // nothing was learnt from it
+    EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // the calibration does not use it
   }
 }
 
@@ -156,7 +155,7 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
-/// Of a gyro of 5 rad/s, whose axis z repeats its reading from a third of the run on.
+/// Readings of a gyro at 5 rad/s whose axis z repeats its reading after a third of the run.
 sim::ImuRecord frozen_z(sim::ImuRecord record) {
   record.stated_gyro_range_rad_s = 5.0;
   for (std::size_t k = kSamples / 3; k < kSamples; ++k) record.gyro_rad_s[k].z() = record.gyro_rad_s[kSamples / 3].z();
@@ -185,7 +184,7 @@ TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
 
 TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
   sim::ImuRecord clips = unit("imu_2", 0, 0.0), slow = unit("imu_3", 0, 0.0);
-  clips.stated_gyro_range_rad_s = 0.5;  // up to a second at a time
+  clips.stated_gyro_range_rad_s = 0.5;  // for up to a second
   for (Eigen::Vector3d& rate : clips.gyro_rad_s) rate.z() = std::clamp(rate.z(), -0.5, 0.5);
   for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
   MergedImus merged;

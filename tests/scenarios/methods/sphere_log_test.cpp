@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rolling sphere in the form in which the authors of the real one logged it: the stand-in, whose way is known, and
-// the real log where it is at hand.
+// Tests a rolling sphere in the log format of the authors of the real sphere: the stand-in with a known path, and the
+// real log if it is available.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRadius_m = 0.145;
-// pure rolling over the real log by an independent program: 4.71 m; the T265 of the same run says 6.29 m, the authors'
-// own filter 6.76 m, and nobody knows
+// for the real log, an independent program computes 4.71 m by pure rolling; a T265 camera measured 6.29 m, the authors'
+// filter 6.76 m; the true value is unknown
 constexpr double kRolledAnchor_m = 4.71;
 
 class SphereLog : public ::testing::TestWithParam<test::DataFolder> {
@@ -69,11 +69,13 @@ TEST_P(SphereLog, AllThreeFormsGoTheWayOfRollingWithoutSeeingSlipEverywhere) {
                 moving / static_cast<double>(count()), highest_m);
     EXPECT_NEAR(net_m(estimate), anchor_m(), 0.3) << method;           // measured 4.54 live
     EXPECT_LT(moving / static_cast<double>(count()), 0.05) << method;  // 0.035
-    EXPECT_LT(highest_m, 0.3) << method << ": the floor is level";     // 0.18, of an impact and of two doubled readings
+    // 0.18, due to an impact and two repeated readings
+    EXPECT_LT(highest_m, 0.3) << method << ": the floor is level";
   }
 }
 
-/// Lines as `rostopic echo -p` writes a sensor_msgs/Imu: columns by place, the stamp in seconds and nanoseconds.
+/// Lines in the format of `rostopic echo -p` for sensor_msgs/Imu: fixed columns, with the time stamp in seconds and
+/// nanoseconds.
 void write_by_column(const std::filesystem::path& from, const std::filesystem::path& to, double force_scale) {
   std::ifstream in(from);
   std::ofstream out(to);

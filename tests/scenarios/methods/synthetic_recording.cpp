@@ -65,7 +65,7 @@ void add_imu(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BI, sim::
   recording.truth.imus.push_back(truth);
 }
 
-// distance to the room from inside along a unit direction; negative when the ray leaves through the open top
+// distance to the room from inside along a unit direction; negative if the ray leaves through the open top
 double range_in_room(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
   double range = 1e9;
   if (direction.z() < 0.0) range = -from.z() / direction.z();

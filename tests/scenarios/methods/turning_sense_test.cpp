@@ -16,10 +16,10 @@ namespace {
 using ::testing::HasSubstr;
 using Changed = std::function<Eigen::Quaterniond(const Eigen::Quaterniond&)>;
 
-/// Slow enough for the gyro; no axis of a sensor.
+/// A rotation slow enough for the gyro, about an axis that is no sensor axis.
 const testing::SyntheticMotion kMotion{.angle_rad = 6.0};
 
-/// The rig's recording, its lidar turned against the IMU by 40 deg.
+/// The rig's recording, with the lidar rotated against the IMU by 40 deg.
 sim::Sensors sensors() {
   sim::Sensors out = testing::synthetic_rig(kMotion).sensors;
   out.lidars.front().T_BL.linear() =
@@ -27,7 +27,7 @@ sim::Sensors sensors() {
   return out;
 }
 
-/// The true attitudes of a sensor at 20 Hz, each as `changed` writes it.
+/// The true attitudes of a sensor at 20 Hz, each changed by `changed`.
 Estimate attitudes(const Eigen::Matrix3d& R_BA, Frame stated, const Changed& changed) {
   Estimate out;
   out.frame = stated;
@@ -43,7 +43,7 @@ Eigen::Quaterniond as_is(const Eigen::Quaterniond& q) {
   return q;
 }
 Eigen::Quaterniond with_w_first(const Eigen::Quaterniond& q) {
-  return {q.z(), q.w(), q.x(), q.y()};  // w x y z, taken for x y z w
+  return {q.z(), q.w(), q.x(), q.y()};  // w x y z, interpreted as x y z w
 }
 Eigen::Quaterniond inverse(const Eigen::Quaterniond& q) {
   return q.conjugate();

@@ -15,11 +15,11 @@
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
-// what methods say of themselves where their inputs are wrong; tests/bench/verdicts has the figures over many draws
+// tests the findings of methods with wrong inputs; tests/bench/verdicts prints statistics over many draws
 namespace tumble::scenarios {
 namespace {
 
-/// What a method makes of a draw with wrong inputs.
+/// Returns the result of a method on a draw with wrong inputs.
 Estimate run_wrong(const SimulatedDraw& draw, const char* method, const std::string& wrong) {
   SimulatedDraw given = draw;
   testing::wrong_inputs().at(wrong)(given.recording.sensors);
@@ -52,7 +52,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 16202, 1);
   const Method& method = *find_methods("slam/tumble").at(0);
-  // clocks 20 ms apart, a mounting off by 3 deg and 3 cm: twice what the priors believe
+  // clocks differ by 20 ms, a mounting error of 3 deg and 3 cm: twice the deviations of the priors
   for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
     const Said good = said_of(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;
@@ -62,11 +62,11 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped", "lidar_ranges_long"}) {
     const Said bad = said_of(method, draw, wrong);
     EXPECT_TRUE(bad.status != OutcomeStatus::ok || bad.localised == 0.0) << wrong;
-    EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // or nothing was wrong
+    EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // otherwise, nothing was wrong
   }
 }
 
-// The same, live: from earlier samples alone. TumblingOdometry reports this to its user too.
+// The same test, live: from earlier samples only. TumblingOdometry also reports this to its user.
 TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);
@@ -75,7 +75,8 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   EXPECT_EQ(said_of(method, draw, "lidar_ranges_long").localised, 0.0);
 }
 
-// A mounting that is 10 deg off is learnt in part: 0.7 m off at the end, and told by how far it was moved.
+// A mounting error of 10 deg is partly corrected. The end error is 0.7 m, and the size of the correction reveals the
+// error.
 TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 87201, 1);
@@ -86,8 +87,8 @@ TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   EXPECT_GT(moved.ate_m, 0.3) << "nothing was wrong";
 }
 
-// A scale that all gyros share is in the way too, where nothing contradicts it: more than a metre off, and told by the
-// forces of units at different places.
+// If nothing contradicts a common scale error of all gyros, it also affects the path: the error exceeds a metre, and
+// the force differences between IMUs reveal it.
 TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
@@ -100,9 +101,9 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   EXPECT_TRUE(tells("all_gyros_frozen"));
 }
 
-// Twice a wrong unit: what the sphere feels at rest is half of gravity, and its run is refused, not only doubted.
-// Of the first the size of the axis' part is small, and no other check sees it; of the second nothing is left that
-// moves.
+// A unit error of two in both directions: the force at rest is half of gravity, and the run is rejected. In the first
+// case, the size of the axis component is small, and no other check detects it. In the second case, nothing remains
+// that moves.
 TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
@@ -115,8 +116,8 @@ TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.error_code, ErrorCode::out_of_range);
 }
 
-// Its units' places make the forces differ by 6 to 9 % less than they should; of the gyros gravity says that they are
-// right.
+// Due to the positions of its IMUs, the force differences are 6 to 9 % too small. Gravity shows that the gyros are
+// correct.
 TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
@@ -138,8 +139,7 @@ TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
   EXPECT_NEAR(estimate.health.at("imu_rest_force_share"), 0.5, 0.02);
 }
 
-// Microseconds for nanoseconds: the whole run lasts some milliseconds, and every rate and way is that of another
-// motion.
+// Microseconds instead of nanoseconds: the whole run takes some milliseconds, so all rates and distances are wrong.
 TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
@@ -152,7 +152,7 @@ TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   }
 }
 
-// What leads from one rest to the next must lead gravity there, also where an attitude is asked for.
+// Rates between two rests must rotate gravity from one to the other, also for attitude methods.
 TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 91001, 1, Lidars::left_out);
@@ -170,7 +170,7 @@ TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
 
 struct SaidOfRates {
   bool implausible = false, z_frozen = false, mislabelled_axes = false;
-  double turned_sigma_rad_s = 0.0;  ///< mean where it turns
+  double turned_sigma_rad_s = 0.0;  ///< mean while it rotates
 };
 
 SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
@@ -187,8 +187,8 @@ SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
   return out;
 }
 
-// Flight, impacts and clipped axes in between: gravity at the rests before and after a tumble tells whether the rates
-// can be believed.
+// A tumble contains flight, impacts and clipped axes. Gravity at the rests before and after it shows whether the rates
+// are consistent.
 TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
@@ -196,7 +196,7 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
   EXPECT_FALSE(good.mislabelled_axes);
-  // the mirrored world: gravity turns as it should, and only flight tells
+  // a mirrored world: gravity rotates correctly, and only flight reveals the error
   const SaidOfRates mirrored = rates_of(draw, "accel_flipped");
   EXPECT_TRUE(mirrored.implausible);
   EXPECT_TRUE(mirrored.mislabelled_axes);
@@ -208,8 +208,8 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_TRUE(frozen.z_frozen);
 }
 
-// Of a gyro that clips in its flights too: neither the right sense nor another had any flight while readings at a rail
-// did not count (docs/maths/imu_merge.md (I32)).
+// A gyro that clips in its flights, too: if readings at a limit do not count, no flight agrees with the correct or with
+// other axis signs (docs/maths/imu_merge.md (I32)).
 TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
@@ -218,7 +218,8 @@ TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
     EXPECT_TRUE(rates_of(draw, wrong).mislabelled_axes) << wrong;
 }
 
-// An attitude behind a gap in a tumble: off by radians and sure of it before gaps were bridged (attitude.md (A17)).
+// An attitude after a gap in a tumble: without bridging, the error is radians with a small stated deviation
+// (attitude.md (A17)).
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
@@ -231,11 +232,11 @@ TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
     const Eigen::Vector2d off = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
     beyond += off.norm() > 3.0 * std::sqrt(attitude.covariance_rad2.topLeftCorner<2, 2>().trace()) ? 1.0 : 0.0;
   }
-  // nine of ten samples that move were off by up to 20 deviations
+  // without this, nine of ten moving samples have errors of up to 20 standard deviations
   EXPECT_LT(beyond, 0.01 * static_cast<double>(estimate.attitudes.size()));
 }
 
-// It never rests, and no window of a held force tells it.
+// The body never rests, and no window with a constant force reveals the error.
 TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
@@ -244,7 +245,7 @@ TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   EXPECT_TRUE(rates_of(draw, "gyro_scale_5_percent").implausible);
 }
 
-// What turns an attitude is asked the same as what is reported as a rate.
+// Rates for an attitude are checked like reported rates.
 TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
@@ -257,7 +258,7 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_z_flipped"));
 }
 
-// A run is wrong by what it stated before it told of trouble, whatever it adds then.
+// Whether a run is wrong depends on the covariance before it was increased.
 TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);

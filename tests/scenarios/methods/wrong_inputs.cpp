@@ -28,13 +28,13 @@ void freeze(std::vector<Eigen::Vector3d>& readings) {
   for (std::size_t k = readings.size() / 3; k < readings.size(); ++k) readings[k] = readings[readings.size() / 3];
 }
 
-/// From within the motion on.
+/// Faults that start during the motion.
 void freeze_axis(std::vector<Eigen::Vector3d>& readings, int axis) {
   const std::size_t from = readings.size() / 5;
   for (std::size_t k = from; k < readings.size(); ++k) readings[k][axis] = readings[from][axis];
 }
 
-/// As devices that give "linear acceleration" do: what a second's mean says of gravity is taken away.
+/// Some devices give "linear acceleration": the mean over a second, which contains gravity, is subtracted.
 void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<std::int64_t>& time_ns) {
   constexpr double kMean_s = 1.0;
   Eigen::Vector3d gravity = forces.empty() ? Eigen::Vector3d::Zero() : forces.front();
@@ -46,7 +46,7 @@ void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<st
   if (forces.size() > 1) forces.front() = forces[1];
 }
 
-/// The sample before which the first IMU's gyro changes most: that of an impact.
+/// Returns the sample before which the first IMU's gyro changes most, which is an impact.
 std::size_t hardest_impact(const sim::ImuRecord& imu) {
   std::size_t hardest = 0;
   double change = 0.0;
@@ -57,7 +57,7 @@ std::size_t hardest_impact(const sim::ImuRecord& imu) {
   return hardest;
 }
 
-/// All IMUs lose their samples for so long, about the hardest impact: neither the rate nor the force of it is read.
+/// All IMUs lose their samples for this time around the hardest impact, so neither its rate nor its force is measured.
 void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
   if (sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return;
   const std::int64_t from_ns = sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2;
@@ -90,7 +90,7 @@ void rotate_lidar(sim::Sensors& sensors, double rad, double m) {
   }
 }
 
-/// Returns at random ranges along their beams, as dust, rain or grass make them.
+/// Moves returns to random ranges along their beams, as with dust, rain or grass.
 void dust(sim::Sensors& sensors, double share) {
   sim::Stream stream(7, "dust");
   for (sim::LidarRecord& lidar : sensors.lidars) {

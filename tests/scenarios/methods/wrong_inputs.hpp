@@ -10,11 +10,11 @@
 
 namespace tumble::scenarios::testing {
 
-/// What recordings are wrong in when somebody else made them: units, axes, signs, clocks, mountings, sensors that die,
-/// dust. By name; `none` changes nothing.
+/// Typical faults of recordings from other sources, by name: units, axes, signs, clocks, mountings, failing sensors,
+/// dust. `none` changes nothing.
 const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs();
 
-/// Whether a wrong input is one of what methods of a kind (slam, position) read.
+/// Returns whether a wrong input affects data that methods of a kind (slam, position) use.
 bool is_of_kind(const std::string& wrong_input, Kind kind);
 
 }  // namespace tumble::scenarios::testing
