@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios::testing {
 
-/// A test with a folder of its own, gone afterwards.
+/// A test with its own folder, which is deleted afterwards.
 class TemporaryFolder : public ::testing::Test {
  protected:
   void SetUp() override {

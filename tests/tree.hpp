@@ -3,18 +3,18 @@
 
 #include <filesystem>
 
-/// Where the tests find what is not compiled into them. Functions, not definitions on the command line: only tree.cpp
-/// knows the paths of this checkout, and a compiler cache serves all others with the rest.
+/// Paths that tests need at run time. They are functions instead of definitions on the command line: only tree.cpp
+/// contains paths of this checkout, so a compiler cache serves all other files.
 namespace tumble::test {
 
-/// The root of the checkout.
+/// Returns the root of the checkout.
 std::filesystem::path source_dir();
-/// The program `tumble` of this build.
+/// Returns the program `tumble` of this build.
 std::filesystem::path program();
-/// Where tests keep certificates of this build, so that what one has measured serves the others.
+/// Folder in which tests store certificates of this build, so that other tests can use them.
 std::filesystem::path certificates();
-/// Folder of the real recordings: the environment's TUMBLE_SHARED_DATA, else the one beside the checkout. It need not
-/// be there.
+/// Folder of the real recordings: TUMBLE_SHARED_DATA of the environment, or a folder next to the checkout. The folder
+/// may be missing.
 std::filesystem::path shared_data();
 
 }  // namespace tumble::test

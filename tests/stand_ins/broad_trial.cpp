@@ -19,7 +19,7 @@ namespace {
 
 constexpr TimeNs kPeriod_ns = 3'500'000;  // 1 / 285.714 Hz
 
-/// Row-major table of a data set, as doubles.
+/// Returns a row-major table of a data set as doubles.
 struct Table {
   std::size_t rows = 0, columns = 0;
   std::vector<double> values;
@@ -57,7 +57,7 @@ BroadTrial assemble(const Table& gyr, const Table& acc, const Table& quat, const
   return trial;
 }
 
-/// Angle about the vertical nearest to the rotation e, in (-pi, pi].
+/// Returns the angle about the vertical nearest to the rotation e, in (-pi, pi].
 double heading(const Eigen::Quaterniond& e) {
   return 2.0 * std::atan(e.z() / e.w());
 }

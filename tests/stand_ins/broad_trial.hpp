@@ -16,26 +16,27 @@ struct BroadTrial {
   std::vector<bool> moving;
 };
 
-/// Numbers of the trials at hand: the stand-in's ("00", tests/stand_ins) and the eight real ones where they are there.
+/// Numbers of the available trials: the stand-in ("00", tests/stand_ins), and the eight real ones if they are
+/// available.
 std::vector<std::string> broad_trials();
 
-/// Folder of the real trials; empty when the shared data are not there.
+/// Folder of the real trials; empty if the shared data are missing.
 std::string broad_folder();
 
-/// Reads the trial whose file name begins with `number` ("05"). Throws std::runtime_error when it cannot.
+/// Reads the trial whose file name starts with `number` ("05"). Throws std::runtime_error if it cannot.
 BroadTrial read_broad_trial(const std::string& folder, const std::string& number);
 
-/// One of `broad_trials()`.
+/// Reads one of `broad_trials()`.
 BroadTrial read_broad_trial(const std::string& number);
 
-/// Root mean square errors in degrees as BROAD defines them, samples without reference left out.
+/// Root mean square errors in degrees as defined by BROAD, without samples that have no reference.
 struct BroadError {
   double inclination_motion_deg = 0.0;
   double heading_motion_deg = 0.0;
   double inclination_rest_deg = 0.0;
 };
 
-/// Errors of `q_WI`, one per sample, after its heading is aligned at the first sample with reference.
+/// Errors of `q_WI`, one per sample, after the heading is aligned at the first sample with reference.
 BroadError score(const BroadTrial& trial, const std::vector<Eigen::Quaterniond>& q_WI);
 
 }  // namespace tumble::testing

@@ -11,23 +11,24 @@ inline constexpr double kStandardGravity_m_s2 = 9.80665;
 
 /// A motion in closed form.
 struct KnownMotion {
-  std::function<Eigen::Quaterniond(double)> q_WI;  ///< of the seconds since the start
+  std::function<Eigen::Quaterniond(double)> q_WI;  ///< attitude at a time in seconds from the start
   std::function<Eigen::Vector3d(double)> p_WI_m;
 };
 
-/// Angular velocity in the body at `t`, rad/s: a central difference over 0.2 ms each way, exact to 1e-5 rad/s for
-/// motions below 10 Hz.
+/// Returns the angular velocity in the body at `t`, rad/s: a central difference over 0.2 ms in both directions, exact
+/// to 1e-5 rad/s for motions below 10 Hz.
 Eigen::Vector3d angular_velocity(const KnownMotion& motion, double t);
-/// Specific force in the body at `t`, m/s^2; gravity is standard; exact to 1e-3 m/s^2 as above.
+/// Returns the specific force in the body at `t`, m/s^2, with standard gravity; exact to 1e-3 m/s^2 for motions below
+/// 10 Hz.
 Eigen::Vector3d specific_force(const KnownMotion& motion, double t);
 
-/// Zero before `begin`, one after `begin + length`, between them the polynomial of fifth degree whose first two
+/// Zero before `begin`, one after `begin + length`; between them, the polynomial of fifth degree whose first two
 /// derivatives vanish at both ends.
 double smooth_step(double t, double begin, double length);
-/// One within (begin, end), smooth over `ramp` inside of it, zero outside.
+/// One within (begin, end), smooth over `ramp` at both ends, zero outside.
 double window(double t, double begin, double end, double ramp);
 
-/// White noise that is the same on every machine and with every library (xorshift, sum of uniforms).
+/// White noise with identical numbers on every machine and with every library (xorshift, sum of uniforms).
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : state_(seed) {}

@@ -14,7 +14,7 @@ namespace tumble::test {
 
 namespace {
 
-/// What stands in the catalogue -> what takes its place.
+/// Texts of the catalogue and their replacements.
 using Replaced = std::vector<std::pair<std::string, std::string>>;
 
 const Replaced& replaced_in(const std::string& name) {
@@ -48,7 +48,7 @@ std::filesystem::path write_short_scenario(const std::string& name, const std::f
   return file;
 }
 
-// as files of their own: links would make their digest one of where they lie
+// copies of the files, because with links, the digest would depend on their location
 std::filesystem::path write_short_data(const std::filesystem::path& folder) {
   constexpr auto kAll = std::filesystem::copy_options::recursive;
   std::filesystem::copy(source_dir() / "models", folder / "models", kAll);

@@ -6,14 +6,14 @@
 
 namespace tumble::test {
 
-/// A scenario of the catalogue under its own name, cut short for tests that ask what a program does and not how well: a
-/// short rest, then `hill` 4 s instead of 10, `throw` 5 s instead of 9, `roll` 5 s instead of 14.5, along a line of 1.2
-/// to 1.6 m. Written into `folder`, whose path of it is returned. Throws std::runtime_error when the catalogue has no
-/// such scenario, or does not say any more what is replaced.
+/// A shortened scenario of the catalogue with its own name, for tests that do not measure accuracy. The rest is short;
+/// `hill` takes 4 s instead of 10, `throw` 5 s instead of 9, `roll` 5 s instead of 14.5 along a line of 1.2 to 1.6 m.
+/// Writes the scenario to `folder` and returns its path. Throws std::runtime_error if the catalogue lacks the scenario
+/// or a replaced text.
 std::filesystem::path write_short_scenario(const std::string& name, const std::filesystem::path& folder);
 
-/// The tree's models and scenarios below `folder`, which is returned, `hill` and `roll` short under their own names.
-/// With the same files whenever and wherever, so that a certificate measured over one serves the others.
+/// Returns `folder` with the tree's models and scenarios, with short `hill` and `roll` under their own names. The files
+/// are always identical, so a certificate measured with one folder is valid for the others.
 std::filesystem::path write_short_data(const std::filesystem::path& folder);
 
 }  // namespace tumble::test

@@ -17,14 +17,14 @@ namespace tumble::test {
 namespace {
 
 constexpr double kRate_hz = 1e9 / 3.5e6;  // 285.714 Hz, as the trials
-// the order of size of the trials' sensor
+// noise as large as that of the trials' sensor
 constexpr double kGyroNoise_rad_s = 0.004, kAccelNoise_m_s2 = 0.03, kMagNoise_ut = 0.3;
 const Eigen::Vector3d kGyroBias_rad_s(0.004, -0.003, 0.002);
 const Eigen::Vector3d kField_W_ut(0.0, 19.0, -45.0);
-// of the optical reference
+// noise of the optical reference
 constexpr double kMarkerNoise_rad = 2e-4, kMarkerNoise_m = 1e-4;
 
-/// How much it moves: still for 8 s at each end and from 46 to 54 s.
+/// Amplitude of the motion: stationary for 8 s at each end and from 46 to 54 s.
 double liveliness(double t) {
   return window(t, 8.0, 46.0, 2.0) + window(t, 54.0, 82.0, 2.0);
 }
@@ -42,7 +42,7 @@ KnownMotion hand() {
           }};
 }
 
-/// Seconds in which the cameras lose the markers.
+/// Intervals in which the cameras lose the markers, in seconds.
 bool occluded(double t) {
   return (t > 20.0 && t < 20.3) || (t > 33.0 && t < 33.2) || (t > 61.0 && t < 61.4);
 }

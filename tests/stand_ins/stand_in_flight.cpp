@@ -15,8 +15,8 @@ namespace tumble::test {
 namespace {
 
 constexpr double kPeriod_s = 0.011, kPad_s = 779.4, kFlight_s = 22.0;
-// 300 m up within 8 s and down within 10; from 10 to 14 s it spins about its axis, at 38.9 rad/s when it is fastest,
-// which is 2229 deg/s, as on the real flight (1.875: the steepest slope of a smooth step)
+// 300 m up within 8 s and down within 10. From 10 to 14 s it spins about its axis at up to 38.9 rad/s, which is 2229
+// deg/s, as in the real flight (1.875: the steepest slope of a smooth step)
 constexpr double kHeight_m = 300.0, kSpin_rad = 38.9 * 4.0 / 1.875;
 
 KnownMotion rocket() {

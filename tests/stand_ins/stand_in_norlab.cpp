@@ -20,7 +20,7 @@ constexpr int kRings = 16, kColumns = 150;
 constexpr double kSweep_s = 0.1;
 constexpr long long kStart_s = 1690309709, kStart_ns = 285305600;
 
-/// The way from the lidar to the wall of the room, in the lidar's axes.
+/// Returns the vector from the lidar to the wall of the room, in the lidar's axes.
 Eigen::Vector3d hit(const Eigen::Isometry3d& T_WL, const Eigen::Vector3d& ray_L) {
   const Eigen::Vector3d ray_W = T_WL.linear() * ray_L, from = T_WL.translation();
   double nearest_m = 1e9;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kLogPeriod_s = 0.008, kRadius_m = 0.145;
 constexpr double kSphereGyroNoise_rad_s = 0.002, kSphereAccelNoise_m_s2 = 0.02;
 
-/// Rolls 3 m along x between 3 and 28 s, faster and slower on the way: the centre of the sphere, where the sensor is.
+/// Centre of a sphere that rolls 3 m along x between 3 and 28 s, with varying speed. The sensor is at the centre.
 double path_length_m(double t) {
   const double u = smooth_step(t, 3.0, 25.0);
   return kStandInSphereNet_m * u + 0.08 * std::sin(2.0 * M_PI * 3.0 * u);
@@ -34,7 +34,7 @@ KnownMotion rolling() {
           }};
 }
 
-/// As the log has them: nine decimals.
+/// Writes numbers with nine decimals, as in the log.
 Eigen::Vector3d rounded(const Eigen::Vector3d& v) {
   return (v * 1e9).array().round() / 1e9;
 }
@@ -52,7 +52,7 @@ void write_sphere_log(const std::filesystem::path& folder) {
   out << kNames;
   const KnownMotion motion = rolling();
   Noise noise(20260703);
-  // the profile and the error in roll of the code that wrote the real log
+  // parameters, and the error in roll, of the code that wrote the real log
   const baselines::Autogain filter({.profile = baselines::AutogainProfile::code2021, .roll_error_2021 = true});
   baselines::Autogain::State state;
   for (std::size_t k = 0; k < kStandInSphereSamples; ++k) {

@@ -28,7 +28,7 @@ const std::map<std::string, Writer>& writers() {
   return all;
 }
 
-/// The folder of this process, gone with it.
+/// The folder of this process, which is deleted at its end.
 class Root {
  public:
   Root() : path_(fs::temp_directory_path() / ("tumble_stand_ins_" + std::to_string(getpid()))), owner_(getpid()) {}

@@ -8,24 +8,23 @@
 #include <string>
 #include <vector>
 
-/// Stand-ins for the real recordings: files in the sources' own formats, some seconds long, of motions that are known
-/// in closed form, so that every test on real recordings runs in every clone. They prove formats, conventions and that
-/// a method does what it must on a motion like the real one; how good it is on real devices only the real files say,
-/// which the same tests read in addition where they are there.
+/// Stand-ins for the real recordings: short files in the original formats, with closed-form motions, so that every test
+/// on real recordings runs in every clone. They test formats, conventions, and the behaviour of a method on a similar
+/// motion. Only the real files show the accuracy on real devices; the same tests also read them if they are available.
 namespace tumble::test {
 
-/// What a test reads: the stand-in of a source or the source itself.
+/// Data of a test: the stand-in of a source, or the source itself.
 struct DataFolder {
   std::filesystem::path path;
   bool real = false;
 };
 
-/// The folders of a source ("broad", "norlab", "repoimu", "airbrakes", "sphere_log"): always the stand-in's, and the
-/// real one's after it where it is there. Nothing is written yet; `written` does it.
+/// Returns the folders of a source ("broad", "norlab", "repoimu", "airbrakes", "sphere_log"): the stand-in's, then the
+/// real one's if it is available. The function `written` writes the files.
 std::vector<DataFolder> data_folders(const std::string& source);
-/// The real one alone, where it is there.
+/// Returns only the real folder, if it is available.
 std::vector<std::filesystem::path> published_folders(const std::string& source);
-/// Names a test's parameter: "stand_in", "real".
+/// Returns the name of a test's parameter: "stand_in", "real".
 struct FolderName {
   template <class Info>
   std::string operator()(const Info& info) const {
@@ -33,33 +32,34 @@ struct FolderName {
   }
 };
 
-/// Writes the stand-in files of the folder when that was not done in this process; real folders stay as they are.
-/// Returns the folder's path. Deterministic: the same bytes whenever and wherever.
+/// Writes the stand-in files of the folder if this process has not done so; real folders are unchanged. Returns the
+/// path of the folder. The bytes are always identical.
 std::filesystem::path written(const DataFolder& folder);
 
-// The files of the stand-ins, and what is known of them.
+// Files of the stand-ins, and their known properties.
 
-/// Number of the stand-in trial of BROAD (its name begins with it).
+/// Number of the stand-in trial of BROAD, whose file name starts with it.
 inline constexpr const char* kStandInTrial = "00";
 inline constexpr std::size_t kStandInTrialSamples = 25714;
-/// A wand whose gyro clips about x at the tilted rail that TStick_Test05 of RepoIMU shows.
+/// A wand whose gyro clips about x at a tilted limit, as in TStick_Test05 of RepoIMU.
 inline constexpr const char* kStandInWand = "TStick_StandIn.csv";
 inline constexpr const char* kStandInFlight = "stand_in_flight.csv";
 inline constexpr const char* kSphereLogFile = "orientation_all.csv";
 inline constexpr std::size_t kStandInSphereSamples = 3751;
-/// Between the first and the last place of the rolling sphere of the stand-in.
+/// Distance between the first and the last position of the stand-in's rolling sphere.
 inline constexpr double kStandInSphereNet_m = 3.0;
 
-/// Of norlab's sweeps: their number, half the room's sides, and the lidar's pose so long after the first one's start.
+/// Properties of norlab's stand-in: number of sweeps, half the sides of the room, and the lidar's pose at a time after
+/// the first sweep's start.
 inline constexpr int kNorlabSweeps = 6;
 inline constexpr std::array<double, 3> kNorlabRoom_m = {6.0, 4.0, 1.5};
 Eigen::Isometry3d norlab_pose(double t_s);
 
-/// The rail of the real wand: x = +-distance + offset + y_slope y + z_slope z.
+/// Saturation limit of the real wand: x = +-distance + offset + y_slope y + z_slope z.
 struct WandRail {
   double distance_rad_s = 7.2987, offset_rad_s = -0.046, y_slope = 0.006, z_slope = -0.0181;
 };
-/// Samples of the stand-in wand at that rail, counted on the motion itself.
+/// Number of samples of the stand-in wand at this limit, counted on the motion itself.
 int stand_in_wand_clipped();
 
 }  // namespace tumble::test

@@ -8,24 +8,24 @@
 #include <string>
 #include <vector>
 
-/// A recording in the form of RepoIMU, made to the measure of the published ones, of a motion that is known.
+/// A recording in RepoIMU's format, similar to the published recordings, of a known motion.
 namespace tumble::scenarios::fixture {
 
-/// A wand in a hand: it swings slowly and is twirled about x now and then, beyond the rail.
+/// A hand-held wand, which swings slowly and sometimes twirls about x beyond the saturation limit.
 struct Wand {
   double duration_s = 40.0;
   double log_hz = 100.0;
-  double gyro_hz = 0.0;   ///< of a sensor slower than the log; 0: as fast
-  double accel_hz = 0.0;  ///< the same
+  double gyro_hz = 0.0;   ///< rate of a sensor slower than the log; 0: rate of the log
+  double accel_hz = 0.0;  ///< the same for the accelerometer
   double rail_rad_s = 7.3;
-  double rail_tilt = -0.02;   ///< of the x rail, per rad/s of z
-  double rail_y_slope = 0.0;  ///< the same, per rad/s of y
+  double rail_tilt = -0.02;   ///< tilt of the x limit, per rad/s of z
+  double rail_y_slope = 0.0;  ///< tilt of the x limit, per rad/s of y
   double rail_offset_rad_s = 0.0;
-  double delay_s = 0.012;  ///< the reference lags the IMU
+  double delay_s = 0.012;  ///< delay of the reference relative to the IMU
   Eigen::Quaterniond q_IV = Eigen::Quaterniond(Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.2, -0.5, 0.8).normalized()));
   Eigen::Quaterniond q_VW = Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d(1.0, 0.3, 0.0).normalized()));
-  std::vector<double> flips_s;  ///< starts of 0.15 s during which markers are taken for one another
-  int decimals = 4;             ///< of the stamps
+  std::vector<double> flips_s;  ///< starts of intervals of 0.15 s in which markers are confused
+  int decimals = 4;             ///< decimals of the time stamps
 
   static Eigen::Vector3d rate(double t) {
     const double twirl = 11.0 * std::pow(std::max(0.0, std::sin(0.9 * t)), 8.0) * std::sin(3.1 * t);
@@ -33,7 +33,7 @@ struct Wand {
   }
 };
 
-/// Attitudes q_WI every millisecond from -0.2 s on.
+/// Returns attitudes q_WI every millisecond from -0.2 s on.
 class WandAttitude {
  public:
   explicit WandAttitude(double duration_s) {
@@ -62,7 +62,7 @@ inline Eigen::Vector3d clipped(const Wand& wand, Eigen::Vector3d w) {
   return w;
 }
 
-/// The last instant at which a sensor of that rate has spoken.
+/// Returns the last time at which a sensor of this rate had a reading.
 inline double held(double t, double rate_hz) {
   return rate_hz > 0.0 ? std::floor(t * rate_hz + 1e-9) / rate_hz : t;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stranger's function of Python and a program in C on a small bench: page, lines of JSON, what is refused.
+// Tests a Python function and a C program of a user on a small bench: page, lines of JSON, and rejected input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ std::vector<json> lines_of(const std::string& text) {
 class Bench : public ::testing::Test {
  protected:
   void SetUp() override {
-    setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0);  // Debian's own, which tools/setup gives numpy
+    setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0);  // tools/setup installs numpy for Debian's interpreter
     std::ofstream(folder_ / "small.yaml") << "name: small\ndoc: two draws\nmethods: [rate/raw]\ntimeout_s: 60\n"
                                              "draws: {mild: {bare: [1001]}, wild: {hill: [1001]}}\n";
     const fs::path examples = test::source_dir() / "examples" / "methods";
@@ -94,12 +94,12 @@ TEST_F(Bench, MethodsOfStrangersAreHeldBesideOurs) {
   EXPECT_EQ(value(2, "rate_coverage_3sigma"), value(1, "rate_coverage_3sigma"));
   EXPECT_GT(value(1, "rate_coverage_3sigma"), value(0, "rate_coverage_3sigma") + 0.2) << "it said how doubtful it was";
 
-  // asked for again nothing runs anew, and the line is the same, costs included
+  // repeated, nothing is run again, and the line is identical, including time and memory
   ended = bench({"rate/raw", "doubtful.py"}, {"--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(lines_of(ended.out)[1]["draws"], lines[1]["draws"]);
 
-  // what others have published stands on the page, unless it is of another suite or simulation
+  // the page shows published results, unless they belong to another suite or simulation
   const auto beside = [&](const std::string& was, const std::string& is) {
     std::string text = read_file(folder_ / "lines.jsonl");
     const std::size_t at = text.find(was);

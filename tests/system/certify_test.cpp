@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certificate as the program prints it. What the rows measure is tested beside them.
+// Tests the output of the certificate. Separate tests cover the measurements of its rows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What two methods differ by and what breaks them, out of a database made by hand.
+// Tests the comparison of two methods and the causes of failures, with a database written by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using ::testing::Not;
 
 const std::string kError = "rate_error_clipped_median_rad_s";
 
-/// 60 draws of hill whose errors follow the slope that each was drawn with; `raw` errs twice as much as `saave`.
+/// 60 draws of hill whose errors depend on the slope; the errors of `raw` are twice those of `saave`.
 fs::path database_of(const fs::path& folder) {
   const scenarios::DataRoot data{test::source_dir()};
   const scenarios::Scenario scenario = scenarios::load_scenario(data, "hill");
@@ -72,12 +72,12 @@ TEST(Compare, WritesTablesForDocuments) {
   const std::string database = database_of(test_folder()).string();
   EXPECT_THAT(run_program({"compare", database, "--format", "md"}).out, HasSubstr("| metric | method | draws |"));
   EXPECT_THAT(run_program({"compare", database, "--format", "csv"}).out, HasSubstr("\nmetric,method,draws,"));
-  // other programs read numbers: an interval's ends are cells of their own
+  // other programs parse numbers, so the ends of an interval are separate cells
   const std::string csv = run_program({"compare", database, "--format", "csv"}).out;
   EXPECT_THAT(csv, HasSubstr(",median difference,95 % (BCa) low,95 % (BCa) high,better,worse,sign p,"));
   EXPECT_THAT(csv, HasSubstr(",share %,share % 95 % low,share % 95 % high,against %,"));
   EXPECT_EQ(csv.find('['), std::string::npos);
-  // no two columns of one name
+  // column names are unique
   EXPECT_THAT(run_program({"compare", database, "--margin", "10%", "--format", "csv"}).out,
               HasSubstr(",no worse p,no worse Holm p,no worse\n"));
   EXPECT_THAT(run_program({"report", database, "--format", "tex"}).out,
@@ -121,7 +121,7 @@ TEST(Sensitivity, NamesTheNumberThatWasDrawn) {
   }
   EXPECT_TRUE(seen);
   EXPECT_THAT(run_program({"sensitivity", database.string()}).out, HasSubstr("hill: rate, influence of the numbers"));
-  // of other models and scenarios the draws cannot be told
+  // draws of other models and scenarios cannot be reconstructed
   scenarios::Results(database, scenarios::Results::Mode::create_or_append).set_note("data", "another");
   const Ended other = run_program({"sensitivity", database.string()});
   EXPECT_EQ(other.status, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exports and imports of one recording: their clock, tables, and what the user states.
+// Tests exports and imports of one recording: clock, tables, and values that the user states.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,8 @@ TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
   EXPECT_LT(ate_m(scored), 1e-6);
 }
 
-/// A bag, a TUM file and tables of one simulated recording have the same stamps; files that count from zero fit too.
+/// A bag, a TUM file and tables of one simulated recording have the same time stamps; files that count from zero are
+/// also accepted.
 TEST(Exchange, ExportsOfARecordingHaveOneClock) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), bag = (folder / "a.bag").string();
@@ -94,7 +95,7 @@ TEST(Exchange, ExportsOfARecordingHaveOneClock) {
   }
 }
 
-// rates that somebody wrote at the stamps of the exported table
+// external rates at the time stamps of the exported table
 TEST(Exchange, RatesAtTheStampsOfAnExportAreScored) {
   const fs::path folder = test_folder(), given = folder / "estimate";
   const fs::path rates = folder / "rates";

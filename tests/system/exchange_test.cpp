@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Recordings to and from other people's formats. The formats themselves are tested beside the library.
+// Tests exchange of recordings with external formats. Separate tests cover the formats.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(Exchange, EveryFormatLeavesItsFiles) {
   }
 }
 
-/// A user's scenario with a sensor that is neither IMU nor lidar, cut off as it falls.
+/// A user's scenario with a sensor that is neither IMU nor lidar, which ends during the fall.
 TEST(Exchange, AnotherSensorIsTakenAlongOrItIsSaid) {
   const fs::path folder = test_folder();
   const std::string scenario = (folder / "falls.yaml").string(), recording = (folder / "a.h5").string();
@@ -80,7 +80,7 @@ TEST(Exchange, WhatIsExportedAsCsvComesBack) {
   const json said = json_of(imported);
   EXPECT_EQ(said["period_ns"], 4000000);
   EXPECT_GT(said["samples"].get<int>(), 1000);
-  // it is a recording like any other, without truth
+  // the result is a normal recording without truth
   const Ended estimate =
       run_program({"estimate", back, "--method", "attitude/madgwick", "-o", (folder / "estimate").string()});
   EXPECT_EQ(estimate.status, 0) << estimate.err;
@@ -89,7 +89,7 @@ TEST(Exchange, WhatIsExportedAsCsvComesBack) {
   EXPECT_EQ(line_count(export_truth.err), 1u) << export_truth.err;
 }
 
-/// Value of a metric in the answer of `score --json`; NaN when it is not there.
+/// Returns the value of a metric in the output of `score --json`; NaN if it is missing.
 double metric(const json& scored, const std::string& name) {
   for (const json& row : scored["scores"]) {
     if (row["metric"] == name) return row["value"].get<double>();
@@ -97,7 +97,7 @@ double metric(const json& scored, const std::string& name) {
   return std::nan("");
 }
 
-// the way of somebody else's data: sweeps, an IMU and reference poses in files, and back to scores
+// the whole path of external data: from files with sweeps, an IMU and reference poses to scores
 TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), back = (folder / "back.h5").string();
@@ -115,7 +115,7 @@ TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   EXPECT_EQ(said["point_times"], "measured");
   EXPECT_EQ(said["sweep_period_ns"], 100000000);
   EXPECT_EQ(said["origin_ns"], 1000000000000000000) << "all exports have one clock";
-  // the truth as somebody's estimate has no error, and one shifted in time has
+  // the truth as an external estimate has no error, and a shifted truth has one
   const std::vector<std::string> score = {"score", (folder / "truth.txt").string(), back, "--frame", "body", "--json"};
   const Ended scored = run_program(score);
   ASSERT_EQ(scored.status, 0) << scored.err;
@@ -133,7 +133,7 @@ TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   EXPECT_LT(metric(json_of(rolled), "position_end_error_m"), 1.0);
 }
 
-/// Copies some sweeps of an exported folder, with their stamps (one line each, after a line of comment).
+/// Copies some sweeps of an exported folder, with their time stamps (one line each, after a comment line).
 void copy_sweeps(const fs::path& from, const fs::path& to, int first, int count) {
   fs::create_directories(to);
   std::ifstream stamps(from / "lidar_times.txt");
@@ -149,7 +149,7 @@ void copy_sweeps(const fs::path& from, const fs::path& to, int first, int count)
   }
 }
 
-// sweeps and reference poses alone, no IMU: what a lidar by itself makes of them is mapped and scored
+// only sweeps and reference poses, without IMU: a lidar method maps them and is scored
 TEST(Exchange, SweepsAloneAreMappedAndScored) {
   const fs::path folder = test_folder();
   const std::string recording = (folder / "hill.h5").string(), truth = (folder / "truth.txt").string();
@@ -157,7 +157,7 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
   ASSERT_EQ(run_program({"export", recording, "--format", "ply", "-o", (folder / "all").string(), "--quiet"}).status,
             0);
   ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth, "--quiet"}).status, 0);
-  copy_sweeps(folder / "all", folder / "some", 60, 12);  // the rig has come down and rocks
+  copy_sweeps(folder / "all", folder / "some", 60, 12);  // the rig has landed and rocks
   const std::string back = (folder / "back.h5").string(), estimate = (folder / "e").string();
   const Ended imported = run_program({"import", (folder / "some").string(), "--lidar", "rs16", "--robot", "rig",
                                       "--reference", truth, "--reference-frame", "body", "-o", back, "--json"});
@@ -168,15 +168,15 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
   const Ended estimated =
       run_program({"estimate", back, "--method", "slam/constant_velocity", "-o", estimate, "--json"});
   ASSERT_EQ(estimated.status, 0) << estimated.err;
-  // of 11, measured 11. From sweep 48 on, where it still tumbles, one or two are refused without an IMU, and the last
-  // bits of the motion decide which: 0.14 or 0.33 m
+  // 11 of 11, measured 11. From sweep 48 on, the rig still tumbles, and one or two sweeps are rejected without an IMU;
+  // the last bits of the motion determine which ones: 0.14 or 0.33 m
   EXPECT_GE(json_of(estimated)["health"]["sweeps_registered"], 10.0);
   const Ended scored = run_program({"score", estimate, back, "--json"});
   ASSERT_EQ(scored.status, 0) << scored.err;
   EXPECT_EQ(json_of(scored)["status"], "ok");
   EXPECT_LT(metric(json_of(scored), "ate_m"), 0.15);                   // measured 0.052, without IMU in a rocking rig
   EXPECT_LT(metric(json_of(scored), "rotation_error_end_rad"), 0.03);  // measured 0.0098
-  // a method that needs an IMU says so
+  // a method that needs an IMU reports this
   const Ended refused = run_program({"estimate", back, "--method", "slam/tumble", "-o", (folder / "x").string()});
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("the method needs an IMU"));
@@ -210,7 +210,7 @@ TEST(Exchange, AnMcapIsToldByItsNameAndHoldsEstimates) {
       run_program({"export", recording, "--with-truth", "--estimate", estimate, "-o", mcap, "--json"});
   ASSERT_EQ(exported.status, 0) << exported.err;
   EXPECT_EQ(json_of(exported)["format"], "mcap");
-  // the estimate's topic is a reference like the truth's: held to it, it is what `score` says of the estimate
+  // the topic of the estimate can be the reference, like the truth; then the scores agree with `score` of the estimate
   const std::vector<std::string> import = {"import", mcap, "--robot", "sphere", "--radius",
                                            "0.145",  "-o", back,      "--json"};
   std::vector<std::string> with_reference = import;
@@ -262,7 +262,7 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
   EXPECT_THAT(estimated.err, HasSubstr("the method needs an IMU, but the recording contains no IMU"));
 }
 
-// a TUM file of somebody else's: as position and as slam, over the whole recording and over half of it
+// an external TUM file, as position and as slam, over the whole recording and over half of it
 TEST(Exchange, ATrajectoryIsScoredWithItsRotationAndOverWhatItCovers) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), tum = (folder / "t.tum").string();
@@ -284,7 +284,7 @@ TEST(Exchange, ATrajectoryIsScoredWithItsRotationAndOverWhatItCovers) {
   EXPECT_THAT(score({}).err, HasSubstr("aligned in position and yaw"));
   EXPECT_THAT(score({"--kind", "slma"}).err, HasSubstr("did you mean 'slam'?"));
 
-  // the first half, and a turn of 0.1 rad about x at its last pose
+  // the first half, with a rotation of 0.1 rad about x at its last pose
   std::ifstream all(tum);
   std::vector<std::string> lines;
   for (std::string line; std::getline(all, line);) lines.push_back(line);
@@ -328,7 +328,7 @@ TEST(Exchange, HostileSweepsAreOneLine) {
 
 class ExchangeOfRealData : public ::testing::TestWithParam<bool> {
  protected:
-  /// The stand-in's folder or the real one.
+  /// The folder of the stand-in or of the real recording.
   static test::DataFolder folder_of(const char* source) {
     const std::vector<test::DataFolder> folders = test::data_folders(source);
     return GetParam() ? folders.back() : folders.front();
@@ -351,8 +351,8 @@ TEST_P(ExchangeOfRealData, ATrialOfBroadIsRead) {
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(json_of(ended)["attribution"].get<std::string>(), HasSubstr("BROAD"));
   EXPECT_EQ(json_of(ended)["has_reference"], true);
-  // its reference is a truth to score attitudes against; published for vqf on this trial: 1.02 degrees while the
-  // trial's own flag says moving, which is not quite where the reference moves
+  // attitudes are scored against its reference. The published value of vqf for this trial is 1.02 degrees while the
+  // trial's own flag indicates motion, which differs slightly from the motion of the reference
   const Ended estimated = run_program({"estimate", recording, "--method", "attitude/vqf", "-o", estimate});
   ASSERT_EQ(estimated.status, 0) << estimated.err;
   const json scored = json_of(run_program({"score", estimate, recording, "--json"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody else's command in run and sweep: what it answers is scored as ours is, and what goes wrong is an outcome.
+// Tests an external command in run and sweep: its results are scored like ours, and a failure is an outcome.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ std::string describe(const fs::path& folder, const std::string& name, const std:
   return file.string();
 }
 
-/// Metric -> value, costs left out.
+/// Metric -> value, without time and memory.
 std::map<std::string, double> scores_of(const json& document, const std::string& method) {
   std::map<std::string, double> out;
   for (const json& row : document["scores"]) {
@@ -71,14 +71,14 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   EXPECT_EQ(status, (std::map<std::string, std::string>{
                         {"raw", "ok"}, {"crashes", "crashed"}, {"hangs", "timeout"}, {"silent", "failed"}}));
 
-  // another method under the name of one that the database has rows of
+  // another method with the name of a method in the database
   describe(folder, "silent", "false");
   const Ended other = run_program(sweep, in_short_catalogue());
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("rate/silent"));
 }
 
-// whether the method hangs when it is imported or when it runs, nothing of it is left when the user has waited enough
+// if the method hangs on import or during its run, the program ends it after the time limit, and no process remains
 TEST(External, AHangThatIsStoppedLeavesNoFolder) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "small.yaml") << "name: small\ndoc: a draw\nmethods: [rate/raw]\ntimeout_s: 600\n"
@@ -142,7 +142,7 @@ TEST(External, AGateHoldsItToItsAcceptedRun) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("give a FILE.yaml"));
 
-  // negative control: the command of that name has come to answer nothing
+  // negative control: the command of this name now fails
   ended = run({"--method", describe(folder, "raw_python", "true")});
   EXPECT_EQ(ended.status, 1) << ended.err;
   EXPECT_EQ(json::parse(ended.out)["verdict"], "fail");

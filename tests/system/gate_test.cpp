@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gate and triage as the program does them, on fast draws of the sphere.
+// Tests gate and triage of the program, on fast draws of the sphere.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST(Gate, HoldsARunToTheAcceptedOne) {
   EXPECT_EQ(held["held"][0]["draws"], 2);
   EXPECT_THAT(held["certificate"].get<std::string>(), ::testing::AnyOf(HasSubstr("not measured"), HasSubstr("within")));
 
-  // negative control: an accepted run that was far better; the results are there already
+  // negative control: an accepted run with much better results; the results exist already
   const std::string key = "roll,position,tumble,position_end_error_share";
   std::string table = read_file(folder / "accepted.csv");
   const std::size_t begin = table.find(key);
@@ -50,7 +50,7 @@ TEST(Gate, HoldsARunToTheAcceptedOne) {
   EXPECT_EQ(worse.status, 1);
   EXPECT_EQ(json::parse(worse.out)["verdict"], "fail");
 
-  // the gate of another suite is no gate of this one
+  // the gate of another suite is not valid for this suite
   std::string policy = read_file(against);
   policy.replace(policy.find("suite: small"), 12, "suite: other");
   std::ofstream(against) << policy;
@@ -77,7 +77,7 @@ TEST(Triage, NamesTheInputThatCures) {
   EXPECT_THAT(triage["cures"].get<std::vector<std::string>>(), testing::Contains("gyro_unclipped"));
 }
 
-/// A case is made of a draw that fails, run by its name, held, found cured, and accepted.
+/// Makes a case from a failing draw, runs it by name, keeps it, detects that it no longer fails, and accepts it.
 TEST(Shrink, LeavesACaseThatTheGateHolds) {
   const fs::path folder = test_folder();
   const auto in_own_data = [&] { setenv("TUMBLE_DATA", folder.c_str(), 1); };
@@ -107,7 +107,7 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
   EXPECT_EQ(held.status, 0) << held.out;
   EXPECT_EQ(json_of(held)["cases"][0]["expected"], "fails");
 
-  // negative control: of a bound that the case does not exceed it is cured
+  // negative control: with a bound above its error, the case passes
   std::string text = read_file(file);
   const std::string key = "worse_than: ";
   const std::size_t bound = text.find(key) + key.size();

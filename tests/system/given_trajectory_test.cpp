@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A TUM file of somebody else's that shares little or nothing with the recording.
+// Tests an external TUM file that has little or nothing in common with the recording.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class GivenTrajectory : public testing::Test {
     ASSERT_GT(lines_.size(), 1000u);
   }
 
-  /// The first `count` true poses, their stamps times `factor`.
+  /// Returns the first `count` true poses, with their time stamps multiplied by `factor`.
   Ended score(std::size_t count, double factor, bool as_json = false) const {
     const fs::path tum = folder_ / "theirs.tum";
     {
@@ -71,14 +71,14 @@ TEST_F(GivenTrajectory, WhatWasNotComparedIsNotPerfect) {
     return ended.err;
   };
   EXPECT_THAT(refused(score(1, 1.0)), HasSubstr("1 of 1 poses"));
-  // the first two of 0.5 ms each, of some seconds
+  // the first two of several seconds of poses, at intervals of 0.5 ms
   EXPECT_THAT(refused(score(2, 1.0)), HasSubstr("cover 0.0 %"));
-  // stamps in microseconds: the second pose lies beyond the end
+  // time stamps in microseconds: the second pose is beyond the end
   EXPECT_THAT(refused(score(lines_.size(), 1e6)), HasSubstr(" 1 of " + std::to_string(lines_.size()) + " poses"));
-  // in milliseconds, a pose every 0.5 ms: some thirty lie within, each at a wrong time
+  // time stamps in milliseconds with a pose every 0.5 ms: about thirty poses are within the recording, at wrong times
   EXPECT_THAT(refused(score(lines_.size(), 1e3)),
               HasSubstr("1000 times as long. The time unit of the file may be ms;"));
-  // stamps in kiloseconds: all lie in the first thousandth
+  // time stamps in kiloseconds: all are in the first thousandth
   EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("a score needs at least 2 poses and 1 %"));
 }
 
@@ -92,14 +92,14 @@ TEST_F(GivenTrajectory, HowMuchWasComparedStandsInTheTable) {
   EXPECT_NEAR(document["covered"]["share"].get<double>(), 0.5, 0.05);
   EXPECT_EQ(document["covered"]["compared"], half);
   EXPECT_EQ(document["covered"]["poses"], half);
-  // an estimate in a folder says what it is, and has no such rows
+  // an estimate in a folder states its convention, so it has no such rows
   const Ended own =
       run_program({"score", (shared_run("roll") / "estimates" / "position-rolling").string(), recording_});
   EXPECT_EQ(own.status, 0) << own.err;
   EXPECT_THAT(own.out, Not(HasSubstr("covered_share")));
 }
 
-// of a tumble: a sphere that rolls straight on turns about one axis, which may be the same in another order
+// trajectory of a tumble, because a straight rolling sphere rotates about one axis, which may be equal in another order
 TEST_F(GivenTrajectory, AFolderThatNamesNoRecordingIsACaution) {
   const fs::path given = folder_ / "estimate";
   fs::copy(shared_run("roll") / "estimates" / "position-rolling", given);

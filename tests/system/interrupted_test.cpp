@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a verb leaves behind that a signal ends in the middle.
+// Tests the remaining files of a verb that a signal interrupts.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Ends a verb by a signal as soon as something stands in `folder`; its exit status.
+/// Interrupts a verb by a signal as soon as `folder` contains a file. Returns its exit status.
 int status_after(const std::vector<std::string>& arguments, const fs::path& folder, int number) {
   Running running(arguments, [&] { setenv("TMPDIR", folder.c_str(), 1); });
   while (fs::is_empty(folder) && !running.has_ended()) usleep(200);
@@ -25,7 +25,7 @@ int status_after(const std::vector<std::string>& arguments, const fs::path& fold
 
 struct Verb {
   const char* name;
-  std::vector<std::string> arguments;  ///< without the output, which goes into the folder
+  std::vector<std::string> arguments;  ///< without the output, which is in the folder
 };
 
 TEST(Interrupted, NothingHalfDoneIsLeft) {
@@ -57,7 +57,7 @@ TEST(Interrupted, NothingHalfDoneIsLeft) {
       EXPECT_TRUE(fs::is_empty(folder)) << verb.name << " left " << fs::directory_iterator(folder)->path();
     }
   }
-  // the test would see what is left
+  // negative control: the test would detect remaining files
   fs::remove_all(folder);
   fs::create_directory(folder);
   EXPECT_EQ(status_after({"export", recording, "--format", "mcap", "-o", (folder / "o").string()}, folder, SIGKILL),
@@ -65,7 +65,7 @@ TEST(Interrupted, NothingHalfDoneIsLeft) {
   EXPECT_FALSE(fs::is_empty(folder));
 }
 
-// what stood in the folder of an output before is nobody's to remove
+// files that existed in an output folder must remain
 TEST(Interrupted, WhatWasThereStays) {
   const std::string recording = (shared_run("hill") / "recording.h5").string();
   const fs::path folder = test_folder() / "out";

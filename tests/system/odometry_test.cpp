@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `tumble odometry` and `tumble doctor` on bags of other drivers, sound and with faults.
+// Tests `tumble odometry` and `tumble doctor` on bags of other drivers, with and without faults.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// A recording of `stroll`, seven seconds of 20, made once per process.
+/// A recording of `stroll`, seven of its 20 seconds, generated once per process.
 fs::path short_stroll() {
   static const fs::path recording = [] {
     std::string text = read_file(test::source_dir() / "scenarios/catalogue/stroll.yaml");
@@ -66,7 +66,7 @@ void drop_sweeps(sim::LidarRecord& lidar, const std::function<bool(std::size_t)>
 struct Fault {
   const char* name;
   const char* evidence;  ///< part of a finding
-  const char* repair;    ///< part of the repair of a finding
+  const char* repair;    ///< part of the remedy of a finding
   void (*inject)(sim::ImuRecord& imu, sim::LidarRecord& lidar);
 };
 
@@ -117,7 +117,7 @@ const Fault kFaults[] = {
      }},
 };
 
-/// Exports the recording with a fault for another package, and returns the path of the bag.
+/// Exports the recording with a fault for another package. Returns the path of the bag.
 fs::path bag_of(const fs::path& folder, const char* peer, const Fault* fault) {
   scenarios::RecordingInfo info = scenarios::read_info(short_stroll());
   sim::Sensors sensors = scenarios::read_sensors(short_stroll());
@@ -174,7 +174,7 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   const json& summary = document["summary"];
   EXPECT_EQ(summary["health"], "ok");
   EXPECT_GE(summary["sweeps_registered"].get<int>(), 65);
-  // after 1.5 to 2 s of rest and a smooth start, 1.1 to 1.4 m/s
+  // after 1.5 to 2 s of rest and a smooth start, at 1.1 to 1.4 m/s
   EXPECT_GT(summary["path_m"].get<double>(), 2.0);
   EXPECT_LT(summary["path_m"].get<double>(), 8.0);
   const auto found = [&](const std::string& item) {

@@ -44,10 +44,10 @@ Running::Running(const std::vector<std::string>& arguments, const std::function<
   folder_ = fresh_folder("child_" + std::to_string(++count));
   pid_ = fork();
   if (pid_ != 0) return;
-  setpgid(0, 0);  // a group of its own, as a shell gives it
+  setpgid(0, 0);  // a separate process group, as a shell creates it
   redirect(folder_ / "out", STDOUT_FILENO);
   redirect(folder_ / "err", STDERR_FILENO);
-  // a certificate measured by one test serves the others, and nothing is left in the home of whoever runs them
+  // tests share a certificate, and nothing is written to the home folder of the user
   setenv("TUMBLE_CACHE", test::certificates().c_str(), 1);
   if (prepare) prepare();
   const std::string program = test::program();

@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-/// The program as a user has it: a child process, its standard output and error in files, its exit status.
+/// The program as a child process: its standard output and error in files, and its exit status.
 namespace tumble::system_test {
 
 struct Ended {
-  int status = -1;  ///< exit status; 128 + n when signal n ended it
+  int status = -1;  ///< exit status; 128 + n if signal n ended it
   std::string out, err;
 };
 
-/// Runs the program in a child and waits. `prepare` runs in the child before the program (limits, signals).
+/// Runs the program in a child process and waits. `prepare` runs in the child before the program (limits, signals).
 Ended run_program(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
 
-/// A child that runs on, to be signalled.
+/// A child process that continues to run, for signals.
 class Running {
  public:
   explicit Running(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
@@ -38,21 +38,22 @@ class Running {
   int raw_status_ = 0;
 };
 
-/// An empty folder of the test that runs.
+/// An empty folder for the current test.
 std::filesystem::path test_folder();
-/// What `tumble` takes for the scenario of that name where how well methods do is not asked: a file with less of it
-/// (`stand_ins/short_scenario.hpp`), made once per process.
+/// Returns a shortened scenario file of this name for tests that do not measure accuracy
+/// (`stand_ins/short_scenario.hpp`), written once per process.
 std::string shared_scenario(const std::string& name);
-/// To prepare a child with: its data are this tree's, but `hill` and `roll` are the shared scenarios. In a folder of
-/// the process, with the same files in each, so that a certificate measured over one serves the others.
+/// Prepares a child process: it uses the data of this tree, with shortened `hill` and `roll`. The folder belongs to the
+/// process; its files are always identical, so a certificate measured with one folder is valid for the others.
 std::function<void()> in_short_catalogue();
-/// The folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, made once per process. Not to be changed.
+/// Returns the folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, written once per process. Tests must not change
+/// it.
 std::filesystem::path shared_run(const std::string& scenario);
 
 std::string read_file(const std::filesystem::path& path);
-/// Standard output as JSON; a failure of the test when it is not.
+/// Returns the standard output as JSON; the test fails if it is invalid.
 nlohmann::json json_of(const Ended& ended);
-/// Number of lines, all ended.
+/// Returns the number of lines, all of which must be complete.
 std::size_t line_count(const std::string& text);
 
 }  // namespace tumble::system_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sweep leaves beside its database, and the report that is made of both.
+// Tests the files that a sweep writes next to its database, and the report of both.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -22,14 +22,14 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A page up to the Plotly bundle, which holds pictures and addresses of its own.
+/// Returns a page up to the Plotly bundle, which contains pictures and addresses.
 std::string own_part(const fs::path& page) {
   const std::string text = read_file(page);
   return text.substr(0, text.find("<script id=\"plotly\">"));
 }
 
-/// What a sweep of two draws with an example leaves under `name`.db: a copy of one that is made once per process, for a
-/// picture that moves takes longer than all draws.
+/// Returns `name`.db and its files after a sweep of two draws with an example. Copies a sweep that is run once per
+/// process, because an animation takes longer than all draws.
 fs::path copy_of_sweep(const fs::path& folder, const std::string& name) {
   static const fs::path made = [&] {
     const fs::path database = folder.parent_path() / "shared_sweep" / "r.db";
@@ -57,7 +57,7 @@ TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   const std::size_t end = text.find("</script>", bundle);
   EXPECT_GT(end - bundle, 1000000u) << "the Plotly bundle is inside";
   text.erase(bundle, end - bundle);
-  // the bundle holds addresses as text; nothing else of the page may, and nothing may be fetched
+  // the bundle contains addresses as text; the rest of the page must not, and nothing may be loaded from a network
   for (const char* outside : {"http:", "https:", "@import", "url(", "<link"})
     EXPECT_THAT(text, Not(HasSubstr(outside)));
   EXPECT_THAT(text, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "no picture";
@@ -93,7 +93,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("r.db --examples 3")) << "so few draws get none unless told";
   EXPECT_THAT(ended.err, HasSubstr("no pictures of single draws"));
 
-  // a sweep of this build would be refused by results of another one: then that is named instead
+  // a sweep of this build would not accept results of another build, so the page states this instead
   {
     scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
     const auto page_where = [&](const std::string& key, const std::string& text) {
@@ -113,7 +113,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
     EXPECT_THAT(elsewhere, Not(HasSubstr("tumble sweep roll")));
   }
 
-  // they are made of what is there: nothing runs again but the draw that is shown
+  // the report uses existing data; only the shown draw runs again
   ended = run_shortened(sweep_arguments(database, "1..2", "1"));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["outcomes"], 0);
@@ -140,7 +140,7 @@ TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
   const Ended ended = run_shortened(arguments);
   ASSERT_EQ(ended.status, 0) << ended.err;
   const json left = json::parse(read_file(folder / "f.db.files" / "examples.json"));
-  // the typical one, and of the first two that failed what it is not
+  // the typical draw, and the first of two failed draws that is not the typical one
   ASSERT_GE(left["examples"].size(), 2u) << ended.err;
   const json& failed = left["examples"].back();
   EXPECT_FALSE(left["examples"][0]["of_failure"]);
@@ -155,7 +155,7 @@ TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
   EXPECT_THAT(text, Not(HasSubstr("not match these results")));
 }
 
-// too few draws for a typical one: what failed is shown all the same, unless nothing is wanted
+// too few draws for a typical one: failed draws are still shown, unless no examples are requested
 TEST(Report, ShowsADrawThatFailedOfFew) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "lost.yaml") << "name: lost\nkind: position\ncommand: [sh, -c, 'exit 3 # {output}']\n";
@@ -180,7 +180,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   const std::vector<std::string> arguments = sweep_arguments(database, "1..2", "1");
   json left = json::parse(read_file(list));
   ASSERT_EQ(left["examples"].size(), 1u);
-  // as a suite of another scenario would have left it
+  // as from a suite of another scenario
   left["examples"][0]["scenario"] = "elsewhere";
   for (json& picture : left["examples"][0]["pictures"]) {
     const std::string name = "elsewhere-1-" + picture["name"].get<std::string>() + ".png";
@@ -197,7 +197,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   EXPECT_EQ(both["examples"][0]["scenario"], "elsewhere");
   EXPECT_EQ(both["examples"][1]["scenario"], "roll");
 
-  // one that is damaged is told and costs the others nothing
+  // a damaged example is reported and does not affect the others
   left = both;
   left["examples"].push_back(left["examples"][0]);
   left["examples"][2].erase("motion");
@@ -213,7 +213,7 @@ TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db", files = folder / "s.db.files";
   Running running(sweep_arguments(database, "1..2", "1"), in_short_catalogue());
-  // the folder is made just before the draw runs again
+  // the folder is created just before the draw runs again
   for (int i = 0; i < 12000 && !running.has_ended() && !fs::exists(files); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   ASSERT_TRUE(fs::exists(files));

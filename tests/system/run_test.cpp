@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One situation from end to end, and stage by stage.
+// Tests one situation as a whole, and stage by stage.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -23,7 +23,7 @@ json shared_result(const std::string& scenario) {
   return json::parse(read_file(shared_run(scenario) / "out.json"));
 }
 
-/// Metric -> value of one method, without what a run costs.
+/// Metric -> value of one method, without time and memory.
 std::map<std::string, double> scores_of(const json& document, const std::string& kind, const std::string& method) {
   std::map<std::string, double> out;
   for (const json& row : document["scores"]) {
@@ -35,7 +35,7 @@ std::map<std::string, double> scores_of(const json& document, const std::string&
   return out;
 }
 
-/// Whether the method reads the truth, which the verb `estimate` never opens.
+/// Returns whether the method reads the truth, which the verb `estimate` never opens.
 bool needs_truth(const json& outcome) {
   static const json methods = json_of(run_program({"list", "methods", "--json"}));
   for (const json& method : methods) {
@@ -45,8 +45,8 @@ bool needs_truth(const json& outcome) {
   return false;
 }
 
-/// Ours, the oracles and the filters must come through; published mapping may lose a hard tumble, and the second
-/// integral of an accelerometer leaves the bounds of its score within seconds.
+/// Our methods, the oracles and the filters must succeed. Published mapping may fail on a hard tumble, and the double
+/// integral of an accelerometer exceeds the bounds of its score within seconds.
 bool must_hold(const json& outcome) {
   const std::string method = outcome["method"];
   if (method.starts_with("tumble") || method.starts_with("oracle")) return true;
@@ -57,7 +57,8 @@ TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   const fs::path folder = shared_run(GetParam());
   const json result = shared_result(GetParam());
   for (const json& outcome : result["outcomes"]) {
-    if (!must_hold(outcome) && outcome["status"] == "diverged") continue;  // a finding, scored as such
+    // a diverged run is a finding, and scored as one
+    if (!must_hold(outcome) && outcome["status"] == "diverged") continue;
     EXPECT_EQ(outcome["status"], "ok") << outcome;
   }
   EXPECT_EQ(result["digest"].get<std::string>().size(), 32u);
@@ -81,7 +82,7 @@ TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
 TEST_P(OnRobot, SameSeedGivesTheSameDigestForAnyThreads) {
   const std::string scenario = shared_scenario(GetParam());
   const auto digests = [&](const char* seed, const char* threads) {
-    // the lidar alone hands work to threads; any method will do
+    // only the lidar uses threads, so any method is sufficient
     const Ended ended =
         run_program({"run", scenario, "--seed", seed, "--threads", threads, "--method", "rate/raw", "--json"});
     EXPECT_EQ(ended.status, 0) << ended.err;
@@ -96,7 +97,7 @@ TEST_P(OnRobot, SameSeedGivesTheSameDigestForAnyThreads) {
   EXPECT_NE(other.second, expected.second);
 }
 
-/// `recording` without its truth.
+/// Returns `recording` without its truth.
 fs::path blinded(const fs::path& recording, const fs::path& copy) {
   fs::copy_file(recording, copy);
   const hid_t file = H5Fopen(copy.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
@@ -106,7 +107,7 @@ fs::path blinded(const fs::path& recording, const fs::path& copy) {
   return copy;
 }
 
-// record, estimate and score one after the other give what run gives, although estimate is not even shown the truth
+// record, estimate and score in sequence give the results of run, although estimate does not have the truth
 TEST_P(OnRobot, StagesAgreeWithRunAndEstimateNeverOpensTheTruth) {
   const fs::path folder = test_folder();
   const fs::path recording = folder / "recording.h5";
@@ -132,7 +133,7 @@ TEST_P(OnRobot, StagesAgreeWithRunAndEstimateNeverOpensTheTruth) {
     const auto own = scores_of(json_of(scored), kind, method), expected = scores_of(whole, kind, method);
     ASSERT_EQ(own.size(), expected.size()) << name;
     for (const auto& [metric, value] : expected) {
-      // a quaternion is normalised on reading a TUM file: its last bit may differ
+      // reading a TUM file normalises quaternions, so their last bit may differ
       EXPECT_NEAR(own.at(metric), value, 1e-9 * (1.0 + std::abs(value))) << name << " " << metric;
       ++compared;
     }
@@ -246,7 +247,8 @@ TEST(Render, RefusesAnEstimateOfAnotherRecording) {
   }
 }
 
-// the scenario alone: seed 1, ours beside the baseline, a folder named after it, and what to do next
+// only a scenario: seed 1, our method and the baseline, a folder named after the scenario, and a hint about the next
+// step
 TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   const fs::path folder = test_folder();
   const auto in_folder = [&](const std::vector<std::string>& words) {
@@ -270,18 +272,18 @@ TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   EXPECT_THAT(ended.err, HasSubstr("the results are in roll/"));
   EXPECT_THAT(ended.err, HasSubstr("tumble sweep roll --scenario roll --seeds 1..8"))
       << "a suite of the same name would sweep all its scenarios";
-  // again, with a seed: the same methods, and nothing is mixed with what is there
+  // repeated with a seed: the same methods, and the existing results remain separate
   const Ended again = in_folder({"run", "roll", "--seed", "3", "--json"});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(methods(json_of(again)), methods(said));
   EXPECT_TRUE(fs::exists(folder / "roll_2" / "recording.h5"));
-  // the folder does not hide the scenario of its name
+  // the folder does not hide the scenario of the same name
   const Ended drawn = in_folder({"render", "roll", "--seed", "5", "--width", "160", "--height", "120", "-o", "x.png"});
   EXPECT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_THAT(read_file(folder / "x.png"), StartsWith("\x89PNG"));
 }
 
-// a file is no scenario of the catalogue, which is all that `sweep` takes
+// a file is not a scenario of the catalogue, but `sweep` accepts only those
 TEST(FirstRun, AScenarioFileIsNotToBeSwept) {
   const fs::path folder = test_folder();
   const std::string file = shared_scenario("roll");
@@ -303,7 +305,8 @@ TEST(Estimate, PrintsWhatMattersWithUnits) {
   EXPECT_GT(json::parse(read_file(folder / "estimate.json"))["health"].size(), 10u);
 }
 
-/// What `--set` gives a method is taken, is told by the estimate, and a wrong name or value ends the program at once.
+/// The program uses the values of `--set`, and the estimate reports them; a wrong name or value ends the program at
+/// once.
 TEST(Set, AGivenParameterIsTakenToldAndBounded) {
   const fs::path folder = test_folder();
   const fs::path recording = shared_run("roll") / "recording.h5";

@@ -8,14 +8,14 @@
 
 #include "system/program.hpp"
 
-/// The sweep that tests of sweeps, of what they leave and of its report share.
+/// A sweep for several tests: of sweeps, of their files and of the report.
 namespace tumble::system_test {
 
 inline Ended run_shortened(const std::vector<std::string>& arguments) {
   return run_program(arguments, in_short_catalogue());
 }
 
-/// The sweep that these tests share: short draws of the sphere.
+/// The shared sweep, with short draws of the sphere.
 inline std::vector<std::string> sweep_arguments(const std::filesystem::path& database, const std::string& seeds,
                                                 const std::string& examples = "0") {
   return {"sweep",   "roll", "--seeds", seeds,        "--method", "rate/raw", "--method",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sweeps that are stopped and resumed, shards and their merge, draws that are kept.
+// Tests sweeps that are stopped and resumed, shards and their merge, and kept draws.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The scores of a report without what they cost.
+/// Returns the scores of a report without time and memory.
 json comparable(json report) {
   for (json& row : report["scores"]) {
     for (const char* cost : {"estimate_cpu_s", "simulate_cpu_s", "estimate_peak_mib"}) row["metrics"].erase(cost);
@@ -29,8 +29,7 @@ json comparable(json report) {
   return report;
 }
 
-/// Whatever of it has ended by then is stored: waits for outcomes of a second draw, which say that the first is
-/// complete.
+/// Waits for outcomes of a second draw, after which the first draw is completely stored.
 void wait_for_a_draw(Running& running, const fs::path& database) {
   for (int i = 0; i < 1200 && !running.has_ended(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -43,11 +42,11 @@ void wait_for_a_draw(Running& running, const fs::path& database) {
 TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "stopped.db";
-  // far more draws than end before the signal
+  // far more draws than can end before the signal
   std::vector<std::string> arguments = sweep_arguments(database, "1..500");
   arguments.insert(arguments.end(), {"--jobs", "1"});
   Running running(arguments, in_short_catalogue());
-  // one draw at a time; they give the signal, however fast the machine is
+  // one draw at a time; the draws trigger the signal, independent of the speed of the machine
   wait_for_a_draw(running, database);
   ASSERT_FALSE(running.has_ended()) << running.wait().err;
   running.signal(SIGINT);
@@ -60,7 +59,7 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   ASSERT_GE(kept, 1);
   ASSERT_LT(kept, 500);
 
-  // going on over the seeds that are there is no work, and changes nothing
+  // continuing with the existing seeds changes nothing
   const std::int64_t done = json_of(stopped)["draws_done"];
   ASSERT_GE(done, 1);
   const Ended resumed = run_shortened(sweep_arguments(database, "1.." + std::to_string(done + 1)));
@@ -68,13 +67,13 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   EXPECT_EQ(json_of(resumed)["draws_done"], done + 1);
   EXPECT_LE(json_of(resumed)["outcomes"], 4) << "what was stored is not run again";
 
-  // the same seeds in one go give the same scores
+  // the same seeds in one run give the same scores
   const fs::path whole = folder / "whole.db";
   ASSERT_EQ(run_shortened(sweep_arguments(whole, "1.." + std::to_string(done + 1))).status, 0);
   EXPECT_EQ(comparable(report_json(database)), comparable(report_json(whole)));
 }
 
-// of a terminal that closes the shell and the system tell one after the other; nohup leaves it ignored
+// if a terminal closes, the shell and the system both send this signal; nohup ignores it
 TEST(Sweep, ASignalStopsItAndTheLockIsLetGo) {
   const fs::path folder = test_folder();
   for (const int number : {SIGHUP, SIGTERM}) {
@@ -102,7 +101,8 @@ TEST(Sweep, ThatEndsAtOnceLetsTheLockGoToo) {
   arguments.insert(arguments.end(), {"--jobs", "1"});
   Running running(arguments, prepare);
   while (!fs::exists(lock) && !running.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  // the first is heeded at the end of a draw, the second is not waited for; a quick machine may end by the first
+  // the first signal ends the sweep after the current draw, the second at once; a fast machine may end at the first
+  // signal
   for (int signals = 0; !running.has_ended() && signals < 100; ++signals) {
     running.signal(SIGTERM);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -155,7 +155,7 @@ TEST(Sweep, OffATerminalWritesNoControlCharacters) {
   EXPECT_EQ(run_shortened(quiet).err, "");
 }
 
-// what is kept is what `tumble run` leaves: other verbs read it
+// kept files have the format of `tumble run`, so other verbs can read them
 TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
   const fs::path folder = test_folder();
   std::vector<std::string> arguments = sweep_arguments(folder / "k.db", "1..2");
@@ -175,7 +175,7 @@ TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
   EXPECT_EQ(scored.status, 0) << scored.err;
 }
 
-// a part without a draw does not keep the merge from keeping what the others have
+// a shard without a draw does not prevent the merge from keeping the draws of the others
 TEST(Sweep, AShardWithoutSeedsKeepsByTheRuleOfTheOthers) {
   const fs::path folder = test_folder();
   std::vector<std::string> merge = {"merge", "--json", (folder / "merged.db").string()};
@@ -190,7 +190,7 @@ TEST(Sweep, AShardWithoutSeedsKeepsByTheRuleOfTheOthers) {
   EXPECT_EQ(json_of(merged)["kept"], 1);
 }
 
-// 'slip' is a suite, and a scenario of it
+// 'slip' is a suite, and also one of its scenarios
 TEST(Sweep, OfASuiteSomeScenariosAlone) {
   const fs::path folder = test_folder(), database = folder / "a.db";
   const std::vector<std::string> words = {"sweep", "slip",   "--seeds",    "1", "--method", "rate/raw",
@@ -208,12 +208,12 @@ TEST(Sweep, OfASuiteSomeScenariosAlone) {
   const Ended unknown = with({"--scenario", "slib"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("unknown scenario of suite 'slip' 'slib'"));
-  const Ended all = with({"--shard", "2/2"});  // which has nothing to do
+  const Ended all = with({"--shard", "2/2"});  // this shard is empty
   EXPECT_EQ(all.status, 0) << all.err;
   EXPECT_THAT(all.err, HasSubstr("use --scenario slip to run only the scenario"));
 }
 
-// seeds in a row are asked for where a suite has but some of them
+// consecutive seeds are requested, but the suite has only some of them
 TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
   const fs::path folder = test_folder(), suite = folder / "named.yaml";
   std::ofstream(suite) << "name: named\ndoc: d\nmethods: [rate/raw, rate/saave]\ndraws: {mild: {roll: [3, 8]}}\n";
@@ -249,14 +249,14 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--until", "rate/raw:rate/tumble:rate_error_clipped_median_rad_s"}, "method of the suite");
   refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"},
           "a shard contains only a part of the draws");
-  // what is met once the database is open: one that the sweep made goes again
+  // errors after the database is open: a database that the sweep created is deleted
   refused({"--again", "ok"}, "'ok' cannot be run again");
   refused({}, "split the range of seeds into parts", "1..20000000");
   refused({"--shard", "1/2"}, "split the range of seeds into parts", "0..18446744073709551615");
   EXPECT_TRUE(fs::is_empty(database.parent_path())) << fs::directory_iterator(database.parent_path())->path();
 }
 
-// the lidar's library said of too little memory that the CPU was too old
+// with too little memory, the lidar's library reports that the CPU is too old
 TEST(Sweep, ADrawWithoutMemoryIsKilledAndBlamesNothingElse) {
   std::vector<std::string> arguments = sweep_arguments(test_folder() / "m.db", "1..1");
   arguments.insert(arguments.end(), {"--memory", "110", "--method", "position/tumble"});

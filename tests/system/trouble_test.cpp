@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damaged files, places that cannot be written, a disk that is full.
+// Tests damaged files, paths that cannot be written, and a full disk.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -41,7 +41,7 @@ TEST(ErrorCode, TruncatedRecordingIsRecognised) {
 }
 
 TEST(ErrorCode, FolderThatCannotBeWritten) {
-  // below a regular file: refused to root too
+  // a path below a regular file, which root cannot write either
   const fs::path folder = test_folder();
   std::ofstream(folder / "file") << "x";
   const std::string below = (folder / "file" / "below").string();
@@ -98,7 +98,7 @@ TEST(ErrorCode, ABagForARecordingPointsToImport) {
 
 TEST(ErrorCode, FullDiskLeavesNoPartialRecording) {
   const fs::path folder = test_folder();
-  // a limit on the size of files stands for the disk that is full; a roll takes more than this
+  // a limit on the file size simulates a full disk; a roll needs more than this
   const auto full = [] {
     const rlimit limit = {64 * 1024, 64 * 1024};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -116,7 +116,7 @@ TEST(ErrorCode, FullDiskLeavesNoPartialRecording) {
 TEST(ErrorCode, TooFewFilesAreNoDefect) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string();
-  // how many this process has open is not known: below some number the program cannot even be loaded
+  // the number of open files of this process is unknown; below some limit, the program cannot be loaded
   std::size_t met = 0;
   for (rlim_t files = 4; files <= 12; ++files) {
     fs::remove_all(folder / "o.mcap");
@@ -161,7 +161,7 @@ TEST(ErrorCode, AGapIsSaidWithItsPlace) {
   std::ofstream csv(folder / "gap.csv");
   csv << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
   for (int k = 0; k < 500; ++k) {
-    const int cs = k < 200 ? k : k + 150;  // nothing for one and a half seconds
+    const int cs = k < 200 ? k : k + 150;  // a gap of 1.5 s
     csv << cs / 100 << ',' << cs % 100 * 10'000'000 << ",0.01,0," << 0.001 * (k % 7) << ",0,0,9.8\n";
   }
   csv.close();
@@ -174,7 +174,7 @@ TEST(ErrorCode, AGapIsSaidWithItsPlace) {
   EXPECT_THAT(ended.err, HasSubstr("imu has no readings between 1.990 and 3.500 s"));
 }
 
-// met before the run, of which nothing stays that looks finished
+// detected before the run, so no output remains that looks complete
 TEST(ErrorCode, WhatIsLearntHasAPlaceOrNothingRuns) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string(), made = (folder / "e").string();
@@ -186,14 +186,14 @@ TEST(ErrorCode, WhatIsLearntHasAPlaceOrNothingRuns) {
                                (folder / "none" / "rig.json").string(), "-o", made}),
                   "none/rig.json: cannot be written");
   EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
-  // the folder that the run makes is one
+  // the folder that the run creates is valid
   EXPECT_EQ(run_program({"estimate", recording, "--method", "rate/tumble", "--learnt", made + "/rig.json", "-o", made})
                 .status,
             0);
   ASSERT_TRUE(fs::exists(folder / "e" / "rig.json"));
 }
 
-// what another rig has taught is believed to millimetres, and clipped rates are wrong by it
+// the calibration of another rig is assumed accurate to millimetres, so clipped rates are wrong
 TEST(ErrorCode, WhatWasLearntOfAnotherRigIsACaution) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string(), file = (folder / "rig.json").string();

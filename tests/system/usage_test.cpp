@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Help, names and listings: what a newcomer types first.
+// Tests help, names and listings, which new users call first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -38,9 +38,9 @@ INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                                          "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
                                          "triage", "shrink", "export", "import", "odometry", "doctor"));
 
-/// OSMesa brings LLVM with it and PCL's readers VTK: both are loaded when they are asked for.
+/// OSMesa loads LLVM, and PCL's readers load VTK: the program loads both only on demand.
 TEST(Program, BeginsWithoutTheLibrariesThatFewVerbsNeed) {
-  // the loader lists what it would load, and ends
+  // the loader lists the libraries that it would load, and exits
   const Ended listed = run_program({"--version"}, [] { setenv("LD_TRACE_LOADED_OBJECTS", "1", 1); });
   EXPECT_THAT(listed.out, HasSubstr("libmujoco"));
   for (const char* dear : {"libOSMesa", "libLLVM", "libpcl_io", "libvtk"})

@@ -54,8 +54,8 @@ TEST(ParseShard, IsOneOfN) {
 }
 
 TEST(ShardSeeds, PartitionTheRange) {
-  // every seed in exactly one shard, in order, lengths differing by one at most; more shards than seeds leave empty
-  // ones
+  // every seed is in exactly one shard, in order, and lengths differ by at most one; with more shards than seeds, some
+  // are empty
   for (const std::uint64_t count : {1u, 2u, 3u, 7u, 10u, 13u}) {
     std::uint64_t next = 5;
     std::size_t empty = 0;
@@ -75,7 +75,7 @@ TEST(ShardSeeds, PartitionTheRange) {
   }
 }
 
-// whose number does not fit 64 bits
+// a number that exceeds 64 bits
 TEST(ShardSeeds, PartitionAllSeedsThereAre) {
   constexpr std::uint64_t kLast = 18446744073709551615u;
   for (const std::uint64_t count : {1u, 2u, 3u, 1000000u}) {
@@ -118,14 +118,14 @@ TEST(MakeFolder, IsRefusedBelowAFileAndLeavesNothing) {
   scenarios::replace_file(folder / "a.txt", "content");
   std::ifstream stream(folder / "a.txt");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "content");
-  // a path below a regular file cannot be written, not even by root
+  // a path below a regular file, which root cannot write either
   EXPECT_THAT([&] { scenarios::replace_file(folder / "a.txt" / "b", "x"); },
               ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_THAT([&] { make_folder(folder / "a.txt" / "b"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no partial file stays";
 }
 
-// before anything is worked out for it
+// detected before any computation
 TEST(PrepareFile, RefusesWhatCannotBeOneAndLeavesNothing) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("tumble_prepare_file_" + std::to_string(getpid()));

@@ -81,7 +81,7 @@ class SweepUntilTest : public scenarios::testing::SmallCatalogue {
                        parse_question(asked, 0.05, suite));
   }
 
-  /// Every row but for what it cost, in the order of seeds and methods.
+  /// Returns every row without time and memory, in the order of seeds and methods.
   std::vector<std::string> rows(const std::string& name) const {
     std::vector<std::string> out;
     for (const scenarios::Outcome& row :
@@ -94,7 +94,7 @@ class SweepUntilTest : public scenarios::testing::SmallCatalogue {
   Session session_;
 };
 
-// it ends early, at the same draw for any number of jobs and after an interruption
+// the sweep ends early, at the same draw for any number of jobs and after an interruption
 TEST_F(SweepUntilTest, EndsWhenItIsAnswered) {
   const AskedSweep one = run("one.db", kAsked, 1);
   ASSERT_EQ(one.answers.size(), 1u);
@@ -114,7 +114,7 @@ TEST_F(SweepUntilTest, EndsWhenItIsAnswered) {
   EXPECT_EQ(rows("three.db"), seen);
 }
 
-// Control: a margin that nothing meets is answered too, with no; and a question that stays open takes all seeds
+// Control: a margin that no method reaches is answered with no; an open question uses all seeds
 TEST_F(SweepUntilTest, GoesOnWhileItIsOpen) {
   const AskedSweep asked = run("a.db", std::string(kAsked) + ":1e9", 2);
   EXPECT_EQ(asked.answers[0].finding, scenarios::Finding::worse);

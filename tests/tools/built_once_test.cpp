@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How often one draw composes its world, from the simulation over the scores of maps to the pictures: counted by how
-// often the robot's MJCF file is opened, which nothing but composing does.
+// Tests how often one draw composes its world, from the simulation and map scores to the pictures. Counts how often the
+// robot's MJCF file is opened, because only composing opens it.
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
 #include <unistd.h>
@@ -28,10 +28,10 @@ sensors:
   - {name: lidar, kind: spinning_lidar, device: rs16, site: rs16}
 )";
 
-/// Counts how often a file is opened from now on, by whichever process.
+/// Counts how often any process opens a file from now on.
 class Openings {
  public:
-  /// Closings are watched too: the kernel makes one of equal events that follow each other.
+  /// Watches closing as well, because the kernel merges equal consecutive events.
   explicit Openings(const std::filesystem::path& file) : fd_(inotify_init1(IN_NONBLOCK)) {
     if (fd_ < 0 || inotify_add_watch(fd_, file.c_str(), IN_OPEN | IN_CLOSE) < 0) throw std::runtime_error("inotify");
   }
@@ -39,9 +39,9 @@ class Openings {
   Openings(const Openings&) = delete;
   Openings& operator=(const Openings&) = delete;
 
-  /// Since the last call.
+  /// Returns the number since the last call.
   int count() {
-    std::array<inotify_event, 64> events;  // without names: a file is watched, no folder
+    std::array<inotify_event, 64> events;  // events without names, because a file is watched, not a folder
     int opened = 0;
     for (ssize_t size = 0; (size = read(fd_, events.data(), sizeof events)) > 0;) {
       const auto read_now = events.begin() + size / static_cast<ssize_t>(sizeof(inotify_event));

@@ -22,7 +22,7 @@ using ::testing::Not;
 constexpr const char* kRateError = "rate_error_clipped_median_rad_s";
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// Values by rising seed; infinite: the run failed.
+/// Values by increasing seed; infinite: the run failed.
 MethodSummary method(const std::string& name, const std::vector<double>& values, const char* metric = kRateError) {
   MethodSummary out;
   out.method = name;
@@ -65,7 +65,7 @@ TEST(Contests, NameTheBestAndByHowMuch) {
   EXPECT_NEAR(all[0].percent, -90.0, 1e-9) << "0.2 beside 2";
   EXPECT_NEAR(all[0].percent_low, -90.0, 1e-9);
   EXPECT_NEAR(all[0].percent_high, -90.0, 1e-9) << "all pairs differ alike";
-  // nine signs alike by chance: 2/512, twice that for two comparisons
+  // nine equal signs by chance: 2/512, doubled for two comparisons
   EXPECT_EQ(all[0].certainty, Certainty::corrected);
   EXPECT_TRUE(all[0].won());
   EXPECT_NEAR(all[0].times, 10.0, 1e-9);
@@ -92,7 +92,7 @@ TEST(Contests, AreOpenWhereChanceExplainsThem) {
 }
 
 TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
-  // six pairs alike: chance 2/64, times two comparisons more than 5 %
+  // six equal pairs: chance 2/64, which exceeds 5 % for two comparisons
   const std::vector<double> two(6, 2.0), half(6, 0.5), third(6, 0.3);
   const std::vector<ContestResult> all =
       contests_of(summary_of({method("raw", two), method("saave", half), method("tumble", third)}));
@@ -105,7 +105,7 @@ TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
   EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("not significant after correction"));
 }
 
-// so few that there is no interval: what they all say is said, and that they are few
+// too few draws for an interval: the text states the common result, and that there are few draws
 TEST(Contests, OfThreeDrawsThatAllSayTheSameIsAheadAndUnsure) {
   const std::vector<ContestResult> all =
       contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 1})}));
@@ -140,7 +140,7 @@ TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {
   EXPECT_TRUE(all[0].won()) << "it ran where the other failed";
 }
 
-// three of nine runs of the baseline failed: how much better is unknown above, not below
+// three of nine runs of the baseline failed: the improvement has no upper bound, but a lower bound
 TEST(Contests, HaveAShareWhereAnIntervalIsInfiniteOnOneSide) {
   std::vector<double> failing(9, 2.0);
   for (std::size_t i : {0u, 4u, 8u}) failing[i] = kInfinite;

@@ -22,7 +22,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A recording of four samples whose gyro y axis is flat, with what raw would make of it.
+/// A recording of four samples whose gyro y axis is constant, and the estimate of `raw` from it.
 scenarios::RunResult clipped_run() {
   scenarios::RunResult run;
   run.scenario = "hill";
@@ -112,7 +112,7 @@ bool nothing_stands_in(const std::filesystem::path& folder) {
   return found.examples.empty() && found.unreadable.empty();
 }
 
-/// Nothing is found, and why is told with the path.
+/// The search finds nothing; the message contains the reason and the path.
 bool all_is_unreadable_in(const std::filesystem::path& folder) {
   const FoundExamples found = read_examples(folder, Pictures::read);
   return found.examples.empty() && found.unreadable.size() == 1 &&
@@ -121,7 +121,7 @@ bool all_is_unreadable_in(const std::filesystem::path& folder) {
 
 class ExamplesTest : public scenarios::testing::TemporaryFolder {
  protected:
-  /// Everything that a list holds, each with a value of its own.
+  /// All fields of a list, each with a unique value.
   static Example sample(std::uint64_t seed) {
     Example example;
     example.scenario = "hill";
@@ -218,18 +218,18 @@ TEST_F(ExamplesTest, WhatIsDamagedCostsTheOthersNothing) {
     for (const Example& example : read_examples(folder_, Pictures::read).examples) out.push_back(example.seed);
     return out;
   };
-  // one whose picture is gone
+  // an example whose picture is missing
   std::filesystem::remove(folder_ / "hill-4-scene.png");
   EXPECT_THAT(seeds(), ElementsAre(3u, 5u));
   ASSERT_EQ(read_examples(folder_, Pictures::read).unreadable.size(), 1u);
   EXPECT_THAT(read_examples(folder_, Pictures::read).unreadable[0],
               ::testing::AllOf(HasSubstr("example 2"), HasSubstr("hill-4-scene.png")));
-  // one that lacks a field
+  // an example that lacks a field
   std::string text = whole;
   text.replace(text.find("\"motion\""), 8, "\"notion\"");
   overwrite_list(text);
   EXPECT_THAT(seeds(), ElementsAre(5u)) << "the first has no motion, the second no picture";
-  // a list that is cut off in its last example
+  // a list that is truncated in its last example
   overwrite_list(whole.substr(0, whole.size() - 200));
   EXPECT_THAT(seeds(), ElementsAre(3u));
   EXPECT_EQ(read_examples(folder_, Pictures::read).unreadable.size(), 2u) << "the cut, and the picture";

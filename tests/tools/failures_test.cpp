@@ -36,7 +36,7 @@ class FailedDrawsTest : public scenarios::testing::TemporaryFolder {
     results_->store(outcome);
   }
   FailedDraws found() const { return failed_draws(*results_, scenarios::summarize(*results_), folder_ / "a.db"); }
-  /// Of the first draw.
+  /// Settings of the first draw.
   std::vector<std::string> commands() const {
     const FailedDraws failed = found();
     std::vector<std::string> out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figures of a page and the tables next to them: what they show of failed draws, and how methods are told apart.
+// Tests figures of a page and the tables next to them: how failed draws are shown, and how methods are distinguished.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
   EXPECT_TRUE(box_figure(page_summary("hill"), Kind::slam, "map_overlap", "").empty());
 }
 
-/// Failed draws stand on their own line beyond the worst value, and count in the quartiles of the box.
+/// Failed draws are on a separate line beyond the worst value, and count in the quartiles of the box.
 TEST(BoxFigure, ShowsDrawsThatFailed) {
   Summary summary = page_summary("hill");
   MetricSummary& raw = summary.sections[0].methods[0].metrics["rate_error_clipped_median_rad_s"];
@@ -116,7 +116,7 @@ TEST(Page, TextInTablesWrapsAndColoursStandOutOnDarkGround) {
   EXPECT_THAT(page, HasSubstr("Plotly.react(element, shown(figure.data), layout,"));
 }
 
-// six colours: what comes after them has another symbol and filling, a line other dashes
+// there are six colours; further methods have other symbols, fillings or dashes
 TEST(Page, TellsMoreMethodsApartThanThereAreColours) {
   Summary summary = page_summary("hill");
   Section& section = summary.sections[0];

@@ -29,7 +29,7 @@ const sim::Surface& surface() {
   return room;
 }
 
-/// A body that goes from the origin along x.
+/// A body that moves from the origin along x.
 sim::Truth straight_path() {
   sim::Truth truth;
   truth.period_ns = 10'000'000;
@@ -42,7 +42,7 @@ sim::Truth straight_path() {
   return truth;
 }
 
-/// The truth in a world turned and moved, with a map of points at two heights there.
+/// The truth in a translated and rotated world, with a map of points at two heights.
 scenarios::Estimate estimate_elsewhere(const sim::Truth& truth) {
   const Eigen::Isometry3d T_VW(Eigen::Translation3d(3, -4, 1) * Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitZ()));
   scenarios::Estimate estimate;
@@ -86,7 +86,7 @@ TEST(ErrorMap, IsHeldToTheTrueSurfaceInTheTruthsWorld) {
   EXPECT_NEAR(map.error_m[0], 0.0f, 1e-5f);
   EXPECT_NEAR(map.error_m[3], 0.4f, 1e-5f);
   EXPECT_NEAR(map.share_within(0.1f), 0.75, 1e-12);
-  // negative controls: no map, and a map without poses to place it by
+  // negative controls: no map, and a map without poses to align it
   scenarios::Estimate empty = estimate_elsewhere(truth);
   empty.map.clear();
   EXPECT_TRUE(map_by_error("a", empty, truth, surface()).points_W_m.empty());
@@ -105,7 +105,7 @@ TEST(ErrorColour, GoesFromBlueToRed) {
 
 TEST(MapPicture, ShowsEachMapInItsPanelNearerPointsInFront) {
   const sim::Truth truth = straight_path();
-  // the middle of the way is in the middle of the panel
+  // the middle of the path is in the middle of the panel
   ErrorMap good, bad;
   good.points_W_m = {{0.5f, 0.0f, 0.5f}};
   good.error_m = {0.0f};
@@ -119,7 +119,7 @@ TEST(MapPicture, ShowsEachMapInItsPanelNearerPointsInFront) {
   EXPECT_EQ(count(picture, error_colour(kMapErrorMax_m), 0, width, height), 0);
   EXPECT_EQ(count(picture, error_colour(kMapErrorMax_m), width, picture.width, height), 4);
 
-  // in one map: a point above another, seen from above, hides it, whichever comes first
+  // in one map, the higher of two points hides the lower one in the view from above, for any order
   ErrorMap both = bad;
   both.points_W_m.emplace_back(0.5f, 0.0f, 0.5f);
   both.error_m.push_back(0.0f);

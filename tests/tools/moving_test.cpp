@@ -22,7 +22,7 @@ sim::Picture plain(std::uint8_t red, std::uint8_t green, std::uint8_t blue, int 
   return picture;
 }
 
-/// What a reader makes of it: frames with the time at which each ends.
+/// Result of an independent reader: frames with the time at which each ends.
 struct Decoded {
   int width = 0, height = 0;
   std::vector<int> end_ms;
@@ -81,7 +81,7 @@ TEST(WebpAnimation, RefusesWhatItCannotHold) {
   EXPECT_THROW(animation.bytes(), std::logic_error);
 }
 
-/// 10 s that turn at 1 rad/s, between 6 and 7 s at 20.
+/// 10 s of rotation at 1 rad/s, and at 20 rad/s between 6 and 7 s.
 sim::Truth turning() {
   sim::Truth truth;
   truth.period_ns = 10'000'000;
@@ -114,7 +114,7 @@ TEST(FrameCount, FollowsFromSpeedAndRate) {
   MovingOptions options;
   options.frames_per_s = 20.0;
   options.speed = 0.5;
-  // 2 s at half speed are watched for 4 s: 80 steps, and the frame that they begin from
+  // 2 s at half speed take 4 s: 80 steps, plus the first frame
   EXPECT_EQ(frame_count({0, 2'000'000'000}, options), 81u);
   EXPECT_EQ(frame_count({5, 5}, options), 1u);
 }

@@ -24,7 +24,7 @@ using scenarios::Summary;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// An example with one picture, one plot and a legend, under names that would end an element.
+/// An example with one picture, one plot and a legend, with names that would end an HTML element.
 ShownExample evil_example(const std::string& evil) {
   ShownExample shown;
   shown.example.scenario = shown.example.motion = shown.example.choice = evil;
@@ -108,7 +108,7 @@ TEST(Page, SaysWhatItsRecordingsAre) {
 TEST(Page, SaysWhatItsTasksAndMethodsAre) {
   PageContent content;
   content.summary = page_summary("hill");
-  // a section of one method has no contest, so that its task is none of theirs
+  // a section of one method has no comparison, so it has no task
   content.summary.sections.push_back(content.summary.sections[0]);
   content.summary.sections[1].kind = Kind::attitude;
   content.summary.sections[1].methods.resize(1);
@@ -191,7 +191,7 @@ TEST(Page, HasItsPartsInOrderAndInTheListOfContents) {
   EXPECT_THAT(page_html({}, ""), Not(HasSubstr("<a href=\"#errors\">"))) << "of nothing there is nothing to go to";
 }
 
-// of the first class the score is small and sure, of the last it has no upper end
+// the score of the first class is small and certain; that of the last has no upper end
 TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
   PageContent content;
   content.summary = page_summary("hill");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The palette stays apart for everybody: distances in CIELAB, as seen by normal, protan, deutan and tritan eyes.
+// The colours of the palette are distinguishable for everyone: distances in CIELAB for normal, protan, deutan and
+// tritan vision.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -35,7 +36,7 @@ Vector3d lab(const Vector3d& rgb) {
   return {116.0 * f.y() - 16.0, 500.0 * (f.x() - f.y()), 200.0 * (f.y() - f.z())};
 }
 
-/// What eyes without red, without green, or without blue cones see of linear light (Machado, Oliveira, Fernandes, *A
+/// Converts linear light to the perception without red, green or blue cones (Machado, Oliveira, Fernandes, *A
 /// physiologically-based model for simulation of color vision deficiency*, IEEE TVCG 15:1291, 2009; severity 1).
 std::array<Matrix3d, 4> eyes() {
   Matrix3d protan, deutan, tritan;
@@ -45,7 +46,7 @@ std::array<Matrix3d, 4> eyes() {
   return {Matrix3d::Identity(), protan, deutan, tritan};
 }
 
-/// Between the two that are nearest to each other, for the eyes that tell them apart worst.
+/// Returns the smallest distance between two colours, for the type of vision with the smallest distance.
 double smallest_distance(const std::vector<Colour>& colours) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const Matrix3d& eye : eyes()) {
@@ -63,7 +64,7 @@ std::vector<Colour> palette() {
   return out;
 }
 
-/// Of the luminances (WCAG 2.2).
+/// Returns the contrast of two luminances (WCAG 2.2).
 double contrast(Colour a, Colour b) {
   const Vector3d weights(0.2126, 0.7152, 0.0722);
   const double first = weights.dot(linear(a)) + 0.05, second = weights.dot(linear(b)) + 0.05;
@@ -73,7 +74,7 @@ double contrast(Colour a, Colour b) {
 TEST(Cielab, IsThatOfTheTables) {
   EXPECT_LT((lab(linear({"#ffffff"})) - Vector3d(100.0, 0.0, 0.0)).norm(), 1e-3);
   EXPECT_LT((lab(linear({"#000000"}))).norm(), 1e-9);
-  // sRGB's red as colour tables have it
+  // sRGB's red as in colour tables
   EXPECT_LT((lab(linear({"#ff0000"})) - Vector3d(53.24, 80.09, 67.20)).norm(), 0.02);
   for (const Matrix3d& eye : eyes())
     EXPECT_LT((eye * Vector3d::Ones() - Vector3d::Ones()).norm(), 1e-4) << "grey stays";
@@ -81,7 +82,7 @@ TEST(Cielab, IsThatOfTheTables) {
 
 TEST(Palette, StaysApartForColourBlindEyesToo) {
   EXPECT_GT(smallest_distance(palette()), 30.0);
-  // negative controls: what it was before, two of its colours alike to deutan eyes, and one colour twice
+  // negative controls: a palette with two similar colours for deutan vision, and a palette with a repeated colour
   const std::vector<Colour> before = {{"#009e73"}, {"#e69f00"}, {"#cc79a7"}, {"#0072b2"},
                                       {"#d55e00"}, {"#56b4e9"}, {"#f0e442"}};
   EXPECT_LT(smallest_distance(before), 20.0);

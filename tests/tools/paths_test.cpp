@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr std::int64_t kPeriodNs = 1000000;
 
-/// Rests for 0.5 s, then spirals upwards for 1 s while turning about its axis, then rests for 0.5 s.
+/// Rests for 0.5 s, then moves upwards in a spiral for 1 s while rotating about its axis, then rests for 0.5 s.
 sim::Truth spiral() {
   sim::Truth truth;
   truth.period_ns = kPeriodNs;
@@ -46,7 +46,7 @@ sim::Sensors sensors_of(const sim::Truth& truth) {
   return sensors;
 }
 
-/// The true IMU poses in a world of the estimator's own: elsewhere, and with another heading.
+/// The true IMU poses in a world of the estimator with another position and heading.
 scenarios::Estimate perfect_estimate(const sim::Truth& truth, scenarios::Frame frame) {
   Isometry3d T_VW = Isometry3d::Identity();
   T_VW.linear() = AngleAxisd(1.2, Vector3d::UnitZ()).toRotationMatrix();

@@ -24,7 +24,7 @@ using testing::known_pose;
 using testing::known_recording;
 using ::testing::Not;
 
-/// An array of the packed bytes as its numbers.
+/// Returns an array of the packed bytes as numbers.
 template <typename Number>
 std::vector<Number> unpacked(const PackedReplay& data, const std::string& name) {
   const json at = json::parse(data.head).at("arrays").at(name);
@@ -66,7 +66,7 @@ TEST(PackedReplay, AKnownPoseAtAKnownTimeComesBackWithinItsQuantum) {
       }
       Eigen::Quaterniond q;
       for (int i = 0; i < 4; ++i) q.coeffs()[i] = attitudes[4 * k + static_cast<std::size_t>(i)] / 32767.0;
-      // half a step in each of four numbers turns by no more than two of them
+      // an error of half a step in each of four numbers rotates by at most two steps
       EXPECT_LT(q.normalized().angularDistance(Eigen::Quaterniond(truth.linear())), 2.0 / 32767.0);
     }
   }
@@ -130,13 +130,13 @@ TEST(ReplayPage, EveryNameIsDataAndNoMarkup) {
   std::size_t scripts = 0;
   for (std::size_t at = page.find("</script"); at != std::string::npos; at = page.find("</script", at + 1)) ++scripts;
   EXPECT_EQ(scripts, 3u) << "head, bytes and the page's own";
-  // the head says the same name
+  // the head contains the same name
   const std::string open = "<script type=\"application/json\" id=\"head\">";
   const std::size_t begin = page.find(open) + open.size();
   const json head = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
   EXPECT_EQ(head.at("title"), evil);
   EXPECT_EQ(head.at("actors").at(1).at("name"), evil);
-  // negative control: what is looked for would be found
+  // negative control: the search would find it
   EXPECT_THAT(page + evil, HasSubstr("<img"));
 }
 

@@ -43,12 +43,12 @@ TEST(ReplayMotion, GoesBetweenItsPosesAndNoFurther) {
     times.push_back(t);
     poses.push_back(known_pose(t));
   }
-  times.push_back(1'050'000'000);  // what is no pose is left out
+  times.push_back(1'050'000'000);  // an invalid pose is left out
   poses.push_back(Isometry3d(Eigen::Translation3d(Vector3d::Constant(std::nan("")))));
   times.push_back(3'000'000'000);
   poses.push_back(known_pose(3'000'000'000));
   const Motion motion(times, poses);
-  // even turning about one axis and even speed: slerp and lerp are exact
+  // constant rate about one axis and constant speed: slerp and lerp are exact
   ASSERT_TRUE(motion.at(123'456'789));
   EXPECT_LT(apart(*motion.at(123'456'789), known_pose(123'456'789)), 1e-12);
   EXPECT_FALSE(motion.at(-1));
@@ -65,11 +65,11 @@ TEST(ReplayMotion, OfAnEstimateIsMovedToTheTruth) {
   const Motion motion = estimated_motion(estimate, recording.sensors, &recording.truth, {});
   ASSERT_FALSE(motion.empty());
   EXPECT_LT(apart(*motion.at(500'000'000), known_pose(500'000'000)), 1e-9);
-  // negative control: it is the mounting given that is undone
+  // negative control: the given mounting is removed
   recording.sensors.imus[0].T_BI.translation().x() += 0.1;
   const Motion other = estimated_motion(estimate, recording.sensors, &recording.truth, {});
   EXPECT_GT(apart(*other.at(500'000'000), known_pose(500'000'000)), 0.01);
-  // frames whose sensor is not there, and no poses
+  // frames of a missing sensor, and an estimate without poses
   recording.sensors.lidars.clear();
   EXPECT_TRUE(
       estimated_motion(known_estimate(Frame::lidar, mounting(), mounting()), recording.sensors, nullptr, {}).empty());
@@ -106,13 +106,14 @@ TEST(ReplayPoints, AreSpreadEvenlyOverBeamsAndSweeps) {
   std::array<int, 16> of_beam = {};
   int in_first_sweep = 0;
   for (std::size_t i = 0; i < some.p_B_m.size(); ++i) {
-    // x says which return it was
+    // x is the number of the return
     const auto index = static_cast<std::size_t>(std::lround((some.p_B_m[i].x() - 0.6f) / 0.001f));
     ++of_beam[index % 16];
     in_first_sweep += index < 320 ? 1 : 0;
     EXPECT_GE(some.time_ns[i], some.time_ns[i == 0 ? 0 : i - 1]);
   }
-  // a quarter of 40, one more or less in each round: 16 steps of the ratio are a ninth of a turn, 40 of them 4.5 rounds
+  // a quarter of 40, with one more or less per revolution: 16 steps of the ratio are a ninth of a revolution, 40 are
+  // 4.5 revolutions
   for (const int count : of_beam) EXPECT_NEAR(count, 10, 5);
   EXPECT_NEAR(in_first_sweep, 80, 3);
 }
@@ -193,7 +194,7 @@ TEST(ReplayStrip, RatesOfAnEstimateAreNotKnownWhereItHasNone) {
   EXPECT_TRUE(estimated_rates(strip, recording.sensors, {}).empty());
 }
 
-/// A level field of 0.1 m cells over 20 m by 20 m.
+/// A level height field with cells of 0.1 m over 20 m by 20 m.
 sim::MeshPart wide_field() {
   sim::MeshPart field;
   field.rows = field.columns = 201;

@@ -9,14 +9,14 @@
 #include "tests/tree.hpp"
 #include "tools/replay/replay.hpp"
 
-/// A body on a known way through an empty room: what it and everybody else must say follows in closed form.
+/// A body on a known path through an empty room: all expected values follow in closed form.
 namespace tumble::tools::testing {
 
 inline constexpr std::int64_t kPeriod_ns = 1'000'000;
 inline constexpr double kSpin_rad_s = 2.0;
 inline constexpr double kHeight_m = 0.5;
 
-/// Turns about z at kSpin_rad_s while it goes along x at 1 m/s.
+/// Rotates about z at kSpin_rad_s while it moves along x at 1 m/s.
 inline Eigen::Isometry3d known_pose(std::int64_t time_ns) {
   const double t = 1e-9 * static_cast<double>(time_ns);
   Eigen::Isometry3d T_WB(Eigen::AngleAxisd(kSpin_rad_s * t, Eigen::Vector3d::UnitZ()));
@@ -39,8 +39,8 @@ inline sim::Truth known_truth(int samples = 1001) {
   return truth;
 }
 
-/// An IMU whose z axis stands at a rail of 1.5 rad/s from 0.4 to 0.6 s, and a lidar at the body's origin: two sweeps of
-/// 320 returns of 16 beams and between them an empty one; every return lies on the floor below or 0.25 m above it.
+/// An IMU whose z axis clips at 1.5 rad/s from 0.4 to 0.6 s, and a lidar at the body's origin. The lidar has two sweeps
+/// of 320 returns of 16 beams, and an empty sweep between them. Every return is on the floor below or 0.25 m above it.
 inline sim::Recording known_recording() {
   sim::Recording recording;
   recording.truth = known_truth();
@@ -80,7 +80,7 @@ inline sim::Recording known_recording() {
   return recording;
 }
 
-/// The known way in a world of its own, turned and moved; rates from 0.2 s on.
+/// The known path in a translated and rotated world; rates from 0.2 s on.
 inline scenarios::Estimate known_estimate(scenarios::Frame frame, const Eigen::Isometry3d& T_BA,
                                           const Eigen::Isometry3d& T_VW) {
   scenarios::Estimate estimate;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report is a function of results: its sources name no scenario, no method and no metric.
+// The report is a function of results: its sources contain no name of a scenario, method or metric.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@
 namespace tumble::tools {
 namespace {
 
-/// Names as the registries and the catalogue have them; the program bears the name of a method.
+/// Names from the registries and the catalogue; the program has the name of a method.
 std::set<std::string> known_names() {
   std::set<std::string> names;
   for (const std::string& name : scenarios::scenario_names({test::source_dir()})) names.insert(name);
@@ -27,14 +27,15 @@ std::set<std::string> known_names() {
   return names;
 }
 
-/// The words of string literals that are one of the names; those of includes are none.
+/// Returns the words in string literals that are one of the names; includes are ignored.
 std::set<std::string> names_in(const std::string& source, const std::set<std::string>& names) {
   static const std::regex literal(R"re("((?:[^"\\\n]|\\.)*)")re");
   static const std::regex word("[A-Za-z0-9_]+");
   const std::string text = std::regex_replace(source, std::regex("#include[^\n]*"), "");
   std::set<std::string> found;
   for (std::sregex_iterator at(text.begin(), text.end(), literal), end; at != end; ++at) {
-    // sentences for people may hold a name that is a word of the language: alone or among marks it is meant
+    // sentences for readers may contain a name that is a normal word; a word that is alone or between marks counts as a
+    // name
     const std::string content = (*at)[1];
     if (content.find(' ') != std::string::npos && content.find("<code>") == std::string::npos) continue;
     for (std::sregex_iterator each(content.begin(), content.end(), word); each != end; ++each)

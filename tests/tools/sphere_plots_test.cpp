@@ -13,8 +13,8 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 constexpr double kSpeed_m_s = 0.5, kTremor_rad = 0.01;
 
-/// Rests for a second, goes along x at a steady speed for two while it slips in the middle, up a step of 10 mm at the
-/// end, rests for half a second.
+/// Rests for a second, moves along x at constant speed for two seconds with slip in the middle, climbs a step of 10 mm
+/// at the end, and rests for half a second.
 sim::Recording roll_recording() {
   sim::Recording recording;
   sim::Truth& truth = recording.truth;
@@ -38,7 +38,7 @@ sim::Recording roll_recording() {
   return recording;
 }
 
-/// `rolling` sees twice the way; `vqf` trembles by kTremor_rad from sample to sample.
+/// `rolling` reports twice the path; `vqf` oscillates by kTremor_rad from sample to sample.
 scenarios::RunResult sample_roll() {
   scenarios::RunResult run;
   run.scenario = "slip";
@@ -91,10 +91,10 @@ TEST(SpherePlots, ShadeTheSlipAndTakeSpeedsAlike) {
   EXPECT_NEAR(plot.shaded[0].first, 1.5, 1e-6);
   EXPECT_NEAR(plot.shaded[0].second, 1.8, 1e-6);
   ASSERT_EQ(plot.lines.size(), 2u);
-  // plateaus, but for the digits kept in the page
+  // plateaus, except for rounding in the page
   EXPECT_NEAR(largest(plot.lines[0].y), kSpeed_m_s, 1e-4);
   EXPECT_NEAR(largest(plot.lines[1].y), 2.0 * kSpeed_m_s, 1e-4);
-  // negative control: a roll that grips has nothing shaded
+  // negative control: a roll without slip has no shaded area
   scenarios::RunResult grips = sample_roll();
   for (sim::ContactLabel& label : grips.recording.truth.label) label = sim::ContactLabel::grip;
   EXPECT_TRUE(sphere_speed_plot(grips).shaded.empty());
@@ -111,7 +111,7 @@ TEST(SpherePlots, ShowTheTremorAtStandstillOnly) {
   ASSERT_EQ(plot.lines.size(), 2u);
   EXPECT_EQ(plot.lines[0].name, "truth");
   EXPECT_NEAR(largest(plot.lines[0].y), 0.0, 1e-9);
-  // all of it, whatever its direction; a mean of an odd number of samples is off by their share
+  // the whole path in any direction; a mean of an odd number of samples has a small error
   EXPECT_NEAR(largest(plot.lines[1].y), kTremor_rad * 180.0 / std::numbers::pi, 0.01);
   EXPECT_LT(last(plot.lines[1].x), 1.01) << "the longest rest is the first";
   scenarios::RunResult none = sample_roll();

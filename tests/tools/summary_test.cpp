@@ -25,7 +25,7 @@ using ::testing::Not;
 
 constexpr const char* kError = "rate_error_clipped_median_rad_s";
 
-/// A results database in the test's folder, empty.
+/// An empty results database in the folder of the test.
 class SummaryTest : public testing::Test {
  protected:
   SummaryTest()
@@ -54,7 +54,7 @@ class SummaryTest : public testing::Test {
 };
 
 TEST_F(SummaryTest, PairsDrawByDrawWithTheBaseline) {
-  // saave is better on 2 of the 4 draws: draw 4 failed and ranks behind every number, whatever it scored
+  // saave is better on 2 of the 4 draws: draw 4 failed and ranks behind every number, whatever its score is
   store(2, Kind::rate, "saave", scenarios::OutcomeStatus::ok, {{kError, 0.5}});
   store(1, Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{kError, 2.0}});
   store(2, Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{kError, 3.0}});

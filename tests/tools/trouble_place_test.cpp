@@ -10,7 +10,7 @@
 namespace tumble::tools {
 namespace {
 
-/// Two IMUs of 100 Hz, a second long.
+/// Two IMUs at 100 Hz, for one second.
 sim::Sensors sound() {
   sim::Sensors sensors;
   for (const char* name : {"left", "right"}) {
@@ -28,7 +28,7 @@ sim::Sensors sound() {
   return sensors;
 }
 
-/// Of the trouble that the second IMU's samples meet.
+/// Returns the place of the trouble in the second IMU's samples.
 std::string place_in(const sim::Sensors& sensors) {
   std::vector<ImuSample> samples;
   const Status status = scenarios::bridge::imu_samples(sensors.imus[1], samples);

@@ -35,7 +35,7 @@ TEST(VerdictLines, EachDoubtIsALineWithItsRowAndValue) {
   EXPECT_TRUE(lines[3].starts_with("localised 0: ")) << lines[3];
 }
 
-// Whatever its row is called: but for rates, of which `readings` speaks.
+// For any name of the row, except for rates, which `readings` covers.
 TEST(VerdictLines, EachDoubtIsSaidAlsoOfAnEstimateOfWhichOnlyTheHealthWasKept) {
   for (const HealthFinding::About about : scenarios::kAllFindings) {
     const bool of_unit = about >= HealthFinding::About::unit_frozen;

@@ -87,7 +87,7 @@ TEST_F(Airbrakes, ReadsTheStandIn) {
           "10 rows have the time stamp of an earlier row and are left out"));
 }
 
-/// The published flights, where they are at hand; the suite is there with them alone.
+/// The published flights. This suite runs only if they are available.
 class AirbrakesPublished : public ::testing::TestWithParam<std::filesystem::path> {};
 
 INSTANTIATE_TEST_SUITE_P(Flights, AirbrakesPublished, ::testing::ValuesIn(test::published_folders("airbrakes")));

@@ -21,9 +21,9 @@ class Bag : public fixture::Folder, public testing::WithParamInterface<fixture::
  protected:
   Bag() {
     for (sim::ImuRecord& imu : recording_.sensors.imus) {
-      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;  // to a plausible median
+      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;  // scaled to a plausible median
     }
-    for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;  // over most of a sweep
+    for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;  // points cover most of a sweep
     reading_.imu.device = "mti30";
     path_ = folder_ / "a.bag";
   }
@@ -62,7 +62,7 @@ TEST_P(Bag, SensorsComeBackToTheFormatsPrecision) {
   EXPECT_EQ(lidar.ring, given.ring);
   ASSERT_EQ(lidar.offset_ns.size(), given.offset_ns.size());
   EXPECT_EQ(lidar.offset_ns, given.offset_ns);
-  // frames hang on the body by quaternions: some roundings
+  // quaternions define the frames relative to the body, which causes some rounding errors
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_TRUE(imported.sensors.imus[k].T_BI.isApprox(recording_.sensors.imus[k].T_BI, 1e-12));
   EXPECT_TRUE(lidar.T_BL.isApprox(given.T_BL, 1e-12));
@@ -113,7 +113,7 @@ TEST_P(Bag, AnotherUnitIsSaid) {
   EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: if the file is read in m/s^2, the median specific force is"));
 }
 
-// some drivers do not keep to sensor_msgs/Imu
+// some drivers violate the definition of sensor_msgs/Imu
 TEST_P(Bag, ForceInGIsReadSoAndSaid) {
   recording_.sensors.imus.resize(1);
   for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force = Eigen::Vector3d(0.6, 0.0, -0.8);
@@ -127,7 +127,7 @@ TEST_P(Bag, ForceInGIsReadSoAndSaid) {
   EXPECT_THAT(complaint_of(), HasSubstr("The file may be in g (set '--accel-unit g')"));
 }
 
-// whoever takes the first IMU of a bag must get the primary one, also where another one's first reading was earlier
+// the first IMU of a bag must be the primary one, even if the first reading of another IMU is earlier
 TEST_P(Bag, ThePrimaryImuIsTheFirstTopicOfItsType) {
   for (std::int64_t& time : recording_.sensors.imus[0].time_ns) time += 700000;
   write();
@@ -140,7 +140,7 @@ TEST_P(Bag, ThePrimaryImuIsTheFirstTopicOfItsType) {
   }
 }
 
-// two of one name came back as one, under the pose of the later
+// two IMUs with one name must not be merged into one with the pose of the later
 TEST_P(Bag, SensorsOfOneNameStayApart) {
   recording_.sensors.imus[1].name = recording_.sensors.imus[0].name = "os";
   recording_.sensors.lidars[0].name = "os";
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
                                          fixture::BagKind{"Ros2Mcap", export_ros2_mcap, import_ros2_bag}),
                          fixture::name_of);
 
-// messages say rad/s; a driver that writes degrees is noticed where gravity turns slowly
+// messages state rad/s; the import detects degrees if gravity rotates too slowly
 TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   const auto turning = [&](double scale, double sign) {
     sim::ImuRecord& imu = recording_.sensors.imus[0];
@@ -213,7 +213,7 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
 }
 
 TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
-  for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // a gyro alone
+  for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // only a gyro
   write();
   EXPECT_THAT(complaint_of(), testing::AllOf(HasSubstr("topic /imu_reference:"),
                                              HasSubstr("(--imu-topic selects the topics to read)")));

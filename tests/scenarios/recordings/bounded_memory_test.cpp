@@ -20,12 +20,12 @@
 namespace tumble::scenarios {
 namespace {
 
-constexpr int kShort = 40, kLong = 160;  // sweeps
-constexpr int kPoints = 20000;           // of a sweep: 26 bytes each in a record
-/// What the 120 sweeps that the long bag has more would take in a record, at least.
+constexpr int kShort = 40, kLong = 160;  // numbers of sweeps
+constexpr int kPoints = 20000;           // points of a sweep: 26 bytes each in a record
+/// Lower bound of the memory of the 120 additional sweeps of the long bag in a record.
 constexpr double kMore_mib = 120.0 * kPoints * 26.0 / (1 << 20);
-/// What an import of the long bag may take more than one of the short: a tenth of it. Samples and indices are some 100
-/// bytes for each of 1400 messages more; the rest is how the allocator keeps pages.
+/// Upper bound of the additional memory for importing the long bag: a tenth of the points' memory. Samples and indices
+/// need about 100 bytes for each of 1400 additional messages; the rest depends on the allocator's pages.
 constexpr double kGrowth_mib = kMore_mib / 10.0;
 
 struct Kind {
@@ -55,7 +55,7 @@ void write_bag(BagWriter& bag, int sweeps) {
   bag.finish();
 }
 
-/// The largest resident set of a process of its own that does it, MiB.
+/// Returns the largest resident set of a separate process that runs the function, in MiB.
 double peak_mib(const std::function<void()>& work) {
   const pid_t child = fork();
   if (child == 0) {
@@ -95,7 +95,7 @@ class BoundedMemory : public fixture::Folder, public testing::WithParamInterface
 TEST_P(BoundedMemory, AnImportDoesNotGrowWithTheBag) {
   for (const int sweeps : {kShort, kLong}) write_bag(*GetParam().writer(bag(sweeps)), sweeps);
   EXPECT_LT(import_mib(kLong, true) - import_mib(kShort, true), kGrowth_mib);
-  // the points in the record: the measure sees what grows
+  // negative control: with the points in the record, memory grows
   EXPECT_GT(import_mib(kLong, false) - import_mib(kShort, false), kMore_mib);
 }
 
@@ -111,14 +111,14 @@ TEST_P(BoundedMemory, AnExportDoesNotGrowWithTheRecording) {
     return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out); });
   };
   EXPECT_LT(export_mib(kLong) - export_mib(kShort), kGrowth_mib);
-  // the points in the record: the measure sees what grows
+  // negative control: with the points in the record, memory grows
   const auto whole_mib = [&](int sweeps) { return peak_mib([&] { read_sensors(recording(sweeps)); }); };
   EXPECT_GT(whole_mib(kLong) - whole_mib(kShort), kMore_mib / 2.0);
 }
 
-/// A recording with the truth of its body, of an IMU and of where each ray ended, and the same poses as an estimate.
+/// A recording with the truth of its body, of an IMU and of the hits of all rays, and the same poses as an estimate.
 void write_truthful(const std::filesystem::path& folder, int sweeps) {
-  constexpr int kStates = 200, kSamples = 40;  // of a sweep's 0.1 s
+  constexpr int kStates = 200, kSamples = 40;  // for the 0.1 s of a sweep
   fixture::Numbers numbers;
   sim::Recording recording;
   sim::Truth& truth = recording.truth;
@@ -146,7 +146,7 @@ class BoundedExport : public fixture::Folder {
   std::filesystem::path file(int sweeps, const char* ending) const {
     return folder_ / (std::to_string(sweeps) + ending);
   }
-  /// What the long recording takes more than the short one.
+  /// Returns the additional memory of the long recording.
   template <class Work>
   double growth_mib(Work&& work) {
     return peak_mib([&] { work(kLong); }) - peak_mib([&] { work(kShort); });

@@ -129,7 +129,7 @@ TEST_F(CloudFile, KittiBin) {
                 "may be truncated"));
 }
 
-/// A sweep of 16 rings, ring by ring, as the columns x y z intensity ring time 0: the first `columns` of them.
+/// A sweep with 16 rings, ring by ring, with the first `columns` of the columns x y z intensity ring time 0.
 template <class Number>
 std::string sweep_of(std::size_t columns) {
   std::string out;
@@ -163,7 +163,7 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
                                 "most 1 % may have such a magnitude"),
                       HasSubstr("the numbers match " + std::to_string(columns) + " columns of float64")));
   }
-  // a point more, and the size is no multiple of 16 either
+  // with one point more, the size is not a multiple of 16
   EXPECT_THAT(
       complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
       AllOf(HasSubstr("has 12820 bytes; the number must be a multiple of 16"), HasSubstr("5 columns of float32")));
@@ -185,7 +185,7 @@ TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
     const std::vector<double>* const rings = cloud.find("ring");
     EXPECT_TRUE(rings == nullptr || rings->back() == 15.0) << columns;
   }
-  // integers among them, as some drivers store rings and times
+  // includes integers, because some drivers store rings and times as integers
   const Cloud mixed =
       named(bytes(1.0f) + bytes(2.0f) + bytes(3.0f) + bytes(std::uint32_t{70000}) + bytes(std::uint16_t{9}),
             "x,y,z,t:u4,ring:u2");
@@ -233,7 +233,7 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   EXPECT_THAT(complaint_of("a.pcd", pcd("1", "zip")), HasSubstr("DATA is 'zip'"));
 }
 
-// to open it for reading waits for who writes to it
+// opening a named pipe for reading would wait for a writer
 TEST_F(CloudFile, APipeIsRefusedAndNotWaitedFor) {
   for (const char* name : {"pipe.ply", "pipe.pcd", "pipe.bin", "pipe.vtk"}) {
     ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
@@ -261,7 +261,7 @@ TEST_F(CloudFile, DamageIsOneClearLine) {
               HasSubstr("SIZE has 1 words"));
 }
 
-// what a header may say and the body not hold: no byte of a cut file may be invented, whatever the place of the cut
+// values in a header that the body does not contain: for every truncation, the reader must not invent data
 TEST_F(CloudFile, EveryCutOfAFileIsNoticed) {
   std::string whole =
       "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

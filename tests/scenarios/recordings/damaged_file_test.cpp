@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A small recording as bytes, and where to put spoiled copies.
+/// A small recording as bytes, and a folder for corrupted copies.
 class DamagedFile : public fixture::Folder {
  protected:
   DamagedFile() : path_(folder_ / "a.h5") {
@@ -19,7 +19,7 @@ class DamagedFile : public fixture::Folder {
     bytes_ = fixture::bytes_of(path_);
     digest_ = digest(recording.sensors, &recording.truth);
   }
-  /// Reads everything that is there; the digest of what came back.
+  /// Reads all data. Returns their digest.
   std::string read_all() const {
     read_info(path_);
     const sim::Sensors sensors = read_sensors(path_);
@@ -38,7 +38,7 @@ TEST_F(DamagedFile, TheWholeFileIsReadBack) {
 TEST_F(DamagedFile, TruncationIsRecognisedAtEveryLength) {
   ASSERT_GT(bytes_.size(), 10000u);
   int lengths = 0;
-  // every length at the start, where the superblock stands, then a prime step, then every length at the end
+  // every length at the start, which contains the superblock; then steps of a prime; then every length at the end
   for (std::size_t length = 0; length < bytes_.size();
        length += (length < 128 || length + 64 > bytes_.size()) ? 1 : 499) {
     fixture::put(path_, bytes_.substr(0, length));
@@ -53,14 +53,14 @@ TEST_F(DamagedFile, TruncationIsRecognisedAtEveryLength) {
   EXPECT_GT(lengths, 200);
 }
 
-// A flipped byte is refused, or stands in a gap that holds nothing: it never gives other data, and never a crash.
+// A flipped byte is rejected, or is in an unused gap. It never causes other data or a crash.
 TEST_F(DamagedFile, FlippedBytesNeverGiveOtherData) {
   int refused = 0;
   int flips = 0;
   std::uint64_t state = 1;
   for (int i = 0; i < 500; ++i) {
     state = state * 6364136223846793005u + 1442695040888963407u;
-    // half of them in the first 2 KiB, where the metadata of the groups stands
+    // half of the bytes are in the first 2 KiB, which contain the metadata of the groups
     const std::size_t at = (state >> 20) % (i % 2 == 0 ? bytes_.size() : 2048);
     std::string spoiled = bytes_;
     spoiled[at] = static_cast<char>(static_cast<unsigned char>(spoiled[at]) ^ (1u << ((state >> 60) & 7u)));
@@ -76,7 +76,7 @@ TEST_F(DamagedFile, FlippedBytesNeverGiveOtherData) {
 }
 
 TEST_F(DamagedFile, ADamagedReadingIsNamedAsSuch) {
-  // T_BI is stored plain: its last row 0 0 0 1 is found, and the byte before it belongs to the translation
+  // T_BI is stored uncompressed: the test finds its last row 0 0 0 1, and the byte before belongs to the translation
   const std::string last_row("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xf0\x3f", 32);
   const std::size_t at = bytes_.find(last_row);
   ASSERT_NE(at, std::string::npos);

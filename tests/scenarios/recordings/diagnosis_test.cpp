@@ -83,7 +83,7 @@ std::vector<DataSheet> all_sheets() {
   return out;
 }
 
-/// A lidar with 16 rings at elevations [deg] from `lowest`, `step` apart.
+/// A lidar with 16 rings at elevations [deg] from `lowest` in steps of `step`.
 sim::LidarRecord lidar_with_rings(double lowest, double step, const std::string& name = "points") {
   sim::LidarRecord lidar;
   lidar.name = name;

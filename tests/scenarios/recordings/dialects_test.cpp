@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each peer is given, read back by our own readers and held to what the peer's sources say, which the table below
-// states once more. tests/peers reads the same files by other people's packages.
+// Reads the files for each external estimator with our readers, and compares them with the format in the estimator's
+// sources. The table below repeats this format. tests/peers reads the same files with external packages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -20,15 +20,15 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What a peer reads of a spinning lidar.
+/// Format in which an external estimator reads a spinning lidar.
 struct Wanted {
   const char* peer;
-  const char* bag;  ///< in the folder
-  bool ros1;        ///< else ROS 2
+  const char* bag;  ///< file name in the folder
+  bool ros1;        ///< false: ROS 2
   const char *imu, *points;
-  const char* time;   ///< field of a point
-  std::uint8_t type;  ///< its number in PointField
-  double unit_ns;     ///< of it, since the header's stamp
+  const char* time;   ///< name of the time field of a point
+  std::uint8_t type;  ///< data type as in PointField
+  double unit_ns;     ///< unit of the time field, which counts from the header's stamp
 };
 
 constexpr Wanted kWanted[] = {
@@ -57,7 +57,7 @@ std::vector<Message> messages(BagReader& bag, const std::string& topic) {
   return out;
 }
 
-/// A recording whose points stand in no order of time, with a lidar of that device.
+/// A recording of this device whose points are not in order of time.
 sim::Recording unordered(const std::string& device = "rs16") {
   sim::Recording out = fixture::recording();
   out.sensors.robot = "rig";
@@ -70,7 +70,7 @@ sim::Recording unordered(const std::string& device = "rs16") {
   return out;
 }
 
-/// What is wrong with the points of a bag, as that peer reads them; "" when nothing is.
+/// Returns what is wrong with the points of a bag in the estimator's format; "" if they are correct.
 std::string problem_of(const Wanted& wanted, const std::filesystem::path& bag, const sim::LidarRecord& lidar) {
   const auto reader = open(bag);
   if (reader->cdr(wanted.points) == wanted.ros1) return "the other ROS";
@@ -88,7 +88,7 @@ std::string problem_of(const Wanted& wanted, const std::filesystem::path& bag, c
       const double offset_ns = (*cloud.find(wanted.time))[i] * wanted.unit_ns;
       if (offset_ns < before) return "not in the order of time";
       before = offset_ns;
-      // the point is told by its place, which no two share
+      // the position identifies a point, because positions are unique
       std::size_t k = lidar.sweep_first[sweep];
       while (k < lidar.sweep_first[sweep + 1] && lidar.position_L_m[k].x() != (*cloud.find("x"))[i]) ++k;
       if (k == lidar.sweep_first[sweep + 1]) return "a point that is none";
@@ -174,7 +174,7 @@ TEST_P(Dialects, TheManifestSaysWhatIsThere) {
   const Eigen::Isometry3d T_IL = recording.sensors.imus[0].T_BI.inverse() * recording.sensors.lidars[0].T_BL;
   const auto p = said["extrinsics"]["T_imu_lidar"]["p_m"].get<std::vector<double>>();
   EXPECT_TRUE(Eigen::Vector3d::Map(p.data()).isApprox(T_IL.translation(), 1e-12));
-  // the truth in the bag's clock
+  // the truth in the clock of the bag
   EXPECT_THAT(fixture::bytes_of(out() / "truth.tum"), HasSubstr("\n1000000000.001000000 "));
 }
 
@@ -205,7 +205,7 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
 }
 
-// those that read the last of no points, or refuse none, are not given such a sweep
+// some estimators read the last point of an empty sweep, or do not reject it, so empty sweeps are left out
 TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
   const std::string peer = GetParam().peer;
   const bool takes = peer == "fast-lio" || peer == "point-lio" || peer == "norlab";
@@ -251,7 +251,7 @@ class Configuration : public fixture::Folder {
   Eigen::Isometry3d T_BI_ = recording_.sensors.imus[0].T_BI, T_BL_ = recording_.sensors.lidars[0].T_BL;
 };
 
-// each in its own sense: of these, a wrong one turns the map around
+// the rotation is stated in each estimator's convention; a wrong convention would rotate the map
 TEST_F(Configuration, MountingsAreInThePeersSense) {
   for (const auto& [peer, file] : {std::pair{"fast-lio", "velodyne.yaml"}, std::pair{"point-lio", "velody16.yaml"}}) {
     const YAML::Node mapping = yaml(peer, file, recording_)["mapping"];
@@ -276,7 +276,7 @@ TEST_F(Configuration, SensorsAreThisRecordings) {
   EXPECT_EQ(lio["preprocess"]["scan_line"].as<int>(), 16);
   EXPECT_EQ(lio["preprocess"]["timestamp_unit"].as<int>(), 0);
   EXPECT_NEAR(lio["mapping"]["imu_time_inte"].as<double>(), 0.0025, 1e-12);
-  // readings go beyond what the sheet states: the rail is not below them
+  // readings exceed the range in the data sheet, so the saturation limit is not below them
   const SensorFacts facts = facts_of(recording_.sensors);
   EXPECT_GT(facts.imu->largest_gyro_rad_s, facts.imu->stated_gyro_range_rad_s);
   EXPECT_EQ(lio["mapping"]["satu_gyro"].as<double>(), facts.imu->largest_gyro_rad_s);
@@ -286,7 +286,7 @@ TEST_F(Configuration, SensorsAreThisRecordings) {
   EXPECT_EQ(sam["imuRPYWeight"].as<double>(), 0.0);
 }
 
-// the keys that the released programs know: tests/peers/programs_checks.py starts them
+// the keys of the released programs: tests/peers/programs_checks.py runs the programs
 TEST_F(Configuration, KeysAreThoseOfTheReleasedPrograms) {
   const YAML::Node rko = yaml("rko-lio", "rko_lio.yaml", recording_);
   EXPECT_EQ(rko["lidar_timestamps"]["multiplier_to_seconds"].as<double>(), 1e-9);

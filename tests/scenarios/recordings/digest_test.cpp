@@ -19,9 +19,9 @@ TEST(Digest, IsThirtyTwoHexadecimalDigitsAndRepeats) {
   EXPECT_EQ(found.size(), 32u);
   EXPECT_EQ(found.find_first_not_of("0123456789abcdef"), std::string::npos);
   EXPECT_EQ(found, digest_of(fixture::recording()));
-  // pinned: a change means that stored digests of older files no longer hold, and asks for a new format version
+  // If this digest changes, stored digests of older files become invalid, and the format needs a new version
   EXPECT_EQ(digest(sim::Sensors{}, nullptr), "320fa1dc4c37d86ecef0f4970469eddc");
-  // and the same with an IMU from before there were magnetometers
+  // the same for an IMU in the format without magnetometers
   sim::Sensors sensors;
   sim::Truth truth;
   sensors.imus.emplace_back().name = truth.imus.emplace_back().name = "imu";
@@ -29,7 +29,7 @@ TEST(Digest, IsThirtyTwoHexadecimalDigitsAndRepeats) {
   EXPECT_EQ(digest(sensors, &truth), "ed580d53149a29ebc7465707bc797da9");
 }
 
-// One change in each field; every digest must differ from all the others.
+// Changes each field. Every digest must differ from all others.
 TEST(Digest, EveryFieldCounts) {
   using Change = std::function<void(sim::Sensors&, sim::Truth&)>;
   const std::vector<Change> changes = {[](auto&, auto&) {},

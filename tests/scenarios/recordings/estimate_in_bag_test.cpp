@@ -14,8 +14,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A body that moves steadily along x and turns about z, a lidar on it that sees points at rest, and its own poses as
-/// an estimate: of the lidar, in a world that is turned by 0.5 rad and shifted.
+/// A body that moves at constant velocity along x and rotates about z. Its lidar sees stationary points. The estimate
+/// contains the lidar's true poses, in a world that is rotated by 0.5 rad and shifted.
 class InBag : public fixture::Folder {
  protected:
   InBag() {
@@ -64,7 +64,8 @@ class InBag : public fixture::Folder {
     BagTrack track;
     std::vector<BagCloud> clouds;
   };
-  /// With all of its clouds made; points and truth are set aside where `with_truth`, else the points in the record.
+  /// Writes all clouds of the estimate. With `with_truth`, points and truth are in a separate file; otherwise, the
+  /// points are in the record.
   InBagWhole placed(bool with_truth) {
     StoredTruth truth;
     std::vector<PointStore> points;
@@ -112,7 +113,7 @@ TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
   }
 }
 
-// what goes wrong later shows by its size
+// later errors would show by their size
 TEST_F(InBag, AnErrorShowsWhereItIs) {
   for (PoseState& pose : estimate_.poses) {
     if (pose.time_ns >= 100'000'000) pose.p_WA_m += T_VW_.linear() * Eigen::Vector3d(0.3, 0, 0.4);
@@ -132,7 +133,8 @@ TEST_F(InBag, WithoutATruthNothingIsMovedAndNoErrorKnown) {
   EXPECT_TRUE(found.clouds[0].error_m.empty());
 }
 
-// J C J^T by hand: the place's covariance gains that of the attitude over the lever, both turned into the truth's world
+// J C J^T by hand: the position covariance increases by that of the attitude times the lever, both rotated to the world
+// of the truth
 TEST_F(InBag, TheCovarianceIsTheBodys) {
   const Eigen::Matrix3d R = T_VW_.linear().transpose();
   const BagTrack::Pose pose = placed(true).track.poses[10];

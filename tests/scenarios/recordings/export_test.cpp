@@ -71,7 +71,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   expect(truth.imus[0].name, truth.imus[0].T_BI);
   expect(truth.lidars[0].name, truth.lidars[0].T_BL);
   expect(truth.series[0].name, truth.series[0].T_BX);
-  // from the file, a segment at a time, and with what it is of in its first line
+  // reads the file in segments; its first line states the recording
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &truth);
   ExportChoices choices;
   choices.frame = truth.imus[0].name;
@@ -128,7 +128,7 @@ TEST_F(Export, EachOfTwoSensorsOfOneNameHasAFrame) {
   truth.imus[1].T_BI = Eigen::Translation3d(0.2, 0.0, 0.0);
   EXPECT_EQ(true_mounting(truth, "imu").translation().x(), 0.1);
   EXPECT_EQ(true_mounting(truth, "imu_2").translation().x(), 0.2);
-  truth.imus[1].name = "/imu/data";  // cannot be written
+  truth.imus[1].name = "/imu/data";  // this name cannot be a file name
   EXPECT_EQ(true_mounting(truth, "imu_1").translation().x(), 0.2);
   EXPECT_EQ(true_mounting(truth, "/imu/data").translation().x(), 0.2);
   EXPECT_THROW(true_mounting(truth, "imu_2"), BadInput);
@@ -168,7 +168,7 @@ TEST(ExportNames, ASensorGivesWayOnlyToAnother) {
   EXPECT_THAT(alone.imus.names, ElementsAre("imu", "imu_reference"));
   EXPECT_THAT(alone.lidars.names, ElementsAre("lidar"));
   EXPECT_TRUE(alone.imus.notes.empty() && alone.lidars.notes.empty());
-  // the third bears its name alone and keeps it
+  // the third file already has this name and keeps it
   EXPECT_THAT(named({"a", "a", "a_2"}, {}).imus.names, ElementsAre("a", "a_3", "a_2"));
   const ExportNames mixed = named({"os", "no name of a file", "imu_1"}, {"os", "os"});
   EXPECT_THAT(mixed.imus.names, ElementsAre("os", "imu_1_2", "imu_1"));

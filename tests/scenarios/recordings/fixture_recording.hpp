@@ -14,7 +14,7 @@
 
 namespace tumble::scenarios::fixture {
 
-/// Numbers without a pattern that a wrong order or a wrong type could hide behind.
+/// Numbers without a pattern, so that a wrong order or a wrong type is detected.
 class Numbers {
  public:
   double next() { return std::sin(static_cast<double>(++count_) * 12.9898) * 43.758; }
@@ -106,7 +106,7 @@ inline void add_series(Numbers& numbers, sim::Recording& recording, const std::s
   recording.truth.series.push_back(truth);
 }
 
-/// A recording with two IMUs, a lidar, a series, contacts and every field different from its default.
+/// A recording with two IMUs, a lidar, a series, contacts, and every field different from its default.
 inline sim::Recording recording() {
   Numbers numbers;
   sim::Recording out;
@@ -158,7 +158,7 @@ inline void put(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-/// A folder of the test's own, gone afterwards.
+/// A folder for one test, which is deleted afterwards.
 class Folder : public testing::Test {
  protected:
   Folder() {
@@ -176,7 +176,7 @@ class Folder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Message of the BadInput that `call` throws; empty when it throws none.
+/// Returns the message of the BadInput that `call` throws; empty if it throws none.
 template <class Call>
 std::string complaint(Call&& call) {
   try {
@@ -187,7 +187,7 @@ std::string complaint(Call&& call) {
   return "";
 }
 
-/// Of a recording that is short: three samples of one IMU.
+/// Returns a short recording: three samples of one IMU.
 inline sim::Sensors small_sensors() {
   sim::Sensors sensors = recording().sensors;
   for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;
@@ -198,7 +198,7 @@ inline sim::Sensors small_sensors() {
   return sensors;
 }
 
-/// The truth of `recording` as it comes back from a file, set aside in `folder`.
+/// Returns the truth of `recording` after writing it to a file in `folder` and reading it.
 inline StoredTruth stored_truth(const sim::Recording& recording, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "with_truth.h5";
   write_recording(file, {}, recording.sensors, &recording.truth);

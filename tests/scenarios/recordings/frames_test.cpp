@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// /tf, /tf_static and /clock in every kind of bag, and what is made of the frames on the way in.
+// Tests /tf, /tf_static and /clock in every kind of bag, and the import of frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
   EXPECT_EQ(truths, 8u);
   EXPECT_EQ(tracks, 1u);
   EXPECT_EQ(messages<ros::Odometry>("/slam_mine").at(0).child_frame_id, "slam_mine");
-  // without the truth the first estimate carries the sensors
+  // without truth, the sensors are attached to the first estimate
   std::filesystem::remove_all(path_);
   GetParam().write(recording_.sensors, {0, nullptr, {track}}, path_);
   EXPECT_EQ(messages<ros::TFMessage>("/tf").at(0).transforms.at(0).child_frame_id, "body");
@@ -126,7 +126,7 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   EXPECT_THAT(held.notes, Contains(testing::AllOf(
                               HasSubstr("/lidar/points: caution: /tf_static contains the sensor's pose in 'body' as"),
                               HasSubstr("but your option states the pose (0.5 "))));
-  // the same place said twice is no contradiction
+  // a repeated, equal transform is not a contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
   EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
 }
@@ -156,7 +156,7 @@ ros::TransformStamped hung(const std::string& child, const std::string& parent, 
   return transform_message(p, q, child, header_of(1'000'000'000, parent));
 }
 
-/// Five messages of an IMU at rest, its topic named as its frame; each is written `times` times.
+/// Five messages of a stationary IMU whose topic is named as its frame; each is written `times` times.
 void write_imu(BagWriter& bag, const std::string& frame, int times = 1) {
   sim::ImuRecord imu;
   imu.period_ns = 10'000'000;
@@ -177,7 +177,7 @@ void write_frames(BagWriter& bag, const std::vector<ros::TransformStamped>& fram
 
 TEST_P(Frames, AreFollowedThroughOthers) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
-  // a robot's way: both hang on a mast that hangs on the base
+  // a moving robot: both sensors are on a mast that is on the base
   write_frames(*GetParam().writer(path_),
                {hung("mast", "base_link", {0, 0, 1}, turn), hung("imu", "mast", {0.5, 0, 0})});
   const Imported found = GetParam().read(path_, {});
@@ -209,7 +209,7 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("/right: /tf_static contains the sensor's pose relative to /left")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/elsewhere: neither /tf_static nor --lever-arm")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU, because its topic comes first")));
-  // where the first is given, the second stands beside it
+  // if the first pose is given, the second is relative to it
   BagReading given;
   given.imu_topics = {"/left", "/right"};
   given.imu.T_BI.translation() = Eigen::Vector3d(1, 2, 3);
@@ -249,7 +249,7 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
   EXPECT_EQ(start("unknown", ReferenceOf::named, "whose pose on the body is unknown"), Eigen::Vector3d(7, 8, 9));
 }
 
-// as a motion capture system sends it
+// in the format of a motion capture system
 TEST_P(Frames, ATransformIsAReference) {
   const auto bag = GetParam().writer(path_);
   write_imu(*bag, "/imu");
@@ -280,7 +280,7 @@ TEST_P(Frames, AStatedZeroIsAMounting) {
   EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
 }
 
-// zeros of an estimate are no knowledge; those of the truth are
+// zeros in the covariance of an estimate mean unknown, but in the truth they mean exact
 TEST_P(Frames, WhatAnEstimateDoesNotKnowIsUnknown) {
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
   BagTrack track{"mine", {{7'000'000, {1, 2, 3}, Eigen::Quaterniond::Identity()}}};

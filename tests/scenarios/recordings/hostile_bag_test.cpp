@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags as others pack them, that are damaged or that are none.
+// Tests bags that other programs compressed, damaged bags, and files that are not bags.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 using HostileBag = fixture::Folder;
 
-/// A chunk as others pack it: blocks that lean on the ones before, checksums, the size of the content.
+/// A chunk in a variant of the format: blocks that depend on previous blocks, checksums, the size of the content.
 void pack_lz4(Ros1Chunk& chunk) {
   LZ4F_preferences_t how{};
   how.frameInfo.blockMode = LZ4F_blockLinked;
@@ -38,7 +38,7 @@ void pack_lz4(Ros1Chunk& chunk) {
 class Lz4Bag : public fixture::Folder {
  protected:
   Lz4Bag() {
-    // a chunk of several blocks: one alone leans on none
+    // a chunk of several blocks; a single block cannot depend on previous blocks
     sim::ImuRecord& imu = sensors_.imus[0];
     imu.time_ns.clear(), imu.gyro_rad_s.clear(), imu.accel_m_s2.clear();
     for (int k = 0; k < 600; ++k) {
@@ -60,7 +60,7 @@ class Lz4Bag : public fixture::Folder {
 TEST_F(Lz4Bag, IsReadLikeAPlainOne) {
   EXPECT_TRUE(has_lz4_chunks(folder_ / "lz4.bag"));
   EXPECT_FALSE(has_lz4_chunks(folder_ / "plain.bag"));
-  // what room is asked for: the chunks' own lengths differ by the headers' alone
+  // requested memory: the stated lengths of the chunks differ only by the headers
   EXPECT_NEAR(static_cast<double>(bytes_unpacked(folder_ / "lz4.bag")),
               static_cast<double>(std::filesystem::file_size(folder_ / "plain.bag")), 16.0);
   EXPECT_GT(bytes_unpacked(folder_ / "lz4.bag"), std::filesystem::file_size(folder_ / "lz4.bag"));
@@ -68,7 +68,7 @@ TEST_F(Lz4Bag, IsReadLikeAPlainOne) {
   EXPECT_EQ(digest(lz4.sensors, nullptr), digest(plain.sensors, nullptr));
   ASSERT_EQ(lz4.sensors.imus.size(), 1u);
   EXPECT_EQ(lz4.sensors.imus[0].gyro_rad_s, sensors_.imus[0].gyro_rad_s);
-  // and back to the very bytes
+  // restores the original bytes
   copy_ros1_bag(folder_ / "lz4.bag", folder_ / "back.bag", unpack_lz4);
   EXPECT_EQ(fixture::bytes_of(folder_ / "back.bag"), fixture::bytes_of(folder_ / "plain.bag"));
 }
@@ -97,7 +97,7 @@ TEST_F(Lz4Bag, DamageIsOneLine) {
               HasSubstr("bytes, but its stated size is"));
 }
 
-// a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed
+// a bag is rejected or read; a missing or changed byte never crashes the program
 TEST_F(HostileBag, EveryCutOfARos1BagIsOneLine) {
   export_ros1_bag(fixture::small_sensors(), {}, folder_ / "a.bag");
   const std::string whole = fixture::bytes_of(folder_ / "a.bag");
@@ -150,7 +150,7 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
   EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml"));
 }
 
-// without them a reader that knows no ROS cannot tell what a message holds
+// without these definitions, a reader without ROS cannot parse the messages
 TEST_F(HostileBag, ARos2BagBringsTheDefinitionsOfItsMessages) {
   export_ros2_bag(fixture::small_sensors(), {}, folder_ / "bag");
   SQLite::Database database((folder_ / "bag/bag_0.db3").string(), SQLite::OPEN_READONLY);
@@ -166,7 +166,7 @@ TEST_F(HostileBag, ARos2BagBringsTheDefinitionsOfItsMessages) {
   EXPECT_EQ(topics, 4) << "/tf_static, /clock, /imu, /lidar/points";
 }
 
-// what a recorder listened for and nobody sent is no reason to refuse the rest
+// a topic without messages is not a reason to reject the other topics
 TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
   const std::filesystem::path bag = folder_ / "bag";
   for (const char* topic : {"/imu", "/lidar/points"}) {
@@ -211,7 +211,7 @@ TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
     ASSERT_TRUE(query.executeStep());
     const SQLite::Column blob = query.getColumn(1);
     std::string bytes(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
-    // header: 4 encapsulation, 8 stamp, 4 + 6 frame; then at 24 height and width, at 32 the number of fields
+    // header: 4 encapsulation, 8 stamp, 4 + 6 frame; then height and width at 24, the number of fields at 32
     const std::uint32_t absurd = 0xfffffff0u;
     const std::size_t at = field_count ? 32 : 28;
     std::copy_n(reinterpret_cast<const char*>(&absurd), 4, bytes.begin() + static_cast<std::ptrdiff_t>(at));

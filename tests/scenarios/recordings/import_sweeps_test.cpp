@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// An ASCII sweep of points (1, 2, 3), with one more column.
+/// An ASCII sweep of points (1, 2, 3), with one additional column.
 std::string sweep(const std::string& column = "", const std::vector<std::string>& values = {"", "", ""}) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(values.size()) +
                      "\nproperty float x\nproperty float y\nproperty float z\n";
@@ -45,7 +45,7 @@ class ImportSweeps : public fixture::Folder {
   Imported imported_;
 };
 
-// "sensors equal to the format's precision": both formats hold all that a lidar says, to the bit
+// both formats store all data of a lidar without loss
 TEST_F(ImportSweeps, WhatExportWritesComesBackToTheBit) {
   const sim::Recording recording = fixture::recording();
   const sim::LidarRecord& given = recording.sensors.lidars[0];
@@ -88,7 +88,7 @@ TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
   put("1.ply", sweep());
   put("2.ply", sweep());
   source_.steady_ns = 100000000;
-  source_.reading.range_max_m = 1.0;  // of points 3.7 m away
+  source_.reading.range_max_m = 1.0;  // points 3.7 m away
   EXPECT_THAT(complaint_of(),
               HasSubstr("6 of 6 points are farther than 2 m, which is twice the range in the data sheet"));
   source_.reading.range_max_m = 2.0;
@@ -150,7 +150,7 @@ TEST_F(ImportSweeps, PointTimesAreReadInEveryDialect) {
     std::vector<std::string> first, second;  // sweeps at 50.0 s and 50.1 s
     const char* unit;
   };
-  // firing after 10, 20 and 90 ms
+  // points fired after 10, 20 and 90 ms
   const std::vector<Case> cases = {
       {"float time", {"0.01", "0.02", "0.09"}, {"0.01", "0.02", "0.09"}, ""},
       {"uint t", {"10000000", "20000000", "90000000"}, {"10000000", "20000000", "90000000"}, ""},
@@ -168,7 +168,7 @@ TEST_F(ImportSweeps, PointTimesAreReadInEveryDialect) {
     EXPECT_EQ(lidar.point_times, sim::PointTimes::measured) << each.column;
     EXPECT_THAT(lidar.sweep_start_ns, ElementsAre(0, 100000000)) << each.column;
     ASSERT_EQ(lidar.offset_ns.size(), 6u);
-    // float32 seconds hold 90 ms to 4 ns
+    // float32 seconds represent 90 ms with a resolution of 4 ns
     for (const auto& [i, ns] : {std::pair{0, 1e7}, {1, 2e7}, {2, 9e7}, {5, 9e7}})
       EXPECT_NEAR(lidar.offset_ns[static_cast<std::size_t>(i)], ns, 4.0) << each.column;
   }
@@ -190,7 +190,7 @@ TEST_F(ImportSweeps, AbsoluteTimesOfPointsTellTheSweeps) {
   const sim::LidarRecord lidar = import();
   EXPECT_NEAR(static_cast<double>(imported_.info.origin_ns - 1617333602250000000), 0.0, 500.0);
   ASSERT_EQ(lidar.sweep_start_ns.size(), 2u);
-  // a double of that size has steps of 0.24 us
+  // a double of this size has a resolution of 0.24 us
   EXPECT_NEAR(static_cast<double>(lidar.sweep_start_ns[1]), 1e8, 500.0);
   EXPECT_NEAR(lidar.offset_ns[2], 9e7, 500.0);
 }
@@ -260,7 +260,7 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
 }
 
-// times that count from each packet of a sweep, as of `time_stamp` in ns
+// times that count from the start of each packet of a sweep, as in `time_stamp` in ns
 TEST_F(ImportSweeps, TimesOverAPartOfASweepAreReadWithACaution) {
   std::vector<std::string> ns;
   for (int k = 0; k < 120; ++k) ns.push_back(std::to_string(11'000 * k));
@@ -293,12 +293,12 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
       complaint_of(),
       HasSubstr("1.ply: the point times in field 'time' have the stated unit ns and a range of 59500 in a sweep: in ns "
                 "this is 0.0595 % of the sweep period, in us this is 59.5 % of the sweep period"));
-  // the field's name states it too
+  // the name of the field also states it
   source_.reading.time_unit = "";
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ms", us));
   EXPECT_THAT(complaint_of(),
               HasSubstr("the point times in field 't_ms' have the stated unit ms and a range of 59500"));
-  // a few points may lie close together in any unit
+  // a few points may be close together in any unit
   us.resize(90);
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ns", us));
   EXPECT_EQ(complaint_of(), "");
@@ -312,8 +312,8 @@ TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
 
 TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   sim::Recording recording = fixture::recording();
-  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
-  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // and the rates
+  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // also scales the rates
   export_csv(recording.sensors, nullptr, folder_);
   export_ply(recording.sensors, folder_ / "sweeps");
   source_.folder = folder_ / "sweeps";

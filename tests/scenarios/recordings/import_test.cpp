@@ -42,8 +42,8 @@ class ImportCsv : public fixture::Folder {
     sim::ImuRecord device;
     device.name = "imu";
     device.device = "mti30";
-    device.stated_gyro_range_rad_s = 80.0;  // the fixture has rates without a pattern, to 44 rad/s
-    device.time_ns = {1, 2, 3};             // of some other recording
+    device.stated_gyro_range_rad_s = 80.0;  // the fixture has random rates of up to 44 rad/s
+    device.time_ns = {1, 2, 3};             // times of another recording
     return import_imu_csv(folder_ / "run_1_xsens.csv", device);
   }
   std::string complaint_of(const std::string& text) {
@@ -70,8 +70,8 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
 
 TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   sim::Recording recording = fixture::recording();
-  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
-  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // and the fixture's rates
+  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // also the fixture's rates
   export_csv(recording.sensors, nullptr, folder_);
   const sim::ImuRecord& given = recording.sensors.imus[1];
   const Imported imported = import_imu_csv(folder_ / "imu_reference.csv", given);
@@ -83,7 +83,7 @@ TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   EXPECT_EQ(imu.time_ns.back(), given.time_ns.back() - given.time_ns.front());
 }
 
-/// A body that rocks about y, read every `step_ms`, with stamps of whole milliseconds.
+/// A body that oscillates about y, read every `step_ms`, with time stamps in whole milliseconds.
 std::string rocking(double step_ms) {
   std::ostringstream text;
   text.precision(12);
@@ -104,11 +104,11 @@ TEST_F(ImportCsv, PutsStampsInWholeMillisecondsOnTheBeatOfAFasterImuAndSaysSo) {
     double worst_ns = 0.0;
     for (std::size_t k = 0; k < stamps.size(); ++k)
       worst_ns = std::max(worst_ns, std::abs(static_cast<double>(stamps[k]) - 1e6 * step_ms * static_cast<double>(k)));
-    EXPECT_LT(worst_ns, 1.5e5) << step_ms;  // they stood up to half a millisecond off
+    EXPECT_LT(worst_ns, 1.5e5) << step_ms;  // the original time stamps had errors of up to 0.5 ms
     EXPECT_NEAR(static_cast<double>(imported.sensors.imus[0].period_ns), 1e6 * step_ms, 1e3);
     EXPECT_THAT(imported.notes, Contains(HasSubstr("whole milliseconds"))) << step_ms;
   }
-  for (const double step_ms : {1.0, 2.0, 4.0}) {  // a beat of whole milliseconds is what it says
+  for (const double step_ms : {1.0, 2.0, 4.0}) {  // a period of whole milliseconds is exact
     const Imported imported = import(rocking(step_ms));
     EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("whole milliseconds"))));
     EXPECT_EQ(imported.sensors.imus[0].time_ns[1], static_cast<std::int64_t>(1e6 * step_ms));
@@ -158,7 +158,7 @@ TEST_F(ImportCsv, ReadsTheLogOfASphere) {
   }
 }
 
-/// The lines of a file with their columns in another order.
+/// Returns the lines of a file with their columns in another order.
 std::string reordered(const std::string& text, const std::vector<std::size_t>& order) {
   std::string out;
   std::istringstream lines(text);
@@ -176,7 +176,7 @@ class ImportOwnCsv : public ImportCsv {
  protected:
   ImportOwnCsv() {
     sim::Recording recording = fixture::recording();
-    for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
+    for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
     export_csv(recording.sensors, nullptr, folder_);
     given_ = recording.sensors.imus[1];
     text_ = fixture::bytes_of(folder_ / "imu_reference.csv");
@@ -191,7 +191,7 @@ TEST_F(ImportOwnCsv, NamesAreBelievedBeforePlaces) {
   EXPECT_EQ(imported.sensors.imus[0].gyro_rad_s, given_.gyro_rad_s);
   EXPECT_EQ(imported.sensors.imus[0].accel_m_s2, given_.accel_m_s2);
   EXPECT_EQ(imported.sensors.imus[0].period_ns, given_.period_ns);
-  // control: the same columns without their names come in at their places, which are others' now
+  // control: without their names, the same columns are read at fixed positions, which are wrong now
   std::string moved = reordered(text_, order_);
   moved.erase(0, moved.find('\n') + 1);
   EXPECT_NE(complaint_of(moved), "");
@@ -219,7 +219,7 @@ TEST_F(ImportOwnCsv, AFileWithoutHeaderKeepsItsFirstSample) {
   EXPECT_EQ(imported.sensors.imus[0].time_ns.size(), given_.time_ns.size());
 }
 
-// a body that turns slowly in gravity tells the unit of its gyro
+// for a slowly rotating body, gravity determines the unit of the gyro
 TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
   const auto turning = [](double scale, double sign) {
     std::string text = kHeader;
@@ -309,7 +309,7 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
   EXPECT_THAT(complaint_of(returns), HasSubstr("csv: the lines end in a carriage return; they must end in a"));
 }
 
-// to open it for reading waits for who writes to it
+// opening a named pipe for reading would wait for a writer
 TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
@@ -318,7 +318,7 @@ TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
 
 class ImportBroad : public fixture::Folder, public ::testing::WithParamInterface<test::DataFolder> {
  protected:
-  /// The trial of that name, or the stand-in.
+  /// Returns the trial of this name, or the stand-in.
   static std::string trial(const char* real) { return GetParam().real ? real : "00_stand_in_hand"; }
   static Imported import_trial(const char* real) {
     return import_broad(test::written(GetParam()) / (trial(real) + ".hdf5"));
@@ -335,10 +335,10 @@ TEST_P(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
   ASSERT_EQ(imu.time_ns.size(), count);
   EXPECT_EQ(imu.period_ns, 3500000) << "285.714 Hz";
   EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, static_cast<double>(count - 1) / 285.7142857, 1e-5);
-  // at rest at the start: gravity, +9.8 up, and hardly a rate
+  // at rest at the start: gravity of +9.8 up, and a rate near zero
   EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1);
   EXPECT_LT(imu.gyro_rad_s[0].norm(), 0.05);
-  // the Earth's field at the place of recording has 49 uT; the room bends it
+  // the Earth's field at the place of the recording is 49 uT; the room disturbs it
   ASSERT_EQ(imu.magnetic_field_t.size(), imu.time_ns.size());
   EXPECT_NEAR(imu.magnetic_field_t[0].norm(), 49e-6, 15e-6);
   EXPECT_THAT(imported.info.attribution, HasSubstr("Laidig"));
@@ -355,7 +355,7 @@ TEST_P(ImportBroad, TheReferenceAgreesWithTheReadings) {
   ASSERT_EQ(truth.q_WB.size(), imu.time_ns.size());
   EXPECT_TRUE(truth.label.empty());
   EXPECT_THAT(imported.notes, Contains(HasSubstr("the reference agrees with the gyro of 'imu'")));
-  // where the rate is known it is the gyro's, and at rest gravity stands upright in the world
+  // where the reference rate is known, it agrees with the gyro; at rest, gravity is vertical in the world
   std::vector<double> errors, at_rest, up;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     if (!truth.w_WB_B_rad_s[k].allFinite()) continue;
@@ -373,7 +373,7 @@ TEST_P(ImportBroad, TheReferenceAgreesWithTheReadings) {
   ASSERT_GT(at_rest.size(), 1000u);
   EXPECT_LT(median(at_rest), 0.01) << "measured 0.0062: below TruthTrack's bound of rest";
   EXPECT_GT(median(up), 0.999);
-  // gaps and what the cameras do not know pass through the file
+  // gaps and missing reference poses are preserved in the file
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, &truth);
   const sim::Truth back = read_truth(folder_ / "a.h5");
   ASSERT_EQ(back.q_WB.size(), truth.q_WB.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rates and stamps in another unit than is said, as a rolling sphere's readings tell it.
+// Tests the detection of rates and time stamps with a wrong unit, from the readings of a rolling sphere.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A sphere that turns about y, gravity in its axes turning against it; stamps in steps of `step_ns`.
+/// A sphere that rotates about y, so gravity rotates in the opposite direction in its axes; time stamps in steps of
+/// `step_ns`.
 std::string rolled(double rate_rad_s, double written_for_one, std::int64_t step_ns = 4'000'000) {
   std::ostringstream text;
   text << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
@@ -42,7 +43,7 @@ class ImportSphere : public fixture::Folder {
   }
 };
 
-// within 0.2 s it turns too far for even windows; a range of 150 rad/s lets 229 pass
+// the rotation within 0.2 s is too large for even windows; a range of 150 rad/s accepts a factor of 229
 TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
   constexpr double kDegrees = 57.29577951308232;
   const Imported good = import(rolled(4.0, 1.0), 150.0);
@@ -73,7 +74,7 @@ TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {
   EXPECT_THAT(import(rolled(2.5, 1.0), 7.854).notes, testing::Not(testing::Contains(HasSubstr("caution"))));
 }
 
-// gravity turns, about another axis than the gyro says
+// gravity rotates about another axis than the gyro indicates
 TEST_F(ImportSphere, WhatTurnsButNotAsTheGyroSaysIsNotCalledStill) {
   std::string text = rolled(2.5, 1.0);
   text.replace(0, text.find('\n'), "sec,nsec,wy,wx,wz,fx,fy,fz");
@@ -82,7 +83,7 @@ TEST_F(ImportSphere, WhatTurnsButNotAsTheGyroSaysIsNotCalledStill) {
 }
 
 TEST_F(ImportSphere, StampsInAnotherUnitAreMet) {
-  // ms, and us, where seconds are looked for; us where nanoseconds are
+  // ms and us instead of seconds; us instead of nanoseconds
   for (const std::int64_t step_ns : {4'000'000'000, 4'000'000'000'000})
     EXPECT_THAT(complaint_of(rolled(2.5, 1.0, step_ns), 7.854), HasSubstr("The time stamps may be in another unit"));
   EXPECT_THAT(complaint_of(rolled(2.5, 1.0, 4'000), 7.854),

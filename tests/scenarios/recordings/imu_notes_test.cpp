@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an import says of readings that cannot be what they are called.
+// Tests the import's notes about implausible readings.
 #include "scenarios/exchange/imu_notes.hpp"
 
 #include <gmock/gmock.h>
@@ -17,8 +17,7 @@ using testing::HasSubstr;
 
 constexpr double kGravity_m_s2 = 9.81;
 
-/// Twenty seconds at 100 Hz of a body that turns about all three axes, with the noise of readings, whose least digits
-/// move.
+/// Twenty seconds at 100 Hz of a body that rotates about all three axes, with noise above the resolution.
 sim::ImuRecord turning() {
   sim::ImuRecord imu;
   imu.name = "imu";
@@ -55,7 +54,7 @@ TEST(ImuNotes, WhatFrozeIsSaid) {
 }
 
 TEST(ImuNotes, AxesThatGravityContradictsAreNamed) {
-  // the accelerometer's x reads what is the gyro's y, and so on
+  // the accelerometer's x is the gyro's y, and so on
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
                 for (Eigen::Vector3d& f : imu.accel_m_s2) f = Eigen::Vector3d(f.y(), f.z(), f.x());
               }),

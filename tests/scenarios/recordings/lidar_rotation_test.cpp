@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a lidar that turns in a room says of a gyro in wrong units, axes, mountings and clocks.
+// Tests whether a lidar that rotates in a room reveals wrong gyro units, axes, mountings and clocks.
 #include "scenarios/exchange/lidar_rotation.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ using testing::IsEmpty;
 constexpr std::int64_t kSweep_ns = 100'000'000, kSample_ns = 2'500'000;
 constexpr double kDegrees = 57.29577951308232;
 
-/// Rate of the body, whose axes are those of IMU and lidar: about all three, of sizes that rise and fall.
+/// Rate of the body, whose axes are those of IMU and lidar: about all three axes, with varying size.
 Eigen::Vector3d rate_at(double time_s) {
   return {0.5 * std::sin(1.3 * time_s), 0.4 * std::sin(1.9 * time_s + 1.0), 0.6 * std::cos(0.8 * time_s)};
 }
@@ -39,7 +39,7 @@ sim::ImuRecord gyro(double length_s) {
   return imu;
 }
 
-/// Attitudes of the body in the world every millisecond.
+/// Attitudes of the body in the world, every millisecond.
 std::vector<Eigen::Quaterniond> attitudes(double length_s) {
   std::vector<Eigen::Quaterniond> out{Eigen::Quaterniond::Identity()};
   for (int k = 0; k < static_cast<int>(1000.0 * length_s); ++k)
@@ -47,7 +47,7 @@ std::vector<Eigen::Quaterniond> attitudes(double length_s) {
   return out;
 }
 
-/// From inside of a room of 8 x 6 x 3 m with an upright beam, along a unit ray.
+/// Returns the range from inside of a room of 8 x 6 x 3 m with an upright beam, along a unit ray.
 double range_in_room(const Eigen::Vector3d& ray) {
   const Eigen::Vector3d half(4.0, 3.0, 1.5), at(0.7, -0.4, 0.2);
   double range = 1e9;
@@ -85,7 +85,7 @@ sim::LidarRecord lidar_in_room(std::size_t sweeps) {
   return lidar;
 }
 
-/// What a lidar without error would have seen from sweep to sweep.
+/// Returns the exact rotation from sweep to sweep.
 std::vector<SeenRotation> exact_rotations(int pairs) {
   const auto q_WL = attitudes(0.1 * (pairs + 1));
   std::vector<SeenRotation> out;
@@ -147,7 +147,7 @@ TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
   });
   EXPECT_THAT(text,
               AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("Check the mounting")));
-  // told by both: nothing to say
+  // gyro and lidar agree: there is no note
   EXPECT_THAT(text_of([](sim::ImuRecord& imu, sim::LidarRecord& lidar) {
                 imu.T_BI.linear() = lidar.T_BL.linear() =
                     Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
@@ -171,7 +171,7 @@ TEST(LidarRotation, WhatTellsNothingIsNotSpokenOf) {
     for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.setZero();
   };
   EXPECT_EQ(text_of(dead), "nothing told");
-  const auto other = [](sim::ImuRecord& imu, sim::LidarRecord&) {  // of the same sizes, of another motion
+  const auto other = [](sim::ImuRecord& imu, sim::LidarRecord&) {  // the same sizes, but another motion
     for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k)
       imu.gyro_rad_s[k] = so3::exp(Eigen::Vector3d(0.0, 0.011 * static_cast<double>(k), 0.7)) * imu.gyro_rad_s[k];
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The CustomMsg of Livox' drivers, there and back, and as nobody should write it.
+// Tests the CustomMsg of Livox drivers: writing, reading, and invalid messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -114,7 +114,7 @@ TEST(LivoxMessage, ALengthThatItDoesNotHaveAllocatesNothing) {
   message.points.resize(3);
   for (const bool cdr : {false, true}) {
     ros::Bytes bytes = cdr ? ros::to_cdr(message) : ros::to_ros1(message);
-    // the number of points stands before 3 points of 19 bytes, each padded to 20 in CDR but the last
+    // the number of points is before 3 points of 19 bytes; CDR pads each to 20 bytes, except the last
     const std::size_t at = bytes.size() - (cdr ? 59 : 57) - 4;
     ASSERT_EQ(bytes[at], 3);
     bytes[at + 3] = 0xff;

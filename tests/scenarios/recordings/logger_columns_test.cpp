@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of IMUs as loggers and data sets write them: names, units and times of many kinds, the same readings.
+// Tests IMU tables of loggers and data sets: different names, units and times give the same readings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class LoggerTable : public fixture::Folder {
   }
 };
 
-/// Three samples 5 ms apart; `row` as it follows the time.
+/// Three samples 5 ms apart; `row` is the text after the time.
 std::string table(const std::string& header, const std::vector<std::string>& times, const std::string& row) {
   std::string text = header + "\n";
   for (const std::string& time : times) text += time + row + "\n";
@@ -65,7 +65,7 @@ TEST_F(LoggerTable, NamesOfManyKindsAreKnown) {
   }
 }
 
-// the layout of EuRoC's and TUM VI's imu0/data.csv
+// format of imu0/data.csv in EuRoC and TUM VI
 TEST_F(LoggerTable, ColumnsOfEurocAreKnown) {
   const std::string header =
       "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
@@ -109,7 +109,7 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
   // half a second, or half a millisecond
   EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
               AllOf(HasSubstr("log.csv: the time step is 0.5"), HasSubstr("Add the unit to the column name")));
-  // control: with its name the same is read
+  // control: with its name, the same column is read
   EXPECT_EQ(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)), "");
 }
 
@@ -131,7 +131,7 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
               HasSubstr("log.csv:1: column 'ax [N]' has an unknown unit"));
 }
 
-// decimal commas in a table of commas: its first lines tell that before their times do
+// decimal commas in a table separated by commas: the first lines reveal this before the times are parsed
 TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
   EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
                                  ",0,1,0,2,0,3,-0,5,0,0,9,8")),
@@ -159,7 +159,7 @@ TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
               HasSubstr("log.csv:4: the time stamp does not increase"));
 }
 
-/// The same three samples, with other lines around them and other fields in them.
+/// The same three samples, with additional lines and fields.
 TEST_F(LoggerTable, DialectsOfLoggersAreRead) {
   const std::string names = "time,gx,gy,gz,ax,ay,az";
   const std::vector<std::pair<const char*, std::string>> tables = {
@@ -213,7 +213,7 @@ TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
   EXPECT_THAT(imported.notes,
               Contains("column 'I' contains the numbers of several IMUs; the import reads the rows of IMU 0 and leaves "
                        "out: 1 (3 rows)"));
-  // a counter of rows is no number of an IMU
+  // a row counter is not a reading of an IMU
   std::string counted = "id,time,gx,gy,gz,ax,ay,az\n";
   for (int k = 0; k < 12; ++k) counted += std::to_string(k) + "," + std::to_string(0.005 * k) + kRow + "\n";
   EXPECT_EQ(import(counted).sensors.imus[0].time_ns.size(), 12u);
@@ -226,7 +226,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   EXPECT_THAT(complaint_of(two), AllOf(HasSubstr("log.csv:1: the gyro has columns of several IMUs, '1' and '2'"),
                                        HasSubstr("--columns time=NAME")));
   expect_the_readings(import_columns(two, "time=time,gyro=gyro2_x,gyro2_y,gyro2_z,accel=accel2_x,accel2_y,accel2_z"));
-  // units in the names count, also those of the time
+  // units in the column names apply, also to the time
   const Imported other = import_columns(table("n,stamp_us,rate a (deg/s),rate b (deg/s),rate c (deg/s),f,g,h",
                                               {"7,5000", "8,10000", "9,15000"}, ",57.29577951308232,0,0,-0.5,0,9.8"),
                                         "accel=f,g,h,time=stamp_us,gyro=rate a (deg/s),rate b (deg/s),rate c (deg/s)");
@@ -243,7 +243,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   EXPECT_THAT(refused("a,b"), HasSubstr("--columns: 'a' must begin with time=, gyro= or accel="));
 }
 
-// of a bag by bagpy and by `rostopic echo -p`: the record's time comes first
+// tables from a bag by bagpy and by `rostopic echo -p`: the time of the record is the first column
 TEST_F(LoggerTable, FlattenedMessagesHaveTheStampsOfTheirHeaders) {
   const Imported bagpy = import(table(
       "Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x,angular_velocity.y,"

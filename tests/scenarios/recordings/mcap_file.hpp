@@ -17,17 +17,17 @@
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// MCAP files as others write them, or as nobody should: the same messages of one IMU in every shape that the format
-/// has, and with a lie in any place.
+/// MCAP files of other writers, and invalid files: the same messages of one IMU in every variant of the format, with a
+/// wrong value in any place.
 namespace tumble::scenarios::fixture {
 
-/// One message as the file holds it.
+/// A message as stored in the file.
 struct Logged {
   std::uint64_t time_ns;
   std::string bytes;
 };
 
-/// A sphere at rest, one reading every 10 ms, as CDR.
+/// Readings of a stationary sphere every 10 ms, as CDR.
 inline std::vector<Logged> imu_messages(std::size_t count) {
   sim::ImuRecord imu;
   imu.period_ns = 10'000'000;
@@ -42,10 +42,11 @@ inline std::vector<Logged> imu_messages(std::size_t count) {
   return out;
 }
 
-/// How a file is put together. Each `change` may spoil a record before it is written; what follows fits what it left.
+/// Layout of a file. Each `change` may corrupt a record before it is written; the following records agree with the
+/// changed record.
 struct McapShape {
   std::vector<std::vector<Logged>> chunks;
-  std::string compression;  ///< "", "lz4", "zstd", or a name that nobody knows
+  std::string compression;  ///< "", "lz4", "zstd", or an unknown name
   bool chunked = true, message_index = true, summary = true, statistics = true, repeat_channels = true, crcs = true;
   mcap::Schema schema{1, "sensor_msgs/msg/Imu", "ros2msg", ros2_definition("sensor_msgs/Imu")};
   mcap::Channel channel{1, 1, "/imu", "cdr", {}};

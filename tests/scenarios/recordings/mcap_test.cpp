@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MCAP files of every shape are read alike, and a lie in any place of one is refused. Files of ours are given to other
-// people's readers by tests/peers/bags_test.py.
+// MCAP files of all variants give the same data, and a wrong value in any place is rejected. tests/peers/bags.py reads
+// our files with external packages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class Mcap : public fixture::Folder {
     return fixture::complaint([&] { read(bytes); });
   }
   std::string complaint_of(const McapShape& shape) { return complaint_of(fixture::mcap_bytes(shape)); }
-  /// Rates of the messages in the order in which they are given.
+  /// Returns the rates of the messages in the order of the file.
   std::vector<double> rates(const std::string& bytes) {
     fixture::put(file(), bytes);
     std::vector<double> out;
@@ -109,7 +109,7 @@ TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
   EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }), HasSubstr("b_1.mcap: no such file"));
 }
 
-/// A lie, and what is said of it.
+/// A wrong value, and the expected message.
 struct Lie {
   const char* name;
   std::function<void(McapShape&)> tell;
@@ -235,7 +235,7 @@ const Lie kLies[] = {
 INSTANTIATE_TEST_SUITE_P(, McapLie, testing::ValuesIn(kLies),
                          [](const auto& of) { return std::string(of.param.name); });
 
-// without a summary the same is found where the file is gone through
+// without a summary, the reader finds the same data by scanning the file
 TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
   shape_.summary = false;
   ASSERT_EQ(complaint_of(shape_), "");
@@ -256,13 +256,13 @@ TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
   EXPECT_NE(complaint_of(loose), "");
 }
 
-// every byte of what we write is under some checksum
+// a checksum covers every byte that we write
 TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
   export_mcap(fixture::small_sensors(), {}, file());
   const std::string whole = fixture::bytes_of(file());
   ASSERT_EQ(complaint_of(whole), "");
   ASSERT_GT(whole.size(), 5000u);
-  const std::size_t far = whole.size() - 300;  // the last chunk's index, the offsets, the footer
+  const std::size_t far = whole.size() - 300;  // the last chunk's index, the offsets and the footer
   for (std::size_t at = 0; at < whole.size(); at += at < 200 || at > far ? 1 : 13) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ (1 << (at % 8)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds of libpointmatcher (VTK) and tables of nav_msgs/Odometry, as norlab's mapper leaves them.
+// Tests clouds of libpointmatcher (VTK) and tables of nav_msgs/Odometry, in the format of norlab's mapper.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class Norlab : public testing::TestWithParam<test::DataFolder> {
   }
 };
 
-/// The lidar's pose at a time of the recording, between the truth's samples.
+/// Returns the lidar's pose at a time of the recording, between samples of the truth.
 Eigen::Isometry3d pose_at(const sim::Truth& truth, double time_ns) {
   const double at = time_ns / static_cast<double>(truth.period_ns);
   const auto i = std::min(static_cast<std::size_t>(at), truth.p_WB_m.size() - 2);
@@ -79,7 +79,7 @@ TEST_P(Norlab, AStatedLengthOfASweepThatTheFilesContradictIsSaid) {
   }
 }
 
-// the first and the fourth line of the table; the reference trembles by some mm on the real one
+// the first and the fourth line of the table; the real reference has noise of some mm
 TEST_P(Norlab, TheReferenceIsTheTables) {
   const Imported imported = import("trajectory.csv");
   ASSERT_TRUE(imported.reference.has_value());
@@ -94,7 +94,7 @@ TEST_P(Norlab, TheReferenceIsTheTables) {
   }
 }
 
-// each point, put where the reference has the lidar at the point's own time, lies on a wall of the room
+// each point, transformed with the reference pose at its own time, is on a wall of the room
 TEST(NorlabStandIn, PointsAndPosesBelongTogether) {
   const std::filesystem::path folder = test::written(test::data_folders("norlab").front());
   SweepSource source;
@@ -211,7 +211,7 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
   EXPECT_THAT(complaint_of(head_ + "10,0,1,2,3,0,0,0,1\n"), HasSubstr("has 1 poses; it needs at least 2"));
 }
 
-// as `evo_traj --save_as_tum` and `--save_as_kitti` write them, with numpy's "%.18e"
+// in the format of `evo_traj --save_as_tum` and `--save_as_kitti`, with numpy's "%.18e"
 TEST(Evo, ItsFilesOfPosesAreRead) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_evo";
   std::filesystem::create_directories(folder);
@@ -223,7 +223,7 @@ TEST(Evo, ItsFilesOfPosesAreRead) {
   EXPECT_EQ(pose_format(folder / "a.tum"), "tum");
   const std::vector<ReferencePose> poses = read_tum_poses(folder / "a.tum", false);
   ASSERT_EQ(poses.size(), 2u);
-  // a double of such seconds is good to 0.24 us
+  // a double of such a time in seconds has a resolution of 0.24 us
   EXPECT_NEAR(static_cast<double>(poses[0].time_ns - 1690309709'285305600), 0.0, 250.0);
   EXPECT_EQ(poses[1].p_WA_m.x(), 1.5);
   const std::string one = "1.000000000000000000e+00 ", none = "0.000000000000000000e+00 ";
@@ -235,7 +235,7 @@ TEST(Evo, ItsFilesOfPosesAreRead) {
   std::filesystem::remove_all(folder);
 }
 
-// the same two poses in every kind of file
+// the same two poses in every file format
 TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_pose_tables";
   std::filesystem::create_directories(folder);
@@ -274,7 +274,7 @@ TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
     EXPECT_EQ(poses[0].p_WA_m, Eigen::Vector3d(1, 2, 3));
     EXPECT_TRUE(poses[0].q_WA.coeffs().isApprox(Eigen::Vector4d(0, 0, 0.6, 0.8), 1e-12));
   }
-  // readings of an IMU are no poses
+  // IMU readings are not poses
   fixture::put(file, "time,gx,gy,gz,ax,ay,az,temp\n0,0,0,0,0,0,9.8,20\n0.01,0,0,0,0,0,9.8,20\n");
   EXPECT_FALSE(is_pose_table(file));
   EXPECT_THAT(fixture::complaint([&] { pose_format(file); }), HasSubstr("8 other words"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ROS 2 bags that were packed by Zstandard while they were recorded.
+// Tests ROS 2 bags that were compressed by Zstandard during recording.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,12 +24,12 @@ std::string packed_by_zstd(std::string_view plain) {
   return out;
 }
 
-/// A ROS 2 bag as `ros2 bag record --compression-format zstd` leaves it.
+/// Returns a ROS 2 bag in the format of `ros2 bag record --compression-format zstd`.
 class PackedBag : public fixture::Folder {
  protected:
   PackedBag() {
     sim::Sensors sensors = fixture::recording().sensors;
-    for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;  // over most of a sweep
+    for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;  // points cover most of a sweep
     sensors.imus.resize(1);
     for (Eigen::Vector3d& force : sensors.imus[0].accel_m_s2) force = Eigen::Vector3d(0.0, 0.0, 9.8);
     export_ros2_bag(sensors, {}, bag_);
@@ -53,7 +53,7 @@ class PackedBag : public fixture::Folder {
     fixture::put(bag_ / "bag_0.db3.zstd", packed_);
     state("FILE", "bag_0.db3.zstd");
   }
-  /// Puts what `make` makes of it in the place of each message.
+  /// Replaces each message by the result of `make`.
   void pack_messages(const std::function<std::string(std::string_view)>& make) {
     SQLite::Database database((bag_ / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
     SQLite::Statement query(database, "SELECT id, data FROM messages");
@@ -103,7 +103,8 @@ TEST_F(PackedBag, FilesAreUnpackedAndNothingIsLeft) {
   EXPECT_LE(left_behind(), before);
 }
 
-// zeros are packed to a part in thirty thousand: what no bag is packed so far is refused while it comes out
+// zeros are compressed by a factor of thirty thousand, which real bags never reach; the reader rejects this while it
+// decompresses
 TEST_F(PackedBag, ABombIsRefused) {
   const std::string frame = packed_by_zstd(std::string(1u << 26, '\0'));
   pack_file();

@@ -26,7 +26,7 @@ Number value_of(const pcl::PCLPointCloud2& cloud, const std::string& field, std:
   return Number{};
 }
 
-/// Sweep 1 of the fixture: points 50 to 99.
+/// Sweep 1 of the fixture contains points 50 to 99.
 void expect_second_sweep(const pcl::PCLPointCloud2& cloud) {
   const sim::Sensors sensors = fixture::recording().sensors;
   const sim::LidarRecord& lidar = sensors.lidars[0];
@@ -41,7 +41,7 @@ void expect_second_sweep(const pcl::PCLPointCloud2& cloud) {
   }
 }
 
-// An independent reader of both formats.
+// PCL is an independent reader of both formats.
 TEST_F(PclReadsSweeps, Pcd) {
   export_pcd(fixture::recording().sensors, folder_);
   EXPECT_EQ(files(), 4u) << "three sweeps and their stamps";

@@ -16,11 +16,12 @@ using testing::Pair;
 
 constexpr std::int64_t kFirst_ns = 5'000'000'000;
 
-/// The sensors of one sort alone, for each sort, their stamps as if the clock had begun long before.
+/// Returns recordings with only one kind of sensor, for each kind, with time stamps of a clock that started long
+/// before.
 std::vector<sim::Sensors> sorts() {
   const sim::Sensors all = fixture::recording().sensors;
-  // does not compile when a member joins Sensors: a new list belongs below, and into recording_clock.cpp and
-  // recording_check.cpp, of which nothing else reminds
+  // does not compile if a member is added to Sensors: then add the new list below, to recording_clock.cpp and to
+  // recording_check.cpp, because no other test detects a missing list
   const auto& [robot, radius_m, gravity_m_s2, imus, lidars, series] = all;
   std::vector<sim::Sensors> out(3);
   out[0].imus = imus;
@@ -73,7 +74,7 @@ TEST(RecordingClock, ClocksOfExportsAreConverted) {
   EXPECT_EQ(shift(kExportOrigin_ns + 11 * second, kExportOrigin_ns + 12 * second), std::nullopt);
 }
 
-// poses that count from zero, of a recording that was exported and imported
+// poses that count from zero, for a recording that was exported and imported
 TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   sim::Recording recording = fixture::recording();
   Imported imported;

@@ -22,13 +22,13 @@ constexpr double kEnd_s = 12.0;
 constexpr std::int64_t kStep_ns = 10'000'000;
 constexpr double kUp_m_s2 = 9.81;
 
-/// Body to world: every axis rotates, at up to 1.5 rad/s, as a hand turns a sensor.
+/// Body to world: rotates about all axes at up to 1.5 rad/s, like a hand-held sensor.
 Eigen::Quaterniond hand_held(double time_s) {
   return so3::exp({0.0, 0.0, 0.9 * std::sin(1.1 * time_s) + 0.3 * time_s}) *
          so3::exp({0.0, 0.6 * std::sin(1.7 * time_s + 0.4), 0.0}) * so3::exp({0.5 * std::sin(2.3 * time_s), 0.0, 0.0});
 }
 
-/// A sphere on a straight way: it turns about y alone.
+/// A sphere on a straight path, which only rotates about y.
 Eigen::Quaterniond rolling(double time_s) {
   return so3::exp({0.0, 1.2 * time_s + 0.8 * std::sin(time_s), 0.0});
 }
@@ -39,7 +39,7 @@ using Changed = Eigen::Quaterniond (*)(const Eigen::Quaterniond&);
 Eigen::Quaterniond as_is(const Eigen::Quaterniond& q) {
   return q;
 }
-/// "qw qx qy qz" in a file, read as "qx qy qz qw".
+/// Writes "qw qx qy qz", which the reader interprets as "qx qy qz qw".
 Eigen::Quaterniond with_w_first(const Eigen::Quaterniond& q) {
   return {q.z(), q.w(), q.x(), q.y()};
 }
@@ -50,8 +50,8 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& q) {
   return q * so3::exp({0.0, 0.0, 1.5});
 }
 
-/// Sensors of the motion: an IMU at 100 Hz, turned by 23 degrees in the body, whose rates add up exactly; and a lidar
-/// of one point.
+/// Sensors of the motion: an IMU at 100 Hz, rotated by 23 degrees in the body, with exact rates; and a lidar with one
+/// point.
 sim::Sensors sensors_of(Motion motion) {
   sim::Sensors sensors;
   sim::ImuRecord& imu = sensors.imus.emplace_back();
@@ -80,7 +80,7 @@ std::vector<ReferencePose> poses_of(Motion motion, Changed changed, double late_
   return poses;
 }
 
-/// What attaching the poses says: the complaint, else the remark.
+/// Attaches the poses. Returns the error, or otherwise the remark.
 std::string said(Motion motion, Changed changed, double late_s = 0.0, double step_s = 0.01) {
   Imported imported;
   imported.sensors = sensors_of(motion);
@@ -118,12 +118,12 @@ TEST(ReferenceCheck, InvertedPosesAreRefused) {
     EXPECT_THAT(said(hand_held, inverted, 0.0, step_s),
                 HasSubstr("The poses of the reference describe the world in sensor axes, but must describe the sensor "
                           "in world axes"));
-    // about one axis alone, w first explains it as well
+    // for a rotation about one axis, an order with w first also agrees
     EXPECT_THAT(said(rolling, inverted, 0.0, step_s), HasSubstr("ref.tum: the rotations of the reference differ"));
   }
 }
 
-// the rotations are the same in both orders: gravity tells them apart
+// the rotations are the same in both orders, so only gravity distinguishes them
 TEST(ReferenceCheck, WFirstOfAMotionAboutOneAxisIsRefused) {
   EXPECT_THAT(said(rolling, with_w_first),
               AllOf(HasSubstr("differs from the vertical of the reference by more than 60 degrees"),
@@ -139,12 +139,12 @@ TEST(ReferenceCheck, LateAndEarlyStampsAreRefused) {
   EXPECT_THAT(said(hand_held, with_w_first, 0.3), AllOf(HasSubstr("w first"), HasSubstr("0.300 s too late")));
 }
 
-// a sweep stamped at its end, or at its start, is off by 0.1 s in sound recordings
+// in correct recordings, the stamp of a sweep may be its end or its start, a difference of 0.1 s
 TEST(ReferenceCheck, ASmallDelayIsACaution) {
   EXPECT_THAT(said(hand_held, as_is, 0.1), AllOf(HasSubstr("caution"), HasSubstr("0.100 s too late")));
 }
 
-// the IMU may be the one that is mounted otherwise
+// the IMU may have another mounting
 TEST(ReferenceCheck, AnotherMountingIsACaution) {
   EXPECT_THAT(said(hand_held, turned), AllOf(HasSubstr("caution"), HasSubstr("check the mounting")));
   EXPECT_THAT(said(hand_held, turned, 0.3), HasSubstr("0.300 s too late"));

@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Steady motion: 1 m/s along x, 0.5 rad/s about z, a pose every `step_ns`.
+/// A motion of 1 m/s along x and 0.5 rad/s about z, with a pose every `step_ns`.
 std::vector<ReferencePose> steady(std::int64_t first_ns, std::int64_t step_ns, int count) {
   std::vector<ReferencePose> poses;
   for (int k = 0; k < count; ++k) {
@@ -43,7 +43,7 @@ TEST(ReferenceTruth, PosesOnAGridComeBackAsTheyWere) {
 
 TEST(ReferenceTruth, OtherwiseItIsInterpolatedWhereTwoPosesAreNear) {
   std::vector<ReferencePose> poses = steady(20000123, 100000000, 11);
-  poses.erase(poses.begin() + 4, poses.begin() + 7);  // 0.4 s without
+  poses.erase(poses.begin() + 4, poses.begin() + 7);  // a gap of 0.4 s
   const sim::Truth truth = reference_truth(poses, 5000000000);
   EXPECT_EQ(truth.period_ns, 1000000);
   int known = 0;
@@ -99,7 +99,7 @@ TEST_F(Reference, KittiWrittenByExportComesBack) {
   const Imported imported = import_trajectory({folder_ / "truth.txt", "kitti", true, false, {}, given.period_ns});
   EXPECT_EQ(imported.reference->period_ns, given.period_ns);
   EXPECT_EQ(imported.reference->p_WB_m, given.p_WB_m);
-  // through a matrix and back: measured 3e-16
+  // converted to a matrix and back: measured 3e-16
   for (std::size_t k = 0; k < given.q_WB.size(); ++k)
     EXPECT_NEAR(std::abs(imported.reference->q_WB[k].dot(given.q_WB[k])), 1.0, 1e-14) << k;
   EXPECT_THAT(fixture::complaint([&] {
@@ -161,7 +161,7 @@ TEST_F(Reference, PosesOfTheLidarBecomePosesOfTheBody) {
   EXPECT_NEAR(truth.q_WB[1].angularDistance(Eigen::Quaterniond(T_WB.linear())), 0.0, 1e-7);
   ASSERT_EQ(truth.lidars.size(), 1u);
   EXPECT_EQ(truth.lidars[0].T_BL.matrix(), source.reading.device.T_BL.matrix());
-  // the recording is one like any other, and the frame makes a difference
+  // the result is a normal recording, and the frame has an effect
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, &truth);
   EXPECT_EQ(read_truth(folder_ / "a.h5").period_ns, 100000000);
   attach_reference(imported, {folder_ / "poses.tum", "tum", true, false, {}, 0});

@@ -64,7 +64,7 @@ TEST_F(RegularFile, AnythingElseIsCalledWhatItIs) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string socket_at = at + "socket";
-  if (socket_at.size() >= sizeof address.sun_path) return;  // a test folder that lies deep
+  if (socket_at.size() >= sizeof address.sun_path) return;  // the path of the test folder is too long
   socket_at.copy(address.sun_path, socket_at.size());
   const int made = socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
@@ -78,7 +78,7 @@ TEST_F(RegularFile, WhatIsReadOnceMayBeAPipe) {
   EXPECT_THAT(complaint([&] { require_file(folder_); }), HasSubstr("is a folder; it must be a file"));
 }
 
-// to open it for reading waits for who writes to it
+// opening a named pipe for reading would wait for a writer
 TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   const std::filesystem::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -44,10 +44,10 @@ TEST_F(ReplaceFile, FollowsTheUsersMask) {
   EXPECT_EQ(status.st_mode & 0777u, 0640u);
 }
 
-// what a killed process leaves behind is removed by the next one, and what a living one writes is not
+// a process removes temporary files of killed processes, but not those of running processes
 TEST_F(ReplaceFile, FilesOfKilledProcessesAreRemoved) {
   std::filesystem::create_directory(folder_ / "x");
-  const OutputFile own(folder_ / "x" / ".." / "own");  // the folder by another name, to look into it again later
+  const OutputFile own(folder_ / "x" / ".." / "own");  // the same folder under another name, for a second look
   const pid_t child = fork();
   if (child == 0) {
     const OutputFile left(folder_ / "a.h5");
@@ -79,10 +79,10 @@ TEST_F(ReplaceFile, ReadOnlyFolderIsRefused) {
   using std::filesystem::perms;
   std::filesystem::permissions(folder_,
                                perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
-  // root may write into a read-only folder: somebody else tries
+  // root may write to a read-only folder, so another user must try
   constexpr uid_t kNobody = 65534;
   const bool root = geteuid() == 0;
-  if (root && seteuid(kNobody) != 0) {  // a container of one user: the kernel's own folders refuse root too
+  if (root && seteuid(kNobody) != 0) {  // a container with one user: in the kernel's folders, root cannot write either
     std::filesystem::permissions(folder_, perms::owner_all);
     EXPECT_THAT(fixture::complaint([] { replace_file("/sys/kernel/a", "x"); }), HasSubstr("cannot be written"));
     return;
@@ -194,7 +194,7 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "empty"));
 }
 
-/// Exports a bag with little room; ends with 0 when BadInput says so and nothing is left.
+/// Exports a bag with little disk space. Exits with 0 if BadInput is thrown and no file remains.
 [[noreturn]] void export_with_little_room(const std::filesystem::path& folder) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{4096, 4096};
@@ -202,16 +202,16 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
   const sim::Recording recording = fixture::recording();
   const std::string message = fixture::complaint([&] { export_ros1_bag(recording.sensors, {}, folder / "a.bag"); });
   std::cerr << message;
-  // without the look for leaks at the end of a program: the library leaves its buffers where its file can't be closed
+  // without the leak check at exit, because the library keeps its buffers if its file cannot be closed
   std::_Exit(message.empty() || !std::filesystem::is_empty(folder) ? 1 : 0);
 }
 
-// the library closes the file in its destructor and throws from there
+// the library closes the file in its destructor, which throws
 TEST_F(ReplaceFile, AFullDiskEndsABagInOneLine) {
   EXPECT_EXIT(export_with_little_room(folder_), testing::ExitedWithCode(0), "a.bag: cannot be written");
 }
 
-/// Ends the process with 0 when a recording cannot be written, BadInput says so and nothing is left of it.
+/// Exits with 0 if a recording cannot be written, BadInput is thrown and no file remains.
 [[noreturn]] void write_with_little_room(const std::filesystem::path& folder, const std::string& old_bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{4096, 4096};
@@ -224,7 +224,7 @@ TEST_F(ReplaceFile, AFullDiskEndsABagInOneLine) {
   std::exit(message.empty() || left != 1 || bytes_of(folder / "a.h5") != old_bytes ? 1 : 0);
 }
 
-// A limit on the size of files makes write() fail midway as a full disk does (EFBIG for ENOSPC).
+// A limit on the file size makes write() fail midway, as a full disk does (EFBIG instead of ENOSPC).
 TEST_F(ReplaceFile, AFullDiskLeavesTheOldFileAndNoPart) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);

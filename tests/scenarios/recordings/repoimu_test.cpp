@@ -58,7 +58,7 @@ TEST_F(Repoimu, TakesTheFileAsItIs) {
   EXPECT_THAT(all_notes(imported), HasSubstr("the gyro of 'imu'")) << "the reference is compared with the gyro";
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("sample and hold")));
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("at a rail"))) << "gravity at rest is no rail";
-  // the reference as it stands in the file
+  // the reference as in the file
   ASSERT_TRUE(imported.reference);
   const sim::Truth& truth = *imported.reference;
   EXPECT_EQ(truth.period_ns, 10'000'000);
@@ -107,7 +107,7 @@ TEST_F(Repoimu, DelayRotationAndTiltOfTheReferenceAreFoundAndTakenOut) {
   EXPECT_LT(median(errors), 0.1) << "rates of the truth at samples that clip";
 }
 
-// a slow sensor in a fast log: readings repeat, the accelerometer's for longer
+// a sensor with a lower rate than the log: readings repeat, those of the accelerometer for longer
 TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   Wand wand;
   wand.log_hz = 90.0, wand.gyro_hz = 50.0, wand.accel_hz = 25.0, wand.decimals = 3;
@@ -117,7 +117,7 @@ TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   EXPECT_THAT(all_notes(imported),
               HasSubstr("(sample and hold): 44.5 % of the gyro's rows and 72.2 % of the accelerometer's"));
   EXPECT_NEAR(static_cast<double>(imu.period_ns), 20e6, 0.5e6) << "get the sample times of the gyro";
-  // the beat is the sensor's, although readings come up to a step of the log late
+  // the period is that of the sensor, although readings appear up to one log period late
   double error = 0.0, held_error = 0.0;
   std::size_t count = 0;
   for (std::size_t k = 20; k + 20 < imu.time_ns.size(); ++k) {
@@ -151,14 +151,14 @@ TEST_F(Repoimu, GlitchesOfTheReferenceAreLeftOutWithACount) {
   EXPECT_LT(fastest, 13.0) << "the motion's own peak is 11.8";
   EXPECT_GT(unknown, 3u * 15u);
   EXPECT_LT(unknown, 3u * 40u) << "and little beside them";
-  // control: the same without flips loses the two ends alone
+  // control: without flips, only the two ends are removed
   wand.flips_s = {};
   const Imported clean = import(repoimu_text(wand));
   EXPECT_THAT(all_notes(clean), HasSubstr("reference: 0 of 4000 samples are left out"));
 }
 
 TEST(ReferenceGlitches, ATwirlIsNoLeap) {
-  // from rest to 16 rad/s within 50 ms and back, as a hand can
+  // from rest to 16 rad/s within 50 ms and back, which is possible for a hand
   std::vector<ReferencePose> poses;
   double angle = 0.0;
   for (int k = 0; k < 300; ++k) {
@@ -177,12 +177,12 @@ TEST_F(Repoimu, WhatPublishedFilesHoldIsRead) {
   Wand wand;
   wand.duration_s = 10.0;
   const std::string text = repoimu_text(wand);
-  // ends of lines, a decimal comma, an attitude that is an average of two, headers as of the pendulum
+  // line endings, a decimal comma, an attitude that is a mean of two, and headers of the pendulum files
   std::string windows;
   for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(import(windows).sensors.imus[0].time_ns.size(), 1000u);
   std::string comma = text;
-  const std::size_t at = comma.find("1.2300;") + 7;  // the quaternion's w
+  const std::size_t at = comma.find("1.2300;") + 7;  // w of the quaternion
   comma[comma.find('.', at)] = ',';
   EXPECT_THAT(all_notes(import(comma)), HasSubstr("1 numbers have a decimal comma"));
   std::string average = text;
@@ -197,7 +197,7 @@ TEST_F(Repoimu, WhatPublishedFilesHoldIsRead) {
   EXPECT_EQ(import(pendulum).sensors.imus[0].gyro_rad_s, import(text).sensors.imus[0].gyro_rad_s);
 }
 
-// columns are found by their names
+// columns are found by name
 TEST_F(Repoimu, ColumnsMayStandElsewhere) {
   Wand wand;
   wand.duration_s = 5.0;
@@ -270,7 +270,7 @@ TEST_F(Repoimu, ReadsTheStandIn) {
   EXPECT_EQ(wand.sensors.imus[0].time_ns.size(), 12000u);
   EXPECT_THAT(all_notes(wand), HasSubstr("units and axes agree"));
   EXPECT_THAT(all_notes(wand), HasSubstr("jumps of up to"));
-  // the reference's rate is the gyro's wherever that one tells it
+  // the reference rate agrees with the gyro where the gyro does not clip
   std::vector<double> errors;
   const sim::ImuRecord& imu = wand.sensors.imus[0];
   const std::vector<Eigen::Vector3d>& rates = wand.reference->imus.at(0).rate_rad_s;
@@ -282,8 +282,7 @@ TEST_F(Repoimu, ReadsTheStandIn) {
   EXPECT_LT(median(errors), 0.02);
 }
 
-/// The published files, where they are at hand: they are no part of the project, and the suite is there with them
-/// alone.
+/// The published files, which are not part of the project. This suite runs only if they are available.
 class RepoimuPublished : public ::testing::TestWithParam<std::filesystem::path> {};
 
 INSTANTIATE_TEST_SUITE_P(Files, RepoimuPublished, ::testing::ValuesIn(test::published_folders("repoimu")));

@@ -14,7 +14,7 @@ namespace {
 using fixture::info;
 using RoundTrip = fixture::Folder;
 
-// The digest is one check over every field; the fields compared one by one below do not depend on it.
+// The digest checks all fields at once. The comparisons of fields below are independent of the digest.
 TEST_F(RoundTrip, EveryFieldComesBackExactly) {
   const sim::Recording recording = fixture::recording();
   const std::filesystem::path path = folder_ / "a.h5";
@@ -166,7 +166,7 @@ TEST_F(RoundTrip, AnImuWithoutMagnetometerLeavesNoTraceOfOne) {
 TEST_F(RoundTrip, InfoComesBackAndTheWriterFillsItsOwnPart) {
   const sim::Recording recording = fixture::recording();
   RecordingInfo given = info();
-  given.situation_yaml = std::string(200000, 'y');  // larger than an object header holds
+  given.situation_yaml = std::string(200000, 'y');  // larger than an object header can store
   given.digest = "wrong";
   write_recording(folder_ / "a.h5", given, recording.sensors, &recording.truth);
   const RecordingInfo found = read_info(folder_ / "a.h5");
@@ -232,7 +232,7 @@ TEST_F(RoundTrip, ContradictingDataAreRefusedBeforeAnyFileIsTouched) {
   EXPECT_EQ(files(), 0u);
 }
 
-/// Names of all datasets under a file's root, with their attribute `unit`.
+/// Returns the names of all datasets in the file, with their attribute `unit`.
 herr_t note_dataset(hid_t root, const char* name, const H5O_info_t* object, void* out) {
   if (object->type == H5O_TYPE_DATASET) {
     const htri_t has_unit = H5Aexists_by_name(root, name, "unit", H5P_DEFAULT);
@@ -241,7 +241,7 @@ herr_t note_dataset(hid_t root, const char* name, const H5O_info_t* object, void
   return 0;
 }
 
-// FORMAT.md promises a unit on each dataset of numbers and describes each by name.
+// FORMAT.md states that each dataset of numbers has a unit, and describes each by name.
 TEST_F(RoundTrip, EveryDatasetHasAUnitAndIsDocumented) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", info(), recording.sensors, &recording.truth);

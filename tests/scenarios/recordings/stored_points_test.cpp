@@ -17,10 +17,10 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Points on the disk instead of in the record: what is written must not tell.
+/// Stores points on disk instead of in the record. The written file must be identical.
 class StoredPoints : public fixture::Folder {
  protected:
-  /// A recording with columns of several chunks, written as a bag.
+  /// A recording whose columns have several chunks, written as a bag.
   StoredPoints() {
     fixture::Numbers numbers;
     sim::Recording recording;
@@ -29,9 +29,9 @@ class StoredPoints : public fixture::Folder {
     imu.accel_m_s2.assign(imu.accel_m_s2.size(), Eigen::Vector3d(0.0, 0.0, 9.8));
     fixture::add_lidar(numbers, recording, "lidar", 12, 20000);
     fixture::add_lidar(numbers, recording, "second", 12, 500);
-    for (std::uint32_t& offset : recording.sensors.lidars[1].offset_ns) offset *= 50;  // over most of a sweep
+    for (std::uint32_t& offset : recording.sensors.lidars[1].offset_ns) offset *= 50;  // points cover most of a sweep
     for (float& intensity : recording.sensors.lidars[0].intensity)
-      intensity *= 200.0f;  // which the reader scales at the very end
+      intensity *= 200.0f;  // the reader scales the intensity at the end
     export_mcap(recording.sensors, {}, folder_ / "a.mcap");
   }
   Imported read(const std::filesystem::path& scratch) {
@@ -52,7 +52,7 @@ TEST_F(StoredPoints, GiveTheSameFile) {
   EXPECT_EQ(read_info(folder_ / "stored.h5").digest, read_info(folder_ / "held.h5").digest);
   EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.h5") == fixture::bytes_of(folder_ / "held.h5"));
   EXPECT_EQ(files(), 3u) << "nothing else stays";
-  // one number that is another one is another file
+  // a single changed number gives another file
   Imported changed = read(folder_);
   changed.points[1].ring.change([](std::uint16_t& ring) { ring ^= 1; });
   write_recording(folder_ / "stored.h5", changed.info, changed.sensors, changed.points, nullptr);
@@ -72,7 +72,7 @@ TEST_F(StoredPoints, AreReadFromARecordingAndGiveTheSameBag) {
   EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.mcap") == fixture::bytes_of(folder_ / "held.mcap"));
   export_recording(folder_ / "a.h5", "rosbag2", folder_ / "new/folders/bag");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folders/bag/metadata.yaml"));
-  // damage is found on this way too
+  // damage is detected in this case too
   std::string bytes = fixture::bytes_of(folder_ / "a.h5");
   const float first = held.sensors.lidars[0].range_m[1000];
   const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&first), sizeof(first)));
@@ -100,7 +100,7 @@ TEST_F(StoredPoints, NeedAFolder) {
               HasSubstr("none: cannot create a temporary file in this folder: No such file"));
 }
 
-/// Ends the process with 0 when BadInput says so, and nothing is left but what was there.
+/// Exits with 0 if BadInput is thrown, and only the previous files remain.
 [[noreturn]] void write_with_little_room(const Imported& stored, const std::filesystem::path& folder, rlim_t bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};

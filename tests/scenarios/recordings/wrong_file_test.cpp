@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A sound recording that each test changes with the HDF5 library, as an outside program would.
+/// A valid recording, which each test changes with the HDF5 library as an external program would.
 class WrongFile : public fixture::Folder {
  protected:
   WrongFile() : path_(folder_ / "a.h5") {
@@ -31,7 +31,7 @@ class WrongFile : public fixture::Folder {
   void remove_attribute(const char* object, const char* name) {
     ASSERT_GE(H5Adelete_by_name(file_, object, name, H5P_DEFAULT), 0) << name;
   }
-  /// Puts a dataset that was never written in place of another.
+  /// Replaces a dataset by one that was never written.
   void replace(const char* name, hid_t type, std::vector<hsize_t> extent, const void* data = nullptr) {
     remove(name);
     const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr);
@@ -217,7 +217,7 @@ TEST_F(WrongFile, TextOfVariableLengthIsRead) {
   EXPECT_EQ(read_sensors(path_).robot, "rig");
 }
 
-// The library would print its error stack to standard error.
+// Otherwise, the library would print its error stack to standard error.
 TEST_F(WrongFile, NothingIsPrinted) {
   remove("sensors/imus/1/gyro_I_rad_s");
   testing::internal::CaptureStderr();

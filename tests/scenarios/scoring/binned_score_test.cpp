@@ -13,7 +13,7 @@ namespace {
 using testing::perfect_estimate;
 using testing::scores;
 
-/// Bins of an axis that have a value of the base metric.
+/// Returns the bins of an axis that have a value of the base metric.
 std::map<double, double> bins_of(const std::map<std::string, double>& values, const std::string& base,
                                  const std::string& axis) {
   std::map<double, double> bins;
@@ -37,7 +37,7 @@ TEST(BinnedMetric, NamesComeBack) {
     EXPECT_FALSE(parse_binned(other)) << other;
 }
 
-// the synthetic rig turns about one axis, up to 14 rad/s: the y axis alone clips, up to 2.9 rad/s deep, in one segment
+// the synthetic rig rotates about one axis at up to 14 rad/s: only the y axis clips, by up to 2.9 rad/s, in one segment
 TEST(BinnedScores, AnErrorOfDeepSamplesStaysInTheirBins) {
   const sim::Recording recording = testing::synthetic_rig();
   const ClippingTruth truth(recording.sensors, recording.truth);
@@ -45,7 +45,7 @@ TEST(BinnedScores, AnErrorOfDeepSamplesStaysInTheirBins) {
   std::size_t deep = 0, shallow = 0;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
     if (truth.clipped_axes(k) == 0) {
-      estimate.rates[k].w_WI_I_rad_s.x() += 50.0;  // must count nowhere
+      estimate.rates[k].w_WI_I_rad_s.x() += 50.0;  // this error must not affect any score
     } else if (truth.depth_rad_s(k) >= 1.0) {
       estimate.rates[k].w_WI_I_rad_s.x() += 3.0;
       ++deep;
@@ -68,7 +68,7 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
   sim::ImuTruth& exact = recording.truth.imus.front();
-  // all clipping anew: one segment of 3 samples on one axis, one of 12 on two; 200 Hz: 0.015 s and 0.06 s
+  // new clipping: one segment of 3 samples on one axis, one of 12 samples on two axes; 200 Hz: 0.015 s and 0.06 s
   imu.gyro_rad_s = exact.gyro_unclipped_rad_s;
   for (std::size_t k = 100; k < 103; ++k) imu.gyro_rad_s[k].x() -= 2.0;
   for (std::size_t k = 200; k < 212; ++k) imu.gyro_rad_s[k] -= Eigen::Vector3d(0.0, 2.0, 1.0);
@@ -86,7 +86,7 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   EXPECT_NEAR(axes.at(2.0), 2.0, 1e-12);
 }
 
-// Coverage of clipped axes and of axes with a cross-axis error are two numbers.
+// The coverage of clipped axes and of axes with a cross-axis error are two numbers.
 TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuTruth& imu = recording.truth.imus.front();
@@ -99,7 +99,7 @@ TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
   Estimate estimate = perfect_estimate(recording);
   for (RateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
-    rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither
+    rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither clipped nor affected
   }
   const auto values = scores(Kind::rate, estimate, recording);
   EXPECT_EQ(values.at("rate_coverage_3sigma"), 1.0);

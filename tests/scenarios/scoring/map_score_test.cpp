@@ -7,7 +7,7 @@
 #include "tests/scenarios/scoring/rig.hpp"
 #include "tests/tree.hpp"
 
-// maps against the true surface of an empty square room: floor at z = 0
+// compares maps with the true surface of an empty square room with floor at z = 0
 namespace tumble::scenarios {
 namespace {
 
@@ -74,7 +74,7 @@ TEST(MapScores, TheFineToleranceIsTenCentimetres) {
   }
 }
 
-// the overlaps are 1 for both
+// the overlaps of both are 1
 TEST(MapScores, TheMeanErrorSeesWhatTheTolerancesDoNot) {
   Estimate estimate = perfect_estimate(rig());
   for (const float height_m : {0.01f, 0.05f}) {
@@ -119,7 +119,7 @@ TEST(MapScores, PointsThatAreNotNumbersLieOffTheSurface) {
 
 TEST(MapScores, CoverageIsTheShareOfWhatWasSeen) {
   Estimate estimate = perfect_estimate(rig());
-  // the half of the room with y < 0 is left out of the map
+  // the half of the room with y < 0 is missing in the map
   std::erase_if(estimate.map, [](const MapPoint& point) { return point.position_W_m.y() < 0.0f; });
   const double coverage = scores(Kind::slam, estimate, rig(), &surface()).at("map_coverage");
   EXPECT_GT(coverage, 0.4);

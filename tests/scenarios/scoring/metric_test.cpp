@@ -31,7 +31,8 @@ TEST(MetricInfo, TwoSidedMetricsHaveATargetAndTheOthersNone) {
   for (const Sense sense : {Sense::lower, Sense::higher, Sense::two_sided, Sense::none}) EXPECT_GE(count[sense], 2u);
 }
 
-// a ratio says nothing of what may be 0 or below; a difference needs a margin of its unit, which gate.hpp has of two
+// a ratio is meaningless for a metric that may be 0 or negative; a difference needs a margin in its unit, which
+// gate.hpp defines for two metrics
 TEST(MetricInfo, WhatTheGateHoldsIsComparedByWhatItsUnitHas) {
   std::map<Compared, std::size_t> count;
   for (const Metric& metric : metrics()) {
@@ -58,7 +59,7 @@ TEST(MetricInfo, EveryKindHasHeadlinesAndTheGateHoldsThem) {
   EXPECT_EQ(headline_metrics(Kind::rate).front(), "rate_error_clipped_median_rad_s");
 }
 
-// one name, one meaning: kinds that share a metric share its description
+// kinds of methods that share a metric share its description
 TEST(MetricInfo, IsFoundByName) {
   for (const Metric& metric : metrics()) {
     const MetricInfo& info = metric_info(metric.info.name);

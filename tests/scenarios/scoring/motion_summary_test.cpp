@@ -12,8 +12,8 @@ constexpr std::int64_t kPhysics_ns = 500'000, kImu_ns = 10'000'000;
 constexpr std::size_t kStepsPerSample = 20, kSamples = 200;
 constexpr double kRail_rad_s = 10.5, kAccelRail_m_s2 = 50.0;
 
-/// Two seconds along x: at rest, from 0.5 s to 1.5 s at 2 m/s while it turns, at rest again; in the air from 1.0 s to
-/// 1.25 s; hit three times, the last two 10 ms apart.
+/// A motion of two seconds along x: at rest, from 0.5 s to 1.5 s at 2 m/s with rotation, at rest again. The body is in
+/// the air from 1.0 s to 1.25 s. It has three impacts, the last two 10 ms apart.
 sim::Recording hand_made() {
   sim::Recording recording;
   sim::Truth& truth = recording.truth;
@@ -53,13 +53,13 @@ sim::Recording hand_made() {
 TEST(MotionSummary, OfAMotionMadeByHand) {
   const sim::Recording recording = hand_made();
   const MotionSummary motion = summarise_motion(recording.sensors, recording.truth);
-  EXPECT_NEAR(motion.path_m, 2.0, 1.1e-3);  // a step of 1 mm at either end
+  EXPECT_NEAR(motion.path_m, 2.0, 1.1e-3);  // an additional step of 1 mm at either end
   EXPECT_NEAR(motion.moving_s, 1.0, 1e-9);
   EXPECT_NEAR(motion.rest_at_end_s, 0.5, 1e-3);
   EXPECT_DOUBLE_EQ(motion.peak_rate_rad_s, 20.0);
   EXPECT_DOUBLE_EQ(motion.peak_accel_m_s2, 90.0);
   EXPECT_NEAR(motion.flight_share, 0.25, 1e-3);
-  EXPECT_EQ(motion.impacts, 2u);  // the third comes too soon after the second
+  EXPECT_EQ(motion.impacts, 2u);  // the third impact is too close to the second
   EXPECT_EQ(motion.samples, 100u);
   EXPECT_EQ(motion.clipped_samples, 100u);
   EXPECT_EQ(motion.axis_clipped_samples, (std::array<std::size_t, 3>{0, 100, 20}));

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios::testing {
 
-/// An estimate that is the truth: rates at the samples, attitudes and poses of `frame` at IMU times, sweeps with the
-/// truth inside, a map of the true hits.
+/// An estimate that equals the truth: rates at the samples, attitudes and poses of `frame` at IMU times, sweeps with
+/// the true motion within, and a map of the true hits.
 inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = Frame::imu) {
   Estimate estimate;
   estimate.frame = frame;
@@ -49,7 +49,7 @@ inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = 
   return estimate;
 }
 
-/// The estimate in a world of its own: everything moved and turned by `T`.
+/// Returns the estimate in another world, transformed by `T`.
 inline void move_world(const Eigen::Isometry3d& T, Estimate& estimate) {
   const Eigen::Quaterniond q(T.linear());
   const auto move = [&](PoseState& pose) {

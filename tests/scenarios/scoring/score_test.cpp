@@ -45,7 +45,7 @@ TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
   }
 }
 
-// every metric of every kind, for an estimate that is the truth in a world of its own
+// tests every metric of every kind, for an estimate that equals the truth in another world
 TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
   const std::set<std::string> shares = {"rate_coverage_3sigma", "rate_coverage_3sigma_flight",
                                         "rate_coverage_3sigma_impact", "map_coverage"};
@@ -55,8 +55,8 @@ TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
     const auto values = scores(kind, estimate, rig());
     ASSERT_GE(values.size(), 4u) << to_string(kind);
     for (const auto& [name, value] : values) {
-      if (name == "map_unique_share") continue;  // at rest every sweep truly hits the same points
-      // rounding, and the truth's own interpolation
+      if (name == "map_unique_share") continue;  // at rest, every sweep hits the same points
+      // rounding, and the interpolation of the truth
       EXPECT_NEAR(value, shares.contains(name) ? 1.0 : 0.0, 1e-9) << name;
     }
     EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::ok);
@@ -86,7 +86,7 @@ TEST(RateScores, ASegmentIsJudgedByItsMeanAndTheWorstSampleByItself) {
   }
   const auto wild = scores(Kind::rate, alternating, rig()), shifted = scores(Kind::rate, offset, rig());
   EXPECT_NEAR(wild.at("rate_error_clipped_max_rad_s"), 2.0, 1e-12);
-  EXPECT_LT(wild.at("rate_error_segment_max_rad_s"), 0.1);  // one sample more of a sign, over at least twenty
+  EXPECT_LT(wild.at("rate_error_segment_max_rad_s"), 0.1);  // one sample more with this sign, of at least twenty
   EXPECT_NEAR(shifted.at("rate_error_segment_max_rad_s"), 2.0, 1e-12);
 }
 
@@ -116,7 +116,7 @@ TEST(RateScores, CoverageCountsClippedAxesWithinThreeSigma) {
     estimate.rates[k].covariance_rad2_s2 = 0.04 * Eigen::Matrix3d::Identity();
     for (int j = 0; j < 3; ++j) {
       const bool far = k % 3 == 0;
-      // an error on a free axis must not count
+      // an error on an unclipped axis must not count
       estimate.rates[k].w_WI_I_rad_s[j] += truth.clipped_axes(k) >> j & 1 ? (far ? 0.61 : 0.59) : 100.0;
       if (!(truth.clipped_axes(k) >> j & 1)) continue;
       total += 1;
@@ -162,7 +162,7 @@ TEST(RateScores, OneNaNSpoilsTheFigure) {
 }
 
 TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
-  // tilt about a horizontal axis after a turn about z: inclination and heading are the two angles
+  // tilt about a horizontal axis after a rotation about z: inclination and heading are the two angles
   const double tilt = 0.1;
   const double yaw = 0.3;
   Estimate estimate = perfect_estimate(rig());
@@ -174,7 +174,7 @@ TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
   EXPECT_NEAR(values.at("inclination_rmse_rad"), tilt, 1e-9);
   EXPECT_NEAR(values.at("heading_rmse_rad"), yaw, 1e-9);
   EXPECT_NEAR(values.at("attitude_rmse_rad"), 2.0 * std::acos(std::cos(tilt / 2) * std::cos(yaw / 2)), 1e-9);
-  // the first sample is right and at rest: sqrt((n - 1) / n) of the others
+  // the first sample is exact and at rest: sqrt((n - 1) / n) of the others
   EXPECT_NEAR(values.at("inclination_rmse_rest_rad"), tilt, 1e-3);
 }
 
@@ -196,7 +196,7 @@ TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
 }
 
 TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
-  // the estimate goes 10 % too far along the body's straight way, and 3 cm up on the way
+  // the estimate is 10 % too long along the body's straight path, and rises by 3 cm
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   const Eigen::Vector3d start = estimate.poses.front().p_WA_m;
   for (PoseState& pose : estimate.poses) pose.p_WA_m = start + 1.1 * (pose.p_WA_m - start);
@@ -206,14 +206,14 @@ TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
   EXPECT_NEAR(values.at("position_end_error_m"), 0.1 * length, 1e-9);
   EXPECT_NEAR(values.at("position_end_error_share"), 0.1, 1e-9);
   EXPECT_NEAR(values.at("position_height_error_max_m"), 0.1 * motion.displacement_m.z(), 1e-9);
-  // a straight way: every metre of it is 10 cm too long; segments end at the first sample past the metre
+  // a straight path: every metre is 10 cm too long; segments end at the first sample after a metre
   EXPECT_NEAR(values.at("rpe_1m_m"), 0.1, 1e-3);
   EXPECT_NEAR(values.at("rpe_1m_rad"), 0.0, 1e-9);
 }
 
 TEST(PositionScores, TheShareIsOfTheSamePathInEveryFrame) {
-  // an offset of 5 cm at the end, in the frame of a point that turns around the centre of mass, and of the centre
-  // itself
+  // an offset of 5 cm at the end, in the frame of a point that rotates around the centre of mass, and of the centre of
+  // mass
   const auto share_in = [](Frame frame) {
     Estimate estimate = perfect_estimate(rig(), frame);
     estimate.poses.back().p_WA_m.x() += 0.05;
@@ -229,7 +229,7 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   const std::size_t half = estimate.poses.size() / 2;
   for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
     estimate.poses[k].covariance.diagonal().head<3>().setConstant(0.01 * 0.01);
-    if (k > 0) estimate.poses[k].p_WA_m.x() += 0.029;  // the first pose aligns the two
+    if (k > 0) estimate.poses[k].p_WA_m.x() += 0.029;  // the first pose aligns both trajectories
   }
   EXPECT_EQ(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 1.0);
   for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.x() += 0.002;
@@ -238,7 +238,7 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   EXPECT_LT(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 0.66);
 }
 
-// coverage is 1 for all of them
+// all have a coverage of 1
 TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_nees_median")) << "nothing is stated";
@@ -256,7 +256,7 @@ TEST(AttitudeScores, TheTiltIsHeldToItsCovarianceWhateverTheHeading) {
   Estimate estimate = perfect_estimate(rig());
   EXPECT_FALSE(scores(Kind::attitude, estimate, rig()).contains("inclination_nees_median")) << "nothing is stated";
   for (AttitudeState& attitude : estimate.attitudes) {
-    // q_true = Exp(phi) q with phi about x and y of the estimate's own world, which is turned about the vertical
+    // q_true = Exp(phi) q with phi about x and y of the estimate's world, which is rotated about the vertical
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
     attitude.q_WA = tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.q_WA;
   }
@@ -273,7 +273,7 @@ TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   for (PoseState& pose : estimate.poses) {
     const double t = 1e-9 * static_cast<double>(pose.time_ns);
-    // a jump in motion is no drift; 2 cm/s at the rest of the end is
+    // a jump during motion is not drift; 2 cm/s at the rest of the end is drift
     if (t > 3.0) pose.p_WA_m.x() += 0.5;
     if (t > 5.0) pose.p_WA_m.y() += 0.02 * (t - 5.0);
   }
@@ -301,28 +301,28 @@ TEST(TrajectoryScores, ATiltedStartIsAnError) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   move_world(tilted_world(0.02), estimate);
   const testing::SyntheticMotion motion;
-  // the way turned about x by 0.02 rad: the end lies 2 sin(0.01) times its part across x away
+  // the path rotated about x by 0.02 rad: the error of the end is 2 sin(0.01) times its component perpendicular to x
   const double across = std::hypot(motion.displacement_m.y(), motion.displacement_m.z());
   EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_end_error_m"), 2.0 * std::sin(0.01) * across, 1e-9);
 }
 
 TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
   Estimate estimate = perfect_estimate(rig());
-  // wrong until the fifth, right from the sixth on: no error
+  // wrong until the fifth sweep, correct from the sixth: no error
   for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
-  // one of them rejected: the sixth registered is the seventh now
+  // one of them rejected: the sixth registered sweep is now the seventh
   estimate.sweeps[2].verdict = SweepVerdict::rejected;
   estimate.sweeps[5].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
-  // the last sweep counts, rejected or not
+  // the last sweep counts, even if it is rejected
   estimate.sweeps.back().verdict = SweepVerdict::rejected;
   estimate.sweeps.back().pose.p_WA_m += Eigen::Vector3d(0.0, 0.0, 0.25);
   estimate.sweeps.back().pose.q_WA =
       Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.q_WA;
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("translation_error_end_m"), 0.25, 1e-9);
-  // beyond 90 degrees, where a clamped arccos would stop
+  // beyond 90 degrees, where a clamped arccos would saturate
   EXPECT_NEAR(values.at("rotation_error_end_rad"), 2.8, 1e-9);
 }
 
@@ -339,7 +339,7 @@ TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
     for (PoseState& pose : estimate.sweeps[k].trajectory) {
       pose.v_WA_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
       const double t = 1e-9 * static_cast<double>(pose.time_ns);
-      // about the axis of the motion, where rates add
+      // about the axis of the motion, so that rates add up
       pose.q_WA = so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.q_WA;
     }
   }

@@ -20,7 +20,7 @@ struct TrueSlip {
   ContactLabel label = ContactLabel::slip;
 };
 
-/// A sphere that grips for ten seconds but for the given spells.
+/// A sphere that grips for ten seconds, except in the given intervals.
 sim::Recording slipping(const std::vector<TrueSlip>& spells) {
   sim::Recording recording;
   recording.sensors.robot = "sphere";
@@ -64,7 +64,7 @@ Estimate claims(const sim::Recording& recording, const std::function<ContactLabe
   return estimate;
 }
 
-/// Claims slip within the spans.
+/// Returns an estimate that reports slip in these intervals.
 Estimate claims_within(const sim::Recording& recording, const std::vector<std::pair<double, double>>& spans) {
   return claims(recording, [&](double time_s) {
     for (const auto& [begin_s, end_s] : spans) {
@@ -97,7 +97,7 @@ TEST(SlipScores, NothingClaimedFindsNothing) {
   EXPECT_FALSE(values.contains("slip_delay_s"));
 }
 
-// 1.4 s of ten are true: who always claims is wrong, and finds nothing
+// 1.4 s of ten are true: an estimate that always reports slip is wrong and detects nothing
 TEST(SlipScores, AlwaysClaimedIsWrong) {
   const sim::Recording recording = slipping(kTwo);
   const auto values = scores(Kind::position, claims_within(recording, {{0.0, 20.0}}), recording);
@@ -110,7 +110,7 @@ TEST(SlipScores, AFalseEventAndALostOneCount) {
   const auto values =
       scores(Kind::position, claims_within(recording, {{2.0, 3.0}, {5.3, 5.4}, {7.0, 7.2}, {8.0, 8.2}}), recording);
   EXPECT_EQ(values.at("slip_precision"), 0.5);
-  EXPECT_EQ(values.at("slip_recall"), 0.5);  // a quarter of the second event is not half of it
+  EXPECT_EQ(values.at("slip_recall"), 0.5);  // a quarter of the second event is less than half of it
 }
 
 TEST(SlipScores, WeakAndShortEventsAreNobodysLossAndNobodysFault) {
@@ -134,7 +134,7 @@ TEST(SlipScores, HopsBelongToTheEvent) {
   const auto both = [](ContactLabel between) {
     return slipping({{2.0, 2.5, 0.5}, {2.5, 2.6, 0.0, between}, {2.6, 3.0, 0.5}});
   };
-  // the claim holds half of the whole, and less than half of either part
+  // the reported interval covers half of both events together, and less than half of each
   const std::vector<std::pair<double, double>> claim = {{2.26, 2.79}};
   EXPECT_EQ(
       scores(Kind::position, claims_within(both(ContactLabel::air), claim), both(ContactLabel::air)).at("slip_recall"),
@@ -158,7 +158,7 @@ TEST(SlipScores, ABumpIsNoClaim) {
   EXPECT_EQ(scores(Kind::position, estimate, recording).at("slip_precision"), 1.0);
 }
 
-/// The estimate of kTwo goes astray by `lost_m` over the first event; its sigma is 1 mm, and 5 cm from `sigma_from_s`.
+/// The estimate of kTwo has an error of `lost_m` over the first event; its sigma is 1 mm, and 5 cm from `sigma_from_s`.
 Estimate astray(const sim::Recording& recording, double lost_m, double sigma_from_s) {
   Estimate estimate = claims_within(recording, {{2.0, 3.0}, {5.0, 5.4}});
   for (PoseState& pose : estimate.poses) {
@@ -175,7 +175,7 @@ TEST(SlipScores, AnEventThatLosesTheWayIsToBeFlagged) {
   const auto right = scores(Kind::position, astray(recording, 0.2, 2.5), recording);
   EXPECT_EQ(right.at("slip_flag_recall"), 1.0);
   EXPECT_EQ(right.at("slip_flagged_share"), 0.5);
-  // the other event is flagged, the lost one is not
+  // the other event is flagged, the missed one is not
   const auto wrong = scores(Kind::position, astray(recording, 0.2, 5.1), recording);
   EXPECT_EQ(wrong.at("slip_flag_recall"), 0.0);
   EXPECT_EQ(wrong.at("slip_flagged_share"), 0.5);

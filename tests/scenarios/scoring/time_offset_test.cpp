@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Offsets in time of estimates that are the truth of another instant: an offset in closed form.
+// Tests time offsets of estimates that equal the truth of another time, in closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ const sim::Recording& moving_rig() {
   return recording;
 }
 
-/// Attitudes and poses of the body as they truly were `late_s` before their stamps.
+/// Returns the true attitudes and poses of the body `late_s` before their time stamps.
 Estimate late_estimate(double late_s) {
   Estimate estimate = perfect_estimate(moving_rig(), Frame::body);
   for (AttitudeState& attitude : estimate.attitudes)
@@ -48,7 +48,7 @@ const std::map<Kind, std::string>& of_attitudes() {
   return all;
 }
 
-// to the first order in the offset; the second, of the acceleration, cancels from rest to rest, the third is 1e-8 of it
+// first order in the offset; the second order (acceleration) cancels from rest to rest, the third is 1e-8 of it
 TEST(TimeOffset, OfAttitudesAndPosesIsWhatTheyAreLateBy) {
   for (const auto& [kind, name] : of_attitudes()) {
     for (const double late_s : {kLate_s, -kLate_s, 1e-3, 0.0})
@@ -64,7 +64,7 @@ TEST(TimeOffset, OfAttitudesIsTheSameInAWorldOfItsOwn) {
     EXPECT_NEAR(scores(kind, estimate, moving_rig()).at(name), kLate_s, 1e-9) << to_string(kind);
 }
 
-/// The recording with a turning rate that rises steadily, nothing clipped: differences of it are exact.
+/// The recording with a linearly increasing rate without clipping, so that its differences are exact.
 sim::Recording steadily_faster(const Eigen::Vector3d& acceleration_rad_s2) {
   sim::Recording recording = moving_rig();
   sim::ImuTruth& truth = recording.truth.imus.front();
@@ -86,7 +86,7 @@ TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
   }
 }
 
-// in the motion there and back the rail hides samples: they have no part, whatever is claimed of them
+// during the motion back and forth, clipped samples do not count, whatever their estimates are
 TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
   Estimate estimate = perfect_estimate(moving_rig());
   const ClippingTruth truth(moving_rig().sensors, moving_rig().truth);
@@ -100,12 +100,12 @@ TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
     estimate.rates[k].w_WI_I_rad_s.setZero();
   }
   ASSERT_GT(clipped, 50u);
-  // the acceleration is a difference over 10 ms: 1e-4 of an offset
+  // the acceleration is a difference over 10 ms: an error of 1e-4 of an offset
   EXPECT_NEAR(scores(Kind::rate, estimate, moving_rig()).at("rate_time_offset_s"), kLate_s, 1e-3 * kLate_s);
 }
 
-// what is wrong, but not late: across the turn, along it now forth and now back, or the same whichever way it turns;
-// each is zero where the estimate stands at the start, where its world is aligned
+// errors other than delays: perpendicular to the rotation, along it with alternating sign, or independent of its sign;
+// each is zero at the start, where the world of the estimate is aligned
 TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
   Estimate estimate = late_estimate(0.0);
   const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();

@@ -28,7 +28,7 @@ TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
     const double t = 1e-9 * static_cast<double>(time_ns);
     const Eigen::Vector3d p = motion.position_m(t) + motion.attitude(t) * T_BI.translation();
     const PoseState pose = track.pose(time_ns);
-    // linear between samples: acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
+    // linear interpolation between samples: acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
     EXPECT_NEAR((pose.p_WA_m - p).norm(), 0.0, 1e-6);
     EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.q_WA),
                 0.0, 1e-6);
@@ -45,7 +45,7 @@ TEST(TruthTrack, PathOfTheBodyIsTheLengthOfItsStraightPath) {
   const testing::SyntheticMotion motion;
   const sim::Recording recording = testing::synthetic_rig(motion);
   EXPECT_NEAR(TruthTrack(recording.truth, Frame::body).path_m(6000000000), motion.displacement_m.norm(), 1e-9);
-  // a point off the axis goes farther
+  // a point off the axis has a longer path
   EXPECT_GT(TruthTrack(recording.truth, Frame::imu).path_m(6000000000), motion.displacement_m.norm() + 0.1);
 }
 
@@ -79,7 +79,7 @@ TEST(TruthTrack, DoesNotCoverWhatAReferenceDidNotSee) {
   EXPECT_TRUE(track.covers(4001 * period_ns));
   EXPECT_EQ(track.pose(3999 * period_ns).p_WA_m, before.p_WA_m) << "the unknown neighbour has no part in it";
   EXPECT_EQ(track.pose(3999 * period_ns).q_WA.coeffs(), before.q_WA.coeffs());
-  // two steps of at most 1 m/s are missing from the path
+  // two steps of at most 1 m/s are missing in the path
   EXPECT_NEAR(track.path_m(track.last_ns()), path_m, 1e-3);
 }
 
@@ -132,7 +132,7 @@ TEST(ClippingTruth, NamesTheAxesThatTheRailTouched) {
     }
   }
   EXPECT_GT(clipped, 50u);
-  // at a stamp its own, between two stamps interpolated, outside nothing
+  // exact at a time stamp, interpolated between two, unknown outside
   EXPECT_EQ(truth.at(imu.time_ns[500])->rate_rad_s, recording.truth.imus.front().rate_rad_s[500]);
   const Eigen::Vector3d middle =
       0.5 * (recording.truth.imus.front().rate_rad_s[499] + recording.truth.imus.front().rate_rad_s[500]);
@@ -151,7 +151,7 @@ TEST(ClippingTruth, DifferencesBelowTheNoiseAreNoClipping) {
   EXPECT_EQ(truth.clipped_axes(11), 2);
 }
 
-// One element saturates; the compensation of the device spreads its deficit over the other two axes.
+// One element clips; the compensation of the device distributes its deficit to the other two axes.
 TEST(ClippingTruth, CrossAxisErrorsAreNoClipping) {
   sim::Recording recording = testing::synthetic_sphere();
   sim::ImuTruth& imu = recording.truth.imus.front();
@@ -178,7 +178,7 @@ TEST(ClippingTruth, CrossAxisErrorsAreNoClipping) {
 }
 
 TEST(Nearness, AgreesWithBruteForce) {
-  // a lattice with irrational steps: no distance falls on the limit
+  // a lattice with irrational steps, so that no distance equals the limit
   std::vector<Eigen::Vector3f> points;
   for (int k = 0; k < 400; ++k) {
     const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 4.0f) - 2.0f; };

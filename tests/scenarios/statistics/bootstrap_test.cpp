@@ -19,7 +19,7 @@ double median(std::vector<double> values) {
   return quantile(values, 0.5);
 }
 
-/// The plain way: resamples made one by one. Shares of their medians at or below each of the values.
+/// Reference with explicit resamples: returns the shares of their medians at or below each of the values.
 std::vector<double> medians_by_resampling(const std::vector<double>& sorted, int resamples) {
   sim::Stream stream(7, "test.resampling");
   std::vector<double> below(sorted.size(), 0.0);
@@ -39,7 +39,7 @@ std::vector<double> rising(std::size_t n) {
   return values;
 }
 
-// without bias and acceleration (an even, symmetric sample has neither) the ends are quantiles of the resamples'
+// without bias and acceleration (both are zero for an even, symmetric sample), the ends are quantiles of the resamples'
 // medians
 TEST(MedianBootstrap, AgreesWithResamplesMadeOneByOne) {
   for (const std::size_t n : {10u, 11u, 24u, 51u}) {
@@ -50,7 +50,7 @@ TEST(MedianBootstrap, AgreesWithResamplesMadeOneByOne) {
     const auto share_at_most = [&](double end) {
       return below[static_cast<std::size_t>(std::clamp(std::floor(end), 1.0, static_cast<double>(n))) - 1];
     };
-    // medians are whole or half numbers: the share jumps past 2.5 and 97.5 % at the end itself
+    // medians are multiples of a half: the share crosses 2.5 and 97.5 % exactly at the end
     EXPECT_LE(share_at_most(interval.low - 1.0), 0.025 + 0.004) << n;
     EXPECT_GE(share_at_most(interval.low + 1.0), 0.025 - 0.004) << n;
     EXPECT_LE(share_at_most(interval.high - 1.0), 0.975 + 0.004) << n;
@@ -97,7 +97,7 @@ TEST(MedianBootstrap, RefusesWhatItCannotMean) {
   EXPECT_THROW(MedianBootstrap(10).interval(values), BadInput);
 }
 
-/// How often the interval holds the true median, over 2000 samples of a distribution.
+/// Returns how often the interval contains the true median, over 2000 samples of a distribution.
 double coverage(std::size_t n, double risk, double (*draw)(sim::Stream&), double truth) {
   sim::Stream stream(n, "test.coverage");
   const MedianBootstrap bootstrap(n, 1000);
@@ -111,8 +111,8 @@ double coverage(std::size_t n, double risk, double (*draw)(sim::Stream&), double
   return held / 2000.0;
 }
 
-// two-sided bounds: an interval that is too wide is as wrong as one that is too narrow. 2000 samples know a coverage to
-// 0.5 %; the median's own lattice costs up to 2 % more
+// two-sided bounds, because an interval that is too wide is as wrong as one that is too narrow. 2000 samples determine
+// a coverage to 0.5 %; the discrete values of the median add up to 2 %
 TEST(MedianBootstrap, CoversTheTrueMedianAsOftenAsItSays) {
   const auto normal = [](sim::Stream& s) { return s.normal(); };
   const auto skewed = [](sim::Stream& s) { return -std::log(1.0 - s.uniform()); };
@@ -124,7 +124,7 @@ TEST(MedianBootstrap, CoversTheTrueMedianAsOftenAsItSays) {
       EXPECT_LT(share, 0.98) << n;
     }
   }
-  // negative controls: another level, another truth
+  // negative controls: another level, another true value
   EXPECT_LT(coverage(60, 0.2, normal, 0.0), 0.85);
   EXPECT_LT(coverage(60, 0.05, normal, 0.4), 0.6);
 }

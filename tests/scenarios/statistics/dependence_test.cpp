@@ -23,7 +23,8 @@ TEST(MeanRanks, ShareTheirMeanInTies) {
   EXPECT_TRUE(std::isnan(mean_ranks(std::vector<double>{1.0, std::nan("")})[1]));
 }
 
-// the textbook's ten pairs (IQ and hours of television: -29/165), and scipy 1.17.1: spearmanr of 60 pairs with ties
+// textbook example of ten pairs (IQ and hours of television: -29/165), and scipy 1.17.1: spearmanr of 60 pairs with
+// ties
 TEST(RankCorrelation, AgreesWithTheTextbookAndScipy) {
   const std::vector<double> iq = {106, 100, 86, 101, 99, 103, 97, 113, 112, 110};
   const std::vector<double> hours = {7, 27, 2, 50, 28, 29, 20, 12, 6, 17};
@@ -47,14 +48,14 @@ TEST(RankCorrelation, SeesOrderAloneAndFailuresAsTheLast) {
   EXPECT_EQ(rank_correlation(x, x).rho, 1.0);
   EXPECT_EQ(rank_correlation(x, x).chance, 0.0);
   EXPECT_EQ(rank_correlation(x, x).low, 1.0);
-  // nothing is known: few pairs, or what does not vary
+  // unknown for few pairs, or for constant values
   EXPECT_EQ(rank_correlation(std::vector<double>{1, 2, 3}, std::vector<double>{1, 2, 3}).chance, 1.0);
   EXPECT_EQ(rank_correlation(x, std::vector<double>(10, 2.0)).chance, 1.0);
   EXPECT_EQ(rank_correlation(x, std::vector<double>(10, 2.0)).high, 1.0);
   EXPECT_THROW(rank_correlation(x, std::vector<double>{1.0}), BadInput);
 }
 
-// of normal pairs with correlation r the rank correlation is 6/pi asin(r/2)
+// for normal pairs with correlation r, the rank correlation is 6/pi asin(r/2)
 TEST(RankCorrelation, IntervalsHoldTheTruthAsOftenAsTheySay) {
   for (const double r : {0.0, 0.5, 0.8}) {
     const double truth = 6.0 / std::numbers::pi * std::asin(0.5 * r);
@@ -81,7 +82,7 @@ TEST(RankCorrelation, IntervalsHoldTheTruthAsOftenAsTheySay) {
   }
 }
 
-// y = x in M classes of k: what is left inside of a class is (k^2 - 1)/12 of (n^2 - 1)/12
+// y = x in M classes of k: the variance within a class is (k^2 - 1)/12 of (n^2 - 1)/12
 TEST(FirstOrder, OfItselfIsWhatTheClassesLeave) {
   std::vector<double> x;
   for (int i = 0; i < 1000; ++i) x.push_back(i);
@@ -91,8 +92,8 @@ TEST(FirstOrder, OfItselfIsWhatTheClassesLeave) {
   EXPECT_LT(all.chance, 1e-100);
 }
 
-// Ishigami and Homma's function with a = 7, b = 0.1: the indices in closed form are 0.3139, 0.4424 and 0. The second is
-// of a shape that no rank correlation sees.
+// Ishigami and Homma's function with a = 7, b = 0.1: the indices in closed form are 0.3139, 0.4424 and 0. A rank
+// correlation does not detect the second dependence.
 TEST(FirstOrder, MatchesIshigamisFunction) {
   sim::Stream stream(6, "test.ishigami");
   const double pi = std::numbers::pi;
@@ -139,7 +140,8 @@ TEST(FirstOrder, OfNothingIsNothing) {
       sum += index.index;
       refused += index.chance < 0.05;
     }
-    // cut off at zero, so that the mean is a little above it; uncorrected it would be (M - 1)/(n - 1): 0.10 and 0.025
+    // limited to positive values, so the mean is slightly above zero; without correction, it would be (M - 1)/(n - 1):
+    // 0.10 and 0.025
     EXPECT_LT(sum / 2000.0, n == 40 ? 0.045 : 0.008) << n;
     EXPECT_GT(refused, 2000 * 0.025) << n;
     EXPECT_LT(refused, 2000 * 0.065) << n;

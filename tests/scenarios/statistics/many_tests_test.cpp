@@ -16,7 +16,7 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
-// the worked example of Holm's steps: 4 x 0.01, 3 x 0.02, 2 x 0.03 which may not fall below, 0.04
+// example of Holm's steps: 4 x 0.01, 3 x 0.02, 2 x 0.03 (must not decrease), 0.04
 TEST(Holm, StepsDown) {
   EXPECT_THAT(
       holm(std::vector<double>{0.02, 0.04, 0.01, 0.03}),
@@ -33,7 +33,7 @@ TEST(Holm, WhatIsNoTestCountsForNothing) {
   EXPECT_DOUBLE_EQ(corrected[2], 0.02);
 }
 
-// ten true hypotheses: any of them refused in 5 % of the tables, and without the correction in 40 %
+// ten true hypotheses: any of them is rejected in 5 % of the tables, and without the correction in 40 %
 TEST(Holm, KeepsTheRiskOfTheWholeTable) {
   sim::Stream stream(1, "test.holm");
   int any = 0, any_uncorrected = 0;

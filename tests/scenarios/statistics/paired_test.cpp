@@ -14,7 +14,8 @@
 namespace tumble::scenarios {
 namespace {
 
-/// The definition: over all signs, how often the positive ranks add up to as much. Ties share their mean rank.
+/// Reference by definition: over all signs, how often the positive ranks add up to at least this sum. Ties share their
+/// mean rank.
 double by_enumeration(const std::vector<double>& differences) {
   const std::size_t n = differences.size();
   std::vector<double> ranks(n);
@@ -47,7 +48,8 @@ TEST(SignedRank, IsTheShareOfSignsWithSuchASum) {
   }
 }
 
-// Wilcoxon 1945 and every table since: of ten differences a sum of 8 or less is rarer than 2.5 %, one of 9 is not
+// Wilcoxon 1945 and all tables: for ten differences, a sum of 8 or less has a probability below 2.5 %, 9 or less does
+// not
 TEST(SignedRank, MatchesTheTable) {
   // ranks 1..10; negatives 1 + 7 = 8
   const std::vector<double> eight = {-1, 2, 3, 4, 5, 6, -7, 8, 9, 10};
@@ -63,7 +65,7 @@ TEST(SignedRank, ZerosAndNothingSayNothing) {
   EXPECT_NEAR(signed_rank_chance(std::vector<double>(30, 1.0)), std::pow(0.5, 30), 1e-15);
 }
 
-/// Differences 1 to n, those with these ranks negative so that the negative ranks add up to `sum`.
+/// Returns differences 1 to n with negative signs such that the negative ranks add up to `sum`.
 std::vector<double> with_negative_sum(int n, int sum) {
   std::vector<double> differences;
   for (int rank = n; rank > 0; --rank) {
@@ -75,8 +77,8 @@ std::vector<double> with_negative_sum(int n, int sum) {
   return differences;
 }
 
-// the two-sided 5 % points of every table of the test (Conover, Practical Nonparametric Statistics, table A12; from 26
-// on other tables): the last sum that is refused
+// the two-sided 5 % points in tables of the test (Conover, Practical Nonparametric Statistics, table A12; other tables
+// from 26): the last sum that is rejected
 TEST(SignedRank, MatchesTheTableOfCriticalValues) {
   const std::vector<std::pair<int, int>> table = {{6, 0},   {7, 2},   {8, 3},    {9, 5},    {10, 8},
                                                   {11, 10}, {12, 13}, {13, 17},  {14, 21},  {15, 25},
@@ -101,7 +103,8 @@ TEST(SignedRank, AgreesWithScipy) {
   EXPECT_NEAR(signed_rank_chance(many), 0.0016049128983107177, 1e-14);
 }
 
-// one more pair, and the sum as far from its middle: at the border the two are within half a percent of each other
+// one more pair, with a sum equally far from its middle: where the methods change, they differ by at most half a
+// percent
 TEST(SignedRank, GoesOverIntoTheApproximation) {
   const int n = static_cast<int>(kExactPairsMax);
   for (const int sum : {1700, 2000, 2300}) {
@@ -135,15 +138,15 @@ TEST(SignTest, IsBinomial) {
   EXPECT_EQ(sign_test({}), 1.0);
 }
 
-// 40 pairs are refused at 13 of one sign or fewer: 3.85 %, whatever the differences' shape (Conover, table A3). Of 2000
-// the deviation is 0.43 %
+// 40 pairs are rejected with 13 or fewer of one sign: 3.85 %, for any distribution of the differences (Conover, table
+// A3). For 2000 trials, the deviation is 0.43 %
 TEST(SignTest, IsRefusedAsOftenAsItSaysOfAlikeOnes) {
   const auto refused_share = [](double shift) {
     sim::Stream stream(40, "test.signs");
     int refused = 0;
     for (int k = 0; k < 2000; ++k) {
       std::vector<double> differences;
-      // of a skewed distribution with its median at the shift: a test of means would refuse it
+      // a skewed distribution with its median at the shift: a test of means would reject it
       for (int i = 0; i < 40; ++i) differences.push_back(std::exp(1.5 * stream.normal()) - 1.0 + shift);
       refused += sign_test(differences) < 0.05;
     }
@@ -162,7 +165,7 @@ TEST(PairedFailures, IsMcNemarsInItsExactForm) {
   EXPECT_THROW(paired_failures_test(-1, 3), BadInput);
 }
 
-// Of 200 draws a fifth fails under both: the test looks at the others alone. Exact tests keep below what they say.
+// Of 200 draws, a fifth fails under both methods, so the test uses only the others. Exact tests keep their level.
 TEST(PairedFailures, IsRefusedAsSeldomAsItSaysOfAlikeOnes) {
   const auto refused_share = [](double first, double second) {
     sim::Stream stream(200, "test.failures");

@@ -46,7 +46,8 @@ TEST(PartialDependence, MatchesIshigamisFunction) {
   check(c, of_c);
 }
 
-// y = x + e, e symmetric: of a class from l to h mean and median are its middle. Negative control: not its lower end.
+// y = x + e with symmetric e: mean and median of a class from l to h are its middle. Negative control: not its lower
+// end.
 TEST(PartialDependence, IntervalsHoldTheTruthAsOftenAsTheySay) {
   for (const Centre centre : {Centre::mean, Centre::median}) {
     sim::Stream stream(5, "test.coverage");
@@ -57,14 +58,14 @@ TEST(PartialDependence, IntervalsHoldTheTruthAsOftenAsTheySay) {
       for (const double each : x) y.push_back(each + 0.1 * stream.normal());
       for (const DependenceClass& each : partial_dependence(x, y, centre)) {
         ++all;
-        // between the first and the last draw of a class the others are uniform
+        // between the first and the last draw of a class, the others are uniform
         const double middle = 0.5 * (each.low + each.high);
         held += each.centre.low <= middle && middle <= each.centre.high;
         held_end += each.centre.low <= each.low && each.low <= each.centre.high;
       }
     }
     EXPECT_EQ(all, 500 * 8);
-    const double most = centre == Centre::mean ? 0.98 : 0.995;  // the exact interval of 15 values is of 96.5 %
+    const double most = centre == Centre::mean ? 0.98 : 0.995;  // the exact interval of 15 values has a level of 96.5 %
     EXPECT_GT(held, all * 0.94);
     EXPECT_LT(held, all * most);
     EXPECT_LT(held_end, all * 0.9);

@@ -20,7 +20,7 @@ std::vector<double> shifted(sim::Stream& stream, std::size_t n, double shift) {
   return values;
 }
 
-// Noether's formula by hand: of normal differences P(D + D' > 0) = Phi(shift sqrt 2)
+// Noether's formula by hand: for normal differences, P(D + D' > 0) = Phi(shift sqrt 2)
 TEST(PairsForSignedRank, FollowTheFormula) {
   sim::Stream stream(1, "test.noether");
   const double pairs = pairs_for_signed_rank(shifted(stream, 20000, 0.5), {});
@@ -31,7 +31,7 @@ TEST(PairsForSignedRank, FollowTheFormula) {
   EXPECT_GT(pairs_for_signed_rank(shifted(stream, 5000, 0.5), {0.05, 0.95}), 1.3 * pairs);
 }
 
-// three differences: the pairs' sums are 1 + 2, 1 - 4, 2 - 4; one of three is positive
+// three differences: the sums of pairs are 1 + 2, 1 - 4, 2 - 4; one of three is positive
 TEST(PairsForSignedRank, CountsThePairsOfDifferences) {
   const double z = 1.959964 + 0.841621;
   EXPECT_EQ(pairs_for_signed_rank(std::vector<double>{1, 2, -4}, {}),
@@ -47,7 +47,7 @@ TEST(PairsForSignedRank, TellsApartAsOftenAsItSays) {
     const auto pairs = static_cast<std::size_t>(pairs_for_signed_rank(shifted(stream, 4000, shift), {}));
     int told = 0;
     for (int k = 0; k < 1000; ++k) told += signed_rank_test(shifted(stream, pairs, shift)) < 0.05;
-    // 1000 trials know the power to 1.3 %
+    // 1000 trials determine the power to 1.3 %
     EXPECT_GT(told, 760) << shift << " " << pairs;
     EXPECT_LT(told, 860) << shift << " " << pairs;
   }
@@ -82,7 +82,7 @@ TEST(PairsForFailures, FollowTheFormulaAndTellApart) {
     }
     told += paired_failures_test(first, second) < 0.05;
   }
-  // the exact test is conservative: some 4 % below what the formula, which is of the normal one, promises
+  // the exact test is conservative: about 4 % below the formula, which is for the normal approximation
   EXPECT_GT(told, 2000 * 0.72);
   EXPECT_LT(told, 2000 * 0.84);
 }

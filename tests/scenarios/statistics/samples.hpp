@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// How a failed run counts.
+/// Value of a failed run.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline std::vector<double> uniform(sim::Stream& stream, std::size_t n, double low = 0.0, double high = 1.0) {

@@ -15,8 +15,8 @@ namespace {
 
 using Verdict = SequentialSignTest::Verdict;
 
-/// Chance of each verdict when a sign is positive with probability `p`, and of pairs seen until it: over all sequences
-/// of `n` signs, looked at after every `every`.
+/// Returns the probability of each verdict, and the mean number of pairs, if a sign is positive with probability `p`:
+/// over all sequences of `n` signs, with a look after every `every`.
 struct Enumerated {
   double negative = 0.0, positive = 0.0, pairs = 0.0;
 };
@@ -50,7 +50,7 @@ TEST(SpentBy, IsNothingAtFirstAndHalfOfTheRiskASideAtTheEnd) {
   EXPECT_NEAR(spent_by(0.05, 0.5), 2.0 * 0.5 * std::erfc(2.241402728 / std::sqrt(0.5) / std::sqrt(2.0)), 1e-9);
 }
 
-// what it says to have spent is what all sequences of fair signs add up to
+// the stated spent risk is the sum over all sequences of fair signs
 TEST(SequentialSignTest, SpendsWhatItSays) {
   for (const int every : {1, 4}) {
     const int n = 16;
@@ -62,11 +62,11 @@ TEST(SequentialSignTest, SpendsWhatItSays) {
     EXPECT_NEAR(fair.positive + fair.negative, last.spent(), 1e-12);
     EXPECT_NEAR(fair.positive, fair.negative, 1e-12);
     EXPECT_LE(last.spent(), 0.1);
-    EXPECT_GT(last.spent(), 0.05);  // the rest is lost to whole numbers
+    EXPECT_GT(last.spent(), 0.05);  // whole numbers use a part of the risk
   }
 }
 
-// against unequal signs it finds the right one, and before the end
+// with unequal signs, the test finds the correct direction before the end
 TEST(SequentialSignTest, HasPowerAndStopsEarly) {
   const Enumerated uneven = enumerate(16, 4, 0.9, 0.1);
   EXPECT_GT(uneven.positive, 0.9);
@@ -74,7 +74,7 @@ TEST(SequentialSignTest, HasPowerAndStopsEarly) {
   EXPECT_LT(uneven.pairs, 14.0);
 }
 
-// With one look it is the sign test: of 10 pairs 9 are needed at 5 %.
+// With one look, it equals the sign test: 9 of 10 pairs are needed at 5 %.
 TEST(SequentialSignTest, OfOneLookIsTheSignTest) {
   SequentialSignTest test(0.05);
   EXPECT_EQ(test.look(1.0, 2, 8), Verdict::open);
@@ -92,7 +92,7 @@ TEST(SequentialSignTest, OfManyPairsHasThePublishedBounds) {
     test.look(0.2 * static_cast<double>(k + 1), pairs / 2, pairs / 2);
     const double root = std::sqrt(static_cast<double>(pairs));
     const double bound = static_cast<double>(2 * test.needed() - pairs) / root;
-    // signs come in whole numbers: one more moves the bound by 2/sqrt(pairs)
+    // numbers of signs are integers: one more moves the bound by 2/sqrt(pairs)
     EXPECT_NEAR(bound, published[k], 2.0 / root + 0.005) << k;
   }
 }
@@ -120,8 +120,7 @@ Simulated simulate(double p, int runs) {
   return out;
 }
 
-// the level holds whatever share of the draws are ties, and little of it is lost; four standard errors of the
-// simulation
+// the level is kept for any share of ties, and is nearly used; four standard errors of the simulation
 TEST(SequentialSignTest, KeepsItsLevelBySimulation) {
   constexpr int kRuns = 4000;
   const double error = std::sqrt(0.05 * 0.95 / kRuns);
@@ -130,7 +129,8 @@ TEST(SequentialSignTest, KeepsItsLevelBySimulation) {
   EXPECT_GT(fair.answered, 0.035 - 4.0 * error);
 }
 
-// of 133 pairs and signs of 0.65 a test with one look has power 0.94 (normal approximation: the looks cost a little)
+// for 133 pairs and signs of 0.65, a test with one look has a power of 0.94 (normal approximation; looks reduce it
+// slightly)
 TEST(SequentialSignTest, KeepsItsPowerBySimulation) {
   const Simulated uneven = simulate(0.65, 2000);
   EXPECT_GT(uneven.answered, 0.88);
@@ -138,7 +138,7 @@ TEST(SequentialSignTest, KeepsItsPowerBySimulation) {
   EXPECT_LT(uneven.pairs, 100.0);
 }
 
-// Control: the same test looked at with all of its risk each time finds what is not there
+// Control: the same test with its full risk at each look finds false effects
 TEST(SequentialSignTest, WithoutSpendingWouldNotKeepIt) {
   sim::Stream random(8, "test.sequential");
   int answered = 0;
@@ -168,7 +168,7 @@ TEST(SequentialSignTest, AnswersOnceAndRefusesWhatCannotBe) {
   EXPECT_THROW(other.look(0.6, 4, 5), BadInput);
 }
 
-// before there is enough to say anything no outcome is an answer
+// before there is enough data, there is no answer for any outcome
 TEST(SequentialSignTest, OfLittleNothingIsAnAnswer) {
   SequentialSignTest test(0.05);
   EXPECT_EQ(test.look(0.05, 0, 5), Verdict::open);

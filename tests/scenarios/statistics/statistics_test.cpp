@@ -53,7 +53,7 @@ TEST(MedianInterval, RanksAreThoseOfTheTables) {
   }
 }
 
-// by sorting and by summing all terms, for as few and as many values as there are, with ties and infinities
+// reference by sorting and summing all terms, for small and large numbers of values, with ties and infinities
 TEST(MedianInterval, IsThatOfTheSortedValuesToTheLastBit) {
   for (const std::size_t count : {1, 2, 5, 6, 7, 8, 60, 61, 1000, 1001, 1500, 1501, 4000, 30001}) {
     std::vector<double> values;
@@ -80,7 +80,7 @@ TEST(MedianInterval, IsThatOfTheSortedValuesToTheLastBit) {
   }
 }
 
-// what the ranks leave, whatever the distribution: 96.48 % of 15, 95.67 % of 25, 96.48 % of 100 values (binomial)
+// coverage of the ranks for any distribution: 96.48 % for 15, 95.67 % for 25, 96.48 % for 100 values (binomial)
 TEST(MedianInterval, CoversTheTrueMedianAsOftenAsItSays) {
   for (const auto& [n, said] : {std::pair{15, 0.9648}, {25, 0.9567}, {100, 0.9648}}) {
     sim::Stream stream(static_cast<std::uint64_t>(n), "test.median");
@@ -133,7 +133,7 @@ TEST(ShareInterval, EndsAreExact) {
   EXPECT_THROW(share_interval(5, 4), BadInput);
 }
 
-// the limits by their definition: the binomial tail beyond the count is 2.5 % there
+// definition of the limits: at each limit, the binomial tail beyond the count is 2.5 %
 TEST(ShareInterval, LimitsLeaveTheirTails) {
   const int n = 40;
   for (int count = 1; count < n; ++count) {
@@ -151,7 +151,7 @@ TEST(ShareInterval, LimitsLeaveTheirTails) {
   }
 }
 
-// exact intervals cover at least as often as they say, shares near 0 and few draws too
+// exact intervals cover at least their level, also for shares near 0 and few draws
 TEST(ShareInterval, CoversTheTrueShareAtLeastAsOftenAsItSays) {
   for (const int n : {12, 60, 400}) {
     for (const double share : {0.02, 0.1, 0.5}) {

@@ -21,9 +21,9 @@ using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::string kOverlap = "map_overlap";            // higher is better
-const std::string kCoverage = "rate_coverage_3sigma";  // has a target
+const std::string kCoverage = "rate_coverage_3sigma";  // this metric has a target
 
-/// Values of a method on the seeds 1, 2, ...; none: that run failed.
+/// Values of a method on the seeds 1, 2, ...; no value: the run failed.
 using Values = std::vector<std::optional<double>>;
 
 MethodSummary method_of(const std::string& name, const std::string& metric, const Values& values) {
@@ -56,7 +56,7 @@ Summary summary_of(const std::string& metric, const std::vector<std::pair<std::s
   return summary;
 }
 
-/// Values about 1, each `factor` times the last ones given to another method.
+/// Values about 1, each `factor` times the values that another method got last.
 Values drawn(std::uint64_t seed, std::size_t n, double factor, double own_spread = 0.0) {
   sim::Stream common(1, "test.draws"), own(seed, "test.method");
   Values values;
@@ -85,7 +85,7 @@ TEST(Comparison, PairsByDrawAndSaysWhoIsBetter) {
   EXPECT_LT(row.difference.high, 0.0);
   EXPECT_NEAR(row.sign_chance, std::pow(0.5, 39), 1e-15);
   EXPECT_EQ(row.corrected, row.rank_chance) << "one test needs no correction";
-  // the other way round
+  // in the opposite direction
   ComparisonOptions reversed = on(kError);
   reversed.methods = {"raw"};
   reversed.against = "rate/ours";
@@ -94,7 +94,8 @@ TEST(Comparison, PairsByDrawAndSaysWhoIsBetter) {
   EXPECT_EQ(back.metrics[0].finding, Finding::worse);
   EXPECT_NEAR(back.metrics[0].difference.value, -row.difference.value, 1e-12);
   EXPECT_EQ(back.metrics[0].rank_chance, row.rank_chance);
-  // negative control: what is paired is the draw. Turned by one draw, most of what the draws differ in is left
+  // negative control: pairs belong to one draw. If they are shifted by one draw, most of the variation between draws
+  // remains
   Values turned = drawn(2, 40, 1.0, 0.1);
   std::rotate(turned.begin(), turned.begin() + 1, turned.end());
   const Comparison apart = compare(summary_of(kError, {{"raw", drawn(1, 40, 2.0, 0.1)}, {"ours", turned}}), on(kError));
@@ -129,12 +130,12 @@ TEST(Comparison, KnowsWhichWayIsBetter) {
   const Values low = drawn(1, 30, 0.4), high = drawn(1, 30, 0.8);
   EXPECT_EQ(compare(summary_of(kOverlap, {{"icp", low}, {"ours", high}}, Kind::slam), on(kOverlap)).metrics[0].finding,
             Finding::better);
-  // nearer to the target of 0.9973, whatever side
+  // nearer to the target of 0.9973, on either side
   const Comparison coverage =
       compare(summary_of(kCoverage, {{"raw", Values(30, 0.8)}, {"ours", Values(30, 0.99)}}), on(kCoverage));
   EXPECT_EQ(coverage.metrics[0].finding, Finding::better);
   EXPECT_LT(coverage.metrics[0].difference.value, 0.0) << "a difference of distances";
-  // costs have no contest
+  // time and memory are not compared
   const Comparison cost = compare(summary_of("estimate_cpu_s", {{"raw", Values(30, 0.1)}, {"ours", Values(30, 9.0)}}),
                                   on("estimate_cpu_s"));
   ASSERT_EQ(cost.metrics.size(), 1u);
@@ -162,13 +163,13 @@ TEST(Comparison, NoWorseThanAMargin) {
   EXPECT_FALSE(compare(summary, on(kError, Margin{0.01, true})).metrics[0].not_inferior);
   EXPECT_FALSE(compare(summary, on(kError)).metrics[0].not_inferior) << "not asked";
   EXPECT_TRUE(std::isnan(compare(summary, on(kError)).metrics[0].not_inferior_chance));
-  // where higher is better
+  // for a metric that is better if higher
   const Summary overlap = summary_of(kOverlap, {{"icp", Values(30, 0.90)}, {"ours", Values(30, 0.88)}}, Kind::slam);
   EXPECT_TRUE(compare(overlap, on(kOverlap, Margin{0.05, false})).metrics[0].not_inferior);
   EXPECT_FALSE(compare(overlap, on(kOverlap, Margin{0.01, false})).metrics[0].not_inferior);
 }
 
-// 30 draws on which the truth is the margin itself: shown to be within it in 5 % at most
+// 30 draws whose true difference equals the margin: at most 5 % are shown to be within it
 TEST(Comparison, AMethodAsBadAsTheMarginPassesAsSeldomAsSaid) {
   int passed = 0;
   for (std::uint64_t trial = 0; trial < 200; ++trial) {
@@ -176,8 +177,8 @@ TEST(Comparison, AMethodAsBadAsTheMarginPassesAsSeldomAsSaid) {
         summary_of(kError, {{"raw", drawn(1, 30, 1.0)}, {"ours", drawn(100 + trial, 30, 1.1, 0.2)}});
     passed += compare(summary, on(kError, Margin{0.1, true})).metrics[0].not_inferior;
   }
-  // of 200, 5 % are 10; more than 21 of them would come once in a thousand. The mean is above the median here, which
-  // makes fewer of them
+  // 5 % of 200 are 10; more than 21 occur once in a thousand. Here, the mean is above the median, which makes fewer of
+  // them
   EXPECT_LE(passed, 21);
   EXPECT_GE(passed, 1) << "negative control: the test is not blind";
 }

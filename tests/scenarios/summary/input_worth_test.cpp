@@ -20,8 +20,8 @@ TriageRow row(const std::string& input, double error_m, bool fails, OutcomeStatu
   return out;
 }
 
-/// Twenty draws whose error is k: "good" takes 1 m off each and cures all, "half" cures every second one and changes no
-/// error, "harm" breaks the even draws, which do not fail, and adds 2 m.
+/// Twenty draws with error k. "good" reduces each error by 1 m and prevents all failures. "half" prevents every second
+/// failure and changes no error. "harm" makes the even draws fail, which do not fail otherwise, and adds 2 m.
 std::vector<DrawTriage> draws(const std::string& scenario, int count = 20) {
   std::vector<DrawTriage> out;
   for (int k = 1; k <= count; ++k) {

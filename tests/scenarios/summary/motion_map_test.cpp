@@ -35,7 +35,7 @@ TEST(MotionMap, OfOneDrawHasItsSummitThere) {
 }
 
 TEST(MotionMap, SharesAreThoseOfTheDraws) {
-  // three of four lie together, far from the fourth
+  // three of four are close together, far from the fourth
   const MotionMap map = motion_map(std::vector<DrawValues>{draw("hill", 1, 1.0, 10.0), draw("hill", 2, 1.0, 10.0),
                                                            draw("hill", 3, 1.0, 10.0), draw("roll", 1, 1e4, 10.0)});
   double slow = 0.0;

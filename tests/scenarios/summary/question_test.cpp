@@ -73,7 +73,7 @@ TEST_F(QuestionTest, StopsAtTheLookThatAnswers) {
   add(
       "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
   const Question question = question_of(100);
-  // a look that was too early to answer, then the first one that does; what comes after it changes nothing
+  // a look that is too early for an answer, then the first look with an answer; later data change nothing
   EXPECT_EQ(ask(question, 10).front().finding, Finding::undecided);
   const std::vector<Answer> at_end = ask(question, 100);
   EXPECT_EQ(at_end.front().finding, Finding::better);
@@ -108,7 +108,7 @@ TEST_F(QuestionTest, AMarginAsksForMore) {
   EXPECT_EQ(ask(question, 60).front().finding, Finding::better);
 }
 
-// a failed run is the worst, with a margin too; where both fail neither is better
+// a failed run is the worst result, also with a margin; if both fail, they are equal
 TEST_F(QuestionTest, FailuresRankAsTheWorst) {
   const auto odd = [](std::uint64_t seed) { return seed % 2 == 1; };
   add(
@@ -122,7 +122,7 @@ TEST_F(QuestionTest, FailuresRankAsTheWorst) {
   EXPECT_EQ(answer.better, static_cast<std::int64_t>(answer.seeds) / 2);
 }
 
-// each of two scenarios has half of the risk; one ended before the function returned a result keeps the sweep going
+// each of two scenarios has half of the risk; if only one has an answer, the sweep continues
 TEST_F(QuestionTest, EveryScenarioIsAsked) {
   add(
       "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });

@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Seeds 1 to 10; the values are ten times the seed, every third run failed.
+/// Seeds 1 to 10; the values are ten times the seed, and every third run failed.
 Summary ten_draws() {
   MethodSummary method;
   method.method = "raw";

@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// 120 draws whose error follows the slope, and which fail where the rocks are large.
+/// 120 draws whose error depends on the slope; they fail if the rocks are large.
 struct Fixture {
   Summary summary;
   std::map<std::string, NumbersOfDraws> numbers;
@@ -77,7 +77,7 @@ TEST(Sensitivity, NamesWhatBreaksAMethod) {
     EXPECT_GT(row.influences[i].corrected, 0.05) << "negative control: " << row.influences[i].number;
 }
 
-// a smoke of twenty draws: a rank correlation tells what is strong, an index takes more
+// only twenty draws: a rank correlation detects strong effects, an index needs more draws
 TEST(Sensitivity, FewDrawsNameWhatIsStrongByRankCorrelationAlone) {
   Fixture given = fixture(20);
   MethodSummary& method = given.summary.sections[0].methods[0];
@@ -101,7 +101,7 @@ TEST(Sensitivity, FewDrawsSayNothing) {
   EXPECT_THROW(sensitivities(given.summary, given.numbers, {{"nobody"}, {}}), BadInput);
 }
 
-// a table in which nothing depends on anything names something in one of twenty rows at most
+// a table without dependences has a false finding in at most one of twenty rows
 void expect_nothing_named(std::size_t draws) {
   int named = 0;
   for (std::uint64_t trial = 0; trial < 200; ++trial) {
@@ -123,7 +123,7 @@ TEST(Sensitivity, NamesNothingWhereNothingIs) {
   for (const std::size_t draws : {12u, 60u}) expect_nothing_named(draws);
 }
 
-// what is computed for a seed is what a draw of that seed is made with
+// the values for a seed equal those of the draw with this seed
 TEST(DrawnNumbers, AreThoseOfTheDraw) {
   const DataRoot data{test::source_dir()};
   const Scenario scenario = load_scenario(data, "hill");

@@ -10,7 +10,7 @@
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
-// suites that vary a number, on the sphere, whose draws are short
+// tests suites that vary a number, with the sphere, whose draws are short
 namespace tumble::scenarios {
 namespace {
 
@@ -68,7 +68,7 @@ TEST_F(CurveSuiteTest, ComplaintsNameFileLineAndNearestName) {
   EXPECT_THAT(complaint("  {}\n"), HasSubstr("needs at least one curve"));
 }
 
-/// Outcomes by their curve: (key, value) -> digests of recordings.
+/// Outcomes by curve: (key, value) -> digests of recordings.
 std::map<Setting, std::set<std::string>> recordings(const Results& results) {
   std::map<Setting, std::set<std::string>> found;
   for (const Outcome& row : results.outcomes(Rows::all)) found[row.setting].insert(row.recording_digest);
@@ -81,7 +81,7 @@ TEST_F(CurveSuiteTest, SweepsEveryPointOnceAndSimulatesOnlyWhereItMust) {
   const auto path = folder_ / "a.db";
   const SweepProgress progress = sweep(data(), curves, path, {});
   EXPECT_EQ(progress.draws_total, 3u) << "one simulation as it is, one for each length of the way";
-  // two methods: as it is, at two offsets, at two lengths; nothing for the parameter of a method that is not there
+  // two methods: unchanged, with two offsets, with two lengths; a parameter of a missing method has no outcomes
   EXPECT_EQ(progress.outcomes, 10u);
   EXPECT_EQ(progress.not_ok(), 0u);
 
@@ -94,14 +94,14 @@ TEST_F(CurveSuiteTest, SweepsEveryPointOnceAndSimulatesOnlyWhereItMust) {
   EXPECT_NE(by_setting.at({"motion.leg_1_m", 0.35}), plain);
   EXPECT_NE(by_setting.at({"motion.leg_1_m", 0.35}), by_setting.at({"motion.leg_1_m", 0.45}));
 
-  // points of curves are apart from the plain rows, in both views of the database
+  // points of curves are separate from the plain rows, in both views of the database
   EXPECT_EQ(results.outcomes().size(), 2u);
   EXPECT_EQ(results.outcomes(Rows::curves).size(), 8u);
   for (const ScoreRow& row : results.scores()) EXPECT_TRUE(row.setting.is_plain());
   EXPECT_EQ(results.draws().size(), 1u);
   EXPECT_EQ(results.draws(Rows::all).size(), 3u);
 
-  // nothing is left to do; another value alone is run
+  // nothing is missing; an additional value is run alone
   EXPECT_EQ(sweep(data(), curves, path, {}).outcomes, 0u);
   EXPECT_EQ(sweep(data(), suite("  given.time_offset_s: [0, 0.01, 0.02]\n"), path, {}).outcomes, 2u);
 }
@@ -122,7 +122,7 @@ TEST_F(CurveSuiteTest, LeavesThePlainDrawAsASuiteWithoutCurvesHasIt) {
 }
 
 TEST_F(CurveSuiteTest, ADrawThatAValueMakesImpossibleIsKeptAsRejected) {
-  // a way of no length: refused by the simulation, which the suite cannot foresee
+  // a path of zero length: the simulation rejects it, but the suite cannot know this in advance
   const auto path = folder_ / "a.db";
   const Suite curves = suite("  motion.leg_1_m: [0, 0.4]\n");
   EXPECT_EQ(sweep(data(), curves, path, {}).rejected, 1u);

@@ -31,7 +31,7 @@ class DatabaseOwnerTest : public testing::TemporaryFolder {
   }
 };
 
-/// A child that owns the database until it is killed.
+/// A child process that owns the database until it is killed.
 class Holder {
  public:
   explicit Holder(const std::filesystem::path& database) {

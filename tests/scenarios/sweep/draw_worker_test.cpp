@@ -18,8 +18,8 @@
 namespace tumble::scenarios {
 namespace {
 
-/// Takes the memory that earlier tests have freed and that malloc still holds. Otherwise a worker that is forked from
-/// this process could serve itself from it, whatever its limit.
+/// Allocates the memory that earlier tests have freed and that malloc still holds. Otherwise, a worker forked from this
+/// process could use this memory, despite its limit.
 std::vector<std::unique_ptr<char[]>> freed_memory() {
   malloc_trim(0);
   std::vector<std::unique_ptr<char[]>> out;
@@ -32,7 +32,7 @@ std::vector<std::unique_ptr<char[]>> freed_memory() {
   return out;
 }
 
-/// Enough for the process as it is, too little for a world: what it has of data now, and a little.
+/// A limit sufficient for the process, but not for a world: its present data plus a little.
 double too_little_mib() {
   std::ifstream file("/proc/self/statm");
   double pages[6] = {};
@@ -51,7 +51,7 @@ class DrawWorkerTest : public testing::SmallCatalogue {
     suite_.timeout_s = 60;
   }
 
-  /// What it says until it is idle or ended.
+  /// Returns the messages of a worker until it is idle or ended.
   static std::vector<Message> all_of(DrawWorker& worker) {
     std::vector<Message> said;
     while (worker.is_busy() && worker.hear(said)) {
@@ -65,7 +65,7 @@ class DrawWorkerTest : public testing::SmallCatalogue {
   SweepOptions options_;
 };
 
-// the second draw of a worker has the bits of the first draw of another, for each seed
+// for each seed, the second draw of a worker has the bits of the first draw of another worker
 TEST_F(DrawWorkerTest, NothingOfADrawIsThereAtTheNext) {
   const DataRoot data{folder_};
   SweepPlan plan(data, suite_, options_, folder_ / "a.db");
@@ -97,7 +97,7 @@ TEST_F(DrawWorkerTest, NothingOfADrawIsThereAtTheNext) {
   EXPECT_GT(end.peak_mib, 1.0);
 }
 
-// one that has died while it was idle takes no draw, and does not take the sweep with it
+// a worker that died while idle gets no draw, and the sweep continues
 TEST_F(DrawWorkerTest, OneThatDiedIdleIsSeen) {
   const DataRoot data{folder_};
   const SweepPlan plan(data, suite_, options_, folder_ / "a.db");
@@ -111,7 +111,7 @@ TEST_F(DrawWorkerTest, OneThatDiedIdleIsSeen) {
   EXPECT_EQ(worker.dismiss().signal, SIGKILL);
 }
 
-// what needs more than a worker may hold is `killed`, which is no verdict on a method; the worker ends in good order
+// a draw that needs too much memory is `killed`, which is not a failure of a method; the worker exits normally
 TEST_F(DrawWorkerTest, MemoryIsLimited) {
   const DataRoot data{folder_};
   const SweepPlan plan(data, suite_, options_, folder_ / "a.db");

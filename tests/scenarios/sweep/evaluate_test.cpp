@@ -32,7 +32,7 @@ std::string complaint(const std::string& method, const std::string& scenario) {
   return "";
 }
 
-// the wand and the pendulum of the catalogue carry no lidar
+// the wand and the pendulum of the catalogue have no lidar
 TEST(Applicable, NoMapIsAskedForWhereThereIsNoLidar) {
   for (const char* scenario : {"twirl", "swing"}) {
     EXPECT_EQ(applicable_of(Kind::slam, scenario), 0u) << scenario;
@@ -49,7 +49,7 @@ TEST(Applicable, WhatDoesNotApplySaysWhy) {
   EXPECT_EQ(complaint("rate/tumble", "twirl"), "");
 }
 
-// a recording of which nobody says what robot it is of is anybody's
+// a recording that does not state its robot is valid for all methods
 TEST(Applicable, AnUnknownRobotExcludesNothing) {
   EXPECT_TRUE(find_methods("position/rolling").front()->info.applies_to({"", true}));
   EXPECT_FALSE(find_methods("position/rolling").front()->info.applies_to({"rig", true}));

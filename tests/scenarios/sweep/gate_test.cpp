@@ -28,11 +28,11 @@ Outcome outcome_of(std::uint64_t seed) {
   outcome.method = "tumble";
   outcome.status = OutcomeStatus::ok;
   const auto number = static_cast<double>(seed);
-  // draws differ by a factor of four: only pairs tell a change of 5 %
+  // draws differ by a factor of four, so only pairs reveal a change of 5 %
   outcome.scores = {{kError, 0.01 + 0.002 * number},
                     {kShare, 0.9 + 0.002 * number},
                     {kNees, 0.4 + 0.1 * number},
-                    {kOffset, 1e-4 * (number - 8.0)},  // early and late
+                    {kOffset, 1e-4 * (number - 8.0)},  // alternates between early and late
                     {"map_failed", 0.0},
                     {"estimate_cpu_s", number}};
   return outcome;
@@ -50,7 +50,7 @@ Gate gate_of(const std::vector<Outcome>& outcomes) {
 
 using Change = std::function<void(Outcome&)>;
 
-/// What becomes of every outcome after `change`.
+/// Returns all outcomes after `change`.
 std::vector<GateResult> held_after(const Change& change) {
   std::vector<Outcome> outcomes = accepted_outcomes();
   for (Outcome& outcome : outcomes) change(outcome);
@@ -101,7 +101,8 @@ TEST(Gate, WhatGoesUpAndDownPasses) {
   EXPECT_EQ(fault_after(kError, [](Outcome& o) { score_of(o, kError) *= o.seed % 2 == 0 ? 1.3 : 1.0 / 1.3; }), "");
 }
 
-// one of the sphere's IMUs left out: 10 to 50 % worse on each of three scenarios, and seen on none of them
+// one of the sphere's IMUs is left out: 10 to 50 % worse on each of three scenarios, but not significant on any of them
+// alone
 TEST(Gate, AShiftThatNoScenarioTellsByItselfIsToldByAllTogether) {
   const auto both = [](double factor) {
     std::vector<Outcome> outcomes = accepted_outcomes();

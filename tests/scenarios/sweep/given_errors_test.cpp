@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRail = 10.5;
 
-/// The synthetic rig with calibration errors of its own and a situation that says where its rail is.
+/// The synthetic rig with calibration errors, and a situation that states its saturation limit.
 SimulatedDraw sample_draw(std::uint64_t seed = 5001) {
   SimulatedDraw draw;
   draw.recording = testing::synthetic_rig();
@@ -69,7 +69,7 @@ TEST(GivenErrors, OfTheRadiusIsAddedAndNeedsASphere) {
 TEST(GivenErrors, OfTheExtrinsicRotationHaveTheirSize) {
   const SimulatedDraw draw = sample_draw();
   ASSERT_GT(extrinsic_angle_rad(draw), 0.019);
-  // the angle of a matrix near one has half of the digits
+  // the angle of a matrix near the identity has half of the digits
   EXPECT_NEAR(extrinsic_angle_rad(with_setting(draw, {"given.extrinsic_rotation_rad", 0.0})), 0.0, 1e-7);
   EXPECT_NEAR(extrinsic_angle_rad(with_setting(draw, {"given.extrinsic_rotation_rad", 0.03})), 0.03, 1e-9);
   EXPECT_EQ(lever_error_m(with_setting(draw, {"given.extrinsic_rotation_rad", 0.03})), lever_error_m(draw));
@@ -117,7 +117,7 @@ TEST(GivenErrors, OfTheStatedRailReachMethodsThatAreToldIt) {
   const Setting setting{"given.stated_rail_error", -0.1};
   EXPECT_NEAR(with_setting(draw, setting).recording.sensors.imus[0].stated_gyro_range_rad_s, 0.9 * kRail, 1e-12);
   EXPECT_EQ(with_setting(draw, setting).recording.sensors.imus[0].clip_flags.front(), 0b111000);
-  // a gyro that clips at 10.5 and a saave that holds what is beyond 9.4 for clipped: more is estimated than need be
+  // a gyro that clips at 10.5, and a saave whose threshold is 9.4: more samples than necessary are estimated
   const Method& saave = *find_methods("rate/saave").front();
   sim::Sensors free = draw.recording.sensors;
   const auto estimated = [&](const Method& method) {

@@ -59,7 +59,7 @@ class KeepTest : public testing::SmallCatalogue {
     return sweep(data(), suite(first, last), folder_ / name, options);
   }
 
-  /// Every file that is kept, with its bytes.
+  /// Returns every kept file with its bytes.
   std::map<std::string, std::string> kept(const std::string& name) const {
     std::map<std::string, std::string> out;
     const std::filesystem::path root = folder_ / (name + ".files") / "kept";
@@ -80,7 +80,7 @@ class KeepTest : public testing::SmallCatalogue {
   }
 };
 
-// rows of two methods by hand: what is kept follows from them alone
+// rows of two methods, written by hand, which alone determine the kept draws
 TEST_F(KeepTest, WhichDrawsFollowsFromTheRows) {
   const auto path = folder_ / "rows.db";
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -96,7 +96,7 @@ TEST_F(KeepTest, WhichDrawsFollowsFromTheRows) {
     for (const auto& [seed, value] : std::initializer_list<std::pair<std::uint64_t, std::optional<double>>>{
              {1, 0.1}, {2, 0.5}, {3, failed}, {4, 0.5}, {5, 0.2}, {6, nan}}) {
       add(seed, "rolling", value);
-      add(seed, "oracle", 1.0 - value.value_or(0.0));  // is given the truth: says nothing of what to keep
+      add(seed, "oracle", 1.0 - value.value_or(0.0));  // an oracle, which does not affect the kept draws
     }
     add(7, "tumble", 0.3);
   }
@@ -140,7 +140,7 @@ TEST_F(KeepTest, AllAreReadableAndTheSameForAnyNumberOfJobs) {
   EXPECT_EQ(kept("two.db"), one);
 }
 
-// bounded, and the same bits however the sweep was cut up
+// bounded, with identical files for any distribution of the sweep
 TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
   run("whole.db", 1, 4, "worst:1");
   const auto whole = kept("whole.db");
@@ -161,7 +161,7 @@ TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.db.files/kept/.unfinished"));
 }
 
-// what a kill left half done is not taken for a draw, and what is missing is made again
+// incomplete draws of a killed process do not count, and missing draws are simulated again
 TEST_F(KeepTest, WhatIsMissingIsMadeAgain) {
   run("a.db", 1, 2, "all");
   const auto before = kept("a.db");
@@ -176,7 +176,7 @@ TEST_F(KeepTest, WhatIsMissingIsMadeAgain) {
   EXPECT_EQ(kept("a.db"), before);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.db.files/kept/.unfinished"));
 
-  // another rule takes away what it does not want, and no rule leaves it
+  // another rule removes unwanted draws; without a rule, all remain
   run("a.db", 1, 2, "none");
   EXPECT_EQ(kept("a.db"), before);
   EXPECT_EQ(run("a.db", 1, 2, "failed").to_keep, 0u);
@@ -193,7 +193,7 @@ TEST_F(KeepTest, ADiskThatRefusesCostsTheResultsNothing) {
   EXPECT_THAT(progress.not_kept, HasSubstr("kept"));
 }
 
-// a draw with one estimate that could not be written, for example because the disk is full, is not kept in parts
+// a draw is kept only completely: one estimate could not be written, for example because the disk is full
 TEST_F(KeepTest, ADrawIsKeptWholeOrNotAtAll) {
   const SimulatedDraw draw = simulate_draw(data(), load_scenario(data(), "roll"), 1, 1);
   Keeping keeping;
@@ -221,7 +221,7 @@ TEST_F(KeepTest, TwoRulesAreNotMerged) {
   EXPECT_TRUE(kept("out.db").empty());
 }
 
-// what a database had kept before others are merged into it is not theirs to judge
+// draws that a database had before a merge remain
 TEST_F(KeepTest, AMergeIntoRowsOfAnotherRuleLeavesWhatIsKept) {
   run("all.db", 1, 2, "all");
   run("failed.db", 3, 3, "failed");
@@ -256,7 +256,7 @@ TEST_F(KeepTest, OtherMethodsAddTheirEstimates) {
   EXPECT_EQ(kept("a.db").size(), both.size());
 }
 
-// a draw that is kept because a method died has what that method would have read
+// a draw that is kept because a method crashed contains the input of this method
 TEST_F(KeepTest, ACrashCostsTheRecordingNoLidar) {
   std::string text = read_text_file(test::source_dir() / "scenarios/catalogue/hill.yaml");
   for (const auto& [from, to] : {std::pair{"name: hill", "name: ride"}, {"duration_s: 10", "duration_s: 3"}}) {

@@ -118,17 +118,17 @@ TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   EXPECT_EQ(files(), 2u);
   const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
   EXPECT_THAT(complaint({a, c}), HasSubstr("is diverged with digest"));
-  // an output that was there before keeps what it had
+  // an existing output keeps its rows
   make("out.db", {row(9, OutcomeStatus::ok)});
   EXPECT_NE(complaint({a, b}), "");
   ASSERT_EQ(merged().size(), 1u);
   EXPECT_EQ(merged()[0].seed, 9u);
-  // asked for, the first stays
+  // with this option, the first row remains
   EXPECT_EQ(complaint({a, b}, true), "");
   EXPECT_EQ(merged()[0].estimate_digest, "one");
 }
 
-// the digest is of the estimate: what was scored of it is compared too, but for costs, which no two runs have alike
+// the digest covers the estimate; the scores are compared too, except time and memory, which differ between runs
 TEST_F(MergeTest, OneEstimateHasOneScore) {
   const auto scored = [](std::vector<Score> scores) {
     Outcome outcome = row(1, OutcomeStatus::ok);
@@ -178,7 +178,7 @@ TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {
   }
 }
 
-// what a merge leaves is what storing every row into one database leaves, whatever the order and the number of shards
+// the merged database equals one that stores every row directly, for any order and number of shards
 TEST_F(MergeTest, HasAllThatTheShardsHave) {
   std::vector<Outcome> rows;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -229,8 +229,8 @@ TEST_F(MergeTest, HasAllThatTheShardsHave) {
   EXPECT_EQ(joined.notes().at("build"), whole.note("build"));
 }
 
-// as many of them as one statement writes, one less, one more; and what stood before goes with its scores, which the
-// engine does not look after while it joins
+// as many rows as one statement writes, one less, one more; a replaced row is deleted with its scores, which the engine
+// does not check during the merge
 TEST_F(MergeTest, ScoresInAnyNumberArriveAndBelongToTheirOutcomes) {
   const auto with_scores = [](Outcome outcome, int scores) {
     outcome.scores.clear();

@@ -31,7 +31,7 @@ std::string read_all(Process& process) {
 }
 
 TEST(Process, HandsOverWhatTheChildWrites) {
-  const std::string large(300000, 'x');  // more than a pipe holds
+  const std::string large(300000, 'x');  // larger than the buffer of a pipe
   Process process([&](int fd) { write_all(fd, large); }, false);
   EXPECT_EQ(read_all(process), large);
   EXPECT_TRUE(process.wait().normal);
@@ -49,7 +49,7 @@ TEST(Process, TellsHowTheChildEnded) {
 }
 
 TEST(Process, ANewGroupDiesAsAWhole) {
-  // the grandchild holds the pipe's write end: the pipe closes when it is gone
+  // the grandchild has the write end of the pipe, which closes when the grandchild ends
   Process process(
       [](int fd) {
         if (fork() == 0) {
@@ -91,12 +91,12 @@ TEST(Message, ComesBackToTheBit) {
   EXPECT_EQ(message->outcome->scores[0].value, 0.1);
   EXPECT_EQ(message->outcome->scores[1].value, 1e-310);
   EXPECT_TRUE(std::isnan(message->outcome->scores[2].value));
-  // a process that died in the middle of its line
+  // a process that crashed in the middle of a line
   EXPECT_FALSE(from_line(line.substr(0, line.size() / 2)).has_value());
   EXPECT_FALSE(from_line("").has_value());
 }
 
-// methods that misbehave in every way that a method can
+// methods that fail in every possible way
 class RunIsolated : public ::testing::Test {
  protected:
   static SimulatedDraw draw() {
@@ -164,7 +164,7 @@ TEST_F(RunIsolated, AnExitInsideAMethodIsACrash) {
   EXPECT_EQ(run([](const sim::Sensors&) -> Estimate { _exit(0); }).status, OutcomeStatus::crashed);
 }
 
-// what the machine did to it is no verdict on it
+// a failure caused by the machine is not a failure of the method
 TEST_F(RunIsolated, AKillFromOutsideAndNoMemoryAreTheMachines) {
   const Outcome killed = run([](const sim::Sensors&) -> Estimate {
     kill(getpid(), SIGKILL);

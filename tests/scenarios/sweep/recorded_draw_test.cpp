@@ -19,7 +19,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// recordings made to the measure of the published ones, one with and one without a reference
+// recordings similar to the published ones, one with and one without a reference
 class RecordedSweep : public testing::TemporaryFolder {
  protected:
   void SetUp() override {
@@ -89,7 +89,7 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
     }
   }
   EXPECT_EQ(results.note("source"), kRecordingsSource);
-  // resumed: nothing is left to do; two processes at once: the same bits
+  // resumed: nothing is missing; two concurrent processes: identical results
   EXPECT_EQ(sweep(DataRoot{folder_}, suite(), path, {}).outcomes, 0u);
   SweepOptions two;
   two.jobs = 2;

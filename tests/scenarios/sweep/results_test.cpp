@@ -37,7 +37,7 @@ Outcome sample_outcome(std::uint64_t seed) {
   return outcome;
 }
 
-/// Whether there is a plain outcome of that.
+/// Returns whether this plain outcome exists.
 bool holds(const Results& results, const std::string& scenario, std::uint64_t seed, Kind kind,
            const std::string& method) {
   Outcome key;
@@ -74,7 +74,7 @@ TEST_F(ResultsTest, DrawsAndCertificatesComeBack) {
     results.store(DrawValues{"hill", 3, {{"motion_path_m", 7.5}, {"motion_several_axes_share", std::nan("")}}});
     results.store(DrawValues{"hill", 3, {{"motion_path_m", 8.5}}});
     results.store(certificate);
-    results.store(certificate);  // replaces itself
+    results.store(certificate);  // replaces the same certificate
   }
   const Results results(path(), Results::Mode::read_only);
   const std::vector<DrawValues> draws = results.draws();
@@ -111,7 +111,7 @@ TEST_F(ResultsTest, WhatIsStoredComesBack) {
   EXPECT_EQ(results.rejected().front().seed, 9u);
   EXPECT_EQ(results.rejected().front().message, "left the world");
 
-  // one row per score, one for the outcome without any, one for the rejected draw
+  // one row per score, one for the outcome without scores, one for the rejected draw
   int ok = 0;
   int crashed = 0;
   int rejected = 0;
@@ -161,7 +161,7 @@ TEST_F(ResultsTest, NaNAndInfinityAreKept) {
   EXPECT_EQ(results.scores()[1].value, std::numeric_limits<double>::infinity());
 }
 
-// a column of SQLite takes what is no number, and gives it as 0
+// a column of SQLite also accepts text, and reads it as 0
 TEST_F(ResultsTest, AValueThatIsNoNumberIsNamed) {
   {
     Results results(path(), Results::Mode::create_or_append);
@@ -263,7 +263,7 @@ TEST_F(ResultsTest, ATruncatedDatabaseIsBadInput) {
       BadInput);
 }
 
-// a pipe would be waited for, for ever
+// opening a named pipe would wait forever
 TEST_F(ResultsTest, APipeAndAFolderAreRefused) {
   for (const bool pipe : {true, false}) {
     std::filesystem::remove(path());
@@ -290,8 +290,7 @@ TEST_F(ResultsTest, AFolderThatIsNotThereIsBadInput) {
 TEST_F(ResultsTest, NoRoomIsBadInputAndWhatWasStoredStays) {
   Results results(path(), Results::Mode::create_or_append);
   results.store(sample_outcome(1));
-  // a limit on the size of files stands for a full disk; the signal that comes with it is ignored as the error tells
-  // more
+  // a limit on the file size simulates a full disk; its signal is ignored, because the error contains more information
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -314,7 +313,7 @@ TEST_F(ResultsTest, NoRoomIsBadInputAndWhatWasStoredStays) {
   EXPECT_TRUE(holds(Results(path(), Results::Mode::read_only), "hill", 1, Kind::slam, "icp"));
 }
 
-// a writer is killed in the middle of its work: all that it had stored is there and the database is whole
+// a process is killed while it writes: all stored rows remain, and the database is valid
 TEST_F(ResultsTest, WhatHasBeenStoredSurvivesAKill) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);

@@ -18,11 +18,11 @@
 namespace tumble::scenarios {
 namespace {
 
-// a seed of the range that development looks at, at which the gyro clips in every scenario: mild draws spin below the
-// rail
+// a seed that is used in development, for which the gyro clips in every scenario; in mild draws, the rate is below the
+// limit
 constexpr std::uint64_t kClippedSeed = 1003;
 
-// those whose sensors are the question are suites of their own; `stroll` is of peers/gentle.yaml, where no gyro clips
+// scenarios that test sensors have separate suites; `stroll` belongs to peers/gentle.yaml, where no gyro clips
 TEST(HillSuite, HoldsWithThoseOfRailsAndFaultsEveryScenarioButTheSpheres) {
   std::multiset<std::string> listed;
   for (const char* name : {"hill", "rails", "faults"}) {
@@ -48,10 +48,10 @@ TEST(HillSuite, DrawsOnThirtySeeds) {
   }
 }
 
-/// What a scenario is about.
+/// Characteristic properties of a scenario.
 struct RigExpected {
   const char* scenario;
-  const char* touched;  ///< beginning of the name of a surface that the rig meets, the ground apart; "" for none
+  const char* touched;  ///< prefix of a surface (not the ground) that the rig touches; "" for none
   double fall_least_m;  ///< from the highest point to the end
   double flight_least_s;
 };
@@ -77,7 +77,7 @@ double longest_flight_s(const sim::Truth& truth) {
 
 class RigScenario : public ::testing::TestWithParam<RigExpected> {};
 
-// a simulation that meets a warning of the engine throws
+// a warning of the engine makes the simulation throw
 TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   const RigExpected& expected = GetParam();
   const sim::ResolvedSituation situation =
@@ -97,7 +97,7 @@ TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   EXPECT_GE(longest_flight_s(truth), expected.flight_least_s);
   const auto named = [&](const std::string& surface) { return surface.starts_with(expected.touched); };
   if (*expected.touched == '\0') {
-    // nothing but the ground is there at all
+    // the ground is the only surface
     EXPECT_EQ(truth.surfaces.size(), 1u);
   } else {
     EXPECT_GT(std::count_if(truth.contacts.begin(), truth.contacts.end(),
@@ -108,7 +108,7 @@ TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   }
 }
 
-// falls and flights: about half of what the gentlest draw of the scenario gives
+// heights of falls and durations of flights: about half of the values in the gentlest draw of the scenario
 INSTANTIATE_TEST_SUITE_P(
     Catalogue, RigScenario,
     ::testing::Values(RigExpected{"hill", "terrain", 0.7, 0.2}, RigExpected{"bare", "", 0.7, 0.2},
@@ -117,16 +117,16 @@ INSTANTIATE_TEST_SUITE_P(
                       RigExpected{"throw", "terrain", 1.0, 0.9}, RigExpected{"drop", "terrain", 1.5, 0.3}),
     [](const auto& test) { return std::string(test.param.scenario); });
 
-/// Share of samples whose reading repeats the one before.
+/// Returns the share of samples whose reading repeats the previous one.
 double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
   std::size_t repeated = 0;
   for (std::size_t k = 1; k < readings.size(); ++k) repeated += readings[k] == readings[k - 1];
   return static_cast<double>(repeated) / static_cast<double>(readings.size() - 1);
 }
 
-// to the measure of RepoIMU's pendulum, segment 3: models/README.md
+// similar to segment 3 of RepoIMU's pendulum: models/README.md
 TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
-  std::size_t railed_force = 0;  // of all draws: a whip may fall between two of the accelerometer's readings
+  std::size_t railed_force = 0;  // over all draws, because a whip may be between two accelerometer readings
   for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
     const sim::Recording recording = sim::simulate(
         sim::BuiltSituation(draw(tree_data(), load_scenario(tree_data(), "swing"), seed), tree_data().models()));
@@ -136,9 +136,9 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
     double fastest_rad_s = 0.0;
     for (std::size_t k = 0; k < rate.size(); ++k) {
       beyond += std::abs(rate[k].z()) > 10.29;
-      railed_force += imu.accel_m_s2[k].x() > 18.9;  // the element's scale: 3 sigma below 19.5
+      railed_force += imu.accel_m_s2[k].x() > 18.9;  // the scale of the element: 3 sigma below 19.5
       fastest_rad_s = std::max(fastest_rad_s, rate[k].norm());
-      EXPECT_LT(imu.gyro_rad_s[k].cwiseAbs().maxCoeff(), 12.0);  // a tilt of 3 sigma moves the rail by some 10 %
+      EXPECT_LT(imu.gyro_rad_s[k].cwiseAbs().maxCoeff(), 12.0);  // a tilt of 3 sigma moves the limit by about 10 %
     }
     const double share = static_cast<double>(beyond) / static_cast<double>(rate.size());
     EXPECT_GT(share, 0.003) << seed;
@@ -152,8 +152,8 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
   EXPECT_GT(railed_force, 0u);
 }
 
-// what a peer must follow before its failure on a tumble is the tumble's: far from the rail, no contact, not back at
-// the start, where one that stands still would be right
+// external estimators must follow this gentle motion, or their failure on a tumble is not meaningful. The rate is far
+// below the limit, there is no contact, and the end is not the start, where an estimate without motion would be correct
 TEST(StrollScenario, IsGentleGoesAwayAndEndsAtRest) {
   for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
     const sim::ResolvedSituation situation =

@@ -52,7 +52,7 @@ TEST(CommandAgain, SettingsComeBackToTheBit) {
 
 using CommandAgainOfASweep = testing::TemporaryFolder;
 
-/// Each point of a sweep's curves, run as its command runs it, has the same bits.
+/// Each point of a sweep's curves gives identical results if its command is run.
 TEST_F(CommandAgainOfASweep, RunsWhatItRan) {
   Scenario scenario = load_scenario(tree_data(), "bare");
   fix_number(scenario, "duration_s", 2.5);

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios::testing {
 
-/// A sphere whose draws are short and have no map to score.
+/// A sphere with short draws and no map to score.
 inline constexpr const char* kRoll = R"(name: roll
 doc: A short straight way.
 duration_s: 3
@@ -20,7 +20,7 @@ sensors:
   - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
 )";
 
-/// The delivered models under a catalogue of that one scenario.
+/// The models of this tree, and a catalogue with only this scenario.
 class SmallCatalogue : public TemporaryFolder {
  protected:
   void SetUp() override {

@@ -17,10 +17,10 @@
 namespace tumble::scenarios {
 namespace {
 
-// a seed of the range that development looks at
+// a seed that is used in development
 constexpr std::uint64_t kSeed = 1001;
 
-// but that of faults, which has its own suite
+// all scenarios of the sphere except the scenario of faults, which has a separate suite
 TEST(SlipSuite, HoldsEveryScenarioOfTheSphereAndNoOther) {
   const Suite suite = load_suite(tree_data(), "slip");
   const std::set<std::string> listed(suite.scenarios.begin(), suite.scenarios.end());
@@ -43,7 +43,7 @@ TEST(SlipSuite, DrawsOnThirtySeeds) {
   }
 }
 
-/// What a scenario is about, in seconds of its labels.
+/// Characteristic properties of a scenario, in seconds of its labels.
 struct SphereExpected {
   const char* scenario;
   double slip_least_s, slip_most_s, slide_least_s, slide_most_s;
@@ -60,8 +60,8 @@ void expect_rest(const sim::Truth& truth, std::size_t k) {
 
 class SphereScenario : public ::testing::TestWithParam<SphereExpected> {};
 
-// Where a scenario is not about slip it may still scrape: at the edge of an obstacle the sphere has two contacts, of
-// which one must slip. Over seeds 1001-1020 bump does so for 0.000-0.135 s, ramp and tube never.
+// Scenarios without slip may have short slips: at the edge of an obstacle, the sphere has two contacts, of which one
+// must slip. Over seeds 1001-1020, bump slips for 0.000-0.135 s, ramp and tube never.
 TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
   const sim::ResolvedSituation situation =
       draw(tree_data(), load_scenario(tree_data(), GetParam().scenario), kSeed)
@@ -81,7 +81,7 @@ TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
 
 class TutorialScenario : public testing::TemporaryFolder {};
 
-// docs/tutorials/add_a_scenario.md, which a newcomer copies: as it says, two metres straight on
+// the scenario of docs/tutorials/add_a_scenario.md: two metres straight ahead, as stated there
 TEST_F(TutorialScenario, EndsAtRestWhereItSays) {
   std::ifstream page(test::source_dir() / "docs/tutorials/add_a_scenario.md");
   std::string text, line;

@@ -16,7 +16,7 @@ class SuiteTest : public testing::TemporaryFolder {
  protected:
   void SetUp() override {
     TemporaryFolder::SetUp();
-    // only the names of scenarios are looked at
+    // only the names of scenarios are used
     write("scenarios/catalogue/hill.yaml", "");
     write("scenarios/catalogue/roll.yaml", "");
   }
@@ -116,7 +116,7 @@ TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
   EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nmetrics: [ate]\n"), ::testing::HasSubstr("ate_m"));
 }
 
-// the suites that are delivered, on the catalogue that is delivered
+// the suites of this tree with the catalogue of this tree
 TEST(Suites, OfTheTreeLoad) {
   const DataRoot data{test::source_dir()};
   ASSERT_TRUE(std::filesystem::exists(data.catalogue())) << data.catalogue();

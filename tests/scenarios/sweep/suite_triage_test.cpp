@@ -25,7 +25,7 @@ constexpr const char* kMetric = "rate_error_clipped_median_rad_s";
 
 using SuiteTriage = testing::TemporaryFolder;
 
-/// One tumble that clips, as a file, without the lidar; seeds change the noise of its sensors.
+/// A tumble with clipping as a file, without the lidar; seeds change the sensor noise.
 std::string clipping_tumble(const std::filesystem::path& folder) {
   Scenario scenario = load_scenario(tree_data(), "hill");
   fix_number(scenario, "duration_s", 4.0);
@@ -81,7 +81,7 @@ TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
                BadInput);
 }
 
-/// The method, but that its n-th run of all does something else first. Runs are counted in a file: each is a process.
+/// The method, but its n-th run does something else first. A file counts the runs, because each is a process.
 Method disturbed(const std::filesystem::path& folder, std::uintmax_t n, const std::function<void()>& disturbance) {
   Method method = *find_methods("rate/raw").front();
   const std::filesystem::path count = folder / "count";

@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// What a shell makes of `words`, taken as one argument.
+/// Returns how a shell reads `words` as one argument.
 std::string seen_by_a_shell(const std::string& words) {
   const std::string command = "printf '%s|' " + words;
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);

@@ -13,7 +13,7 @@
 #include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 
-// the sweep end to end on the sphere, whose draws are short and have no map to score
+// tests the whole sweep with the sphere, whose draws are short and have no map to score
 namespace tumble::scenarios {
 namespace {
 
@@ -23,7 +23,7 @@ Suite small_suite(std::uint64_t last_seed) {
   suite.scenarios = {"roll"};
   suite.first_seed = 1;
   suite.last_seed = last_seed;
-  suite.methods = {"rate/raw", "rolling", "icp"};  // icp is not for the sphere: left out
+  suite.methods = {"rate/raw", "rolling", "icp"};  // icp does not apply to the sphere
   suite.timeout_s = 60;
   return suite;
 }
@@ -51,7 +51,7 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   EXPECT_EQ(stopped.draws_total, 2u);
   EXPECT_EQ(Results(path, Results::Mode::read_only).outcomes().size(), 2u);
 
-  // resumed: only what is missing runs
+  // resumed: only missing draws are run
   const SweepProgress resumed = sweep(data(), small_suite(2), path, {});
   EXPECT_EQ(resumed.draws_done, 2u);
   EXPECT_EQ(resumed.outcomes, 2u);
@@ -63,10 +63,10 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   for (const ScoreRow& row : results.scores()) cost = cost || row.metric == "estimate_peak_mib";
   EXPECT_TRUE(cost);
 
-  // nothing is left to do
+  // nothing is missing
   EXPECT_EQ(sweep(data(), small_suite(2), path, {}).outcomes, 0u);
 
-  // two processes, another file, the same bits; and the same as in this process
+  // two processes and another file give identical results, also compared with this process
   SweepOptions two;
   two.jobs = 2;
   sweep(data(), small_suite(2), folder_ / "b.db", two);
@@ -80,7 +80,7 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   EXPECT_EQ(run_digest(run).size(), 32u);
 }
 
-// nothing reads a lidar then; motion and IMUs are the same, which the estimate's digest shows
+// no method uses the lidar; motion and IMUs are the same, as the digest of the estimate shows
 TEST_F(SweepTest, RateMethodsAloneAreRunWithoutLidar) {
   write("scenarios/catalogue/roll.yaml",
         std::string(kRoll) + "  - {name: lidar, kind: rosette_lidar, device: mid100, site: mid100}\n");
@@ -99,7 +99,7 @@ TEST_F(SweepTest, RateMethodsAloneAreRunWithoutLidar) {
   EXPECT_EQ(digests(folder_ / "all.db").at("1rate"), whole.recording_digest + run.outcomes[0].estimate_digest);
 }
 
-// where nobody sees the recordings, methods of this build that make no map are run without lidar, to the same bits
+// if recordings are not kept, methods of this build without a map run without lidar, with identical results
 TEST_F(SweepTest, UnseenRecordingsHaveTheLidarsThatAreRead) {
   write("scenarios/catalogue/roll.yaml",
         std::string(kRoll) + "  - {name: lidar, kind: rosette_lidar, device: mid100, site: mid100}\n");
@@ -127,7 +127,7 @@ TEST_F(SweepTest, UnseenRecordingsHaveTheLidarsThatAreRead) {
     EXPECT_EQ(outcome.recording_digest, whole.recording_digest) << "a map is made with a lidar";
 }
 
-// a draw that never moves is refused by the simulation, kept as such, and not tried again
+// the simulation rejects a draw without motion; the rejection is stored and the draw is not repeated
 TEST_F(SweepTest, ARejectedDrawIsKept) {
   std::string still = kRoll;
   still.replace(still.find("{uniform: [0.3, 0.5]}"), std::string("{uniform: [0.3, 0.5]}").size(), "0");
@@ -165,7 +165,7 @@ TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
   const SweepProgress again = sweep(data(), small_suite(1), path, options);
   EXPECT_EQ(again.outcomes, 1u);
   EXPECT_EQ(again.not_ok(), 0u);
-  // the recording of a rate method that runs alone has no lidar; this scenario has none anyhow
+  // a recording for rate methods has no lidar; this scenario has none anyway
   EXPECT_EQ(digests(path), before);
   options.again = {OutcomeStatus::ok};
   EXPECT_THROW(sweep(data(), small_suite(1), path, options), BadInput);
@@ -186,7 +186,7 @@ TEST_F(SweepTest, TenMillionSeedsArePlannedOneAtATime) {
   const SweepProgress progress = sweep(data(), small_suite(10'000'000), folder_ / "a.db", options);
   EXPECT_EQ(progress.draws_total, 10'000'000u);
   EXPECT_EQ(progress.outcomes, 2u);
-  EXPECT_LT(peak_mib() - before_mib, 50.0);  // the plan of all of them at once was 4 GB
+  EXPECT_LT(peak_mib() - before_mib, 50.0);  // a plan of all draws at once would need 4 GB
 }
 
 TEST_F(SweepTest, RefusesADatabaseOfOtherScenarios) {
@@ -211,7 +211,7 @@ TEST_F(SweepTest, WrongUseIsBadInputBeforeAnythingRuns) {
   suite.scenarios = {"no_such_scenario"};
   EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
   suite = small_suite(1);
-  suite.methods = {"icp"};  // for the rig alone
+  suite.methods = {"icp"};  // only for the rig
   EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
   suite = small_suite(1);
   suite.last_seed = 0;

@@ -13,7 +13,7 @@
 namespace tumble::scenarios {
 namespace {
 
-/// A tumble with all sensors, once for all tests.
+/// A tumble with all sensors, generated once for all tests.
 const SimulatedDraw& tumble() {
   static const SimulatedDraw kDraw = [] {
     Scenario scenario = load_scenario(tree_data(), "hill");
@@ -62,7 +62,7 @@ TEST(TrueInputs, ExactStampsTakeAnOffsetAway) {
   EXPECT_FALSE(input_named("stamps_exact").replace(sensors, tumble().recording.truth));
 }
 
-/// Points of all sweeps at their own times, carried to the world by the true pose.
+/// Returns the points of all sweeps, transformed to the world by the true pose at each point's time.
 double largest_miss_m(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride) {
   const TruthTrack track(truth, Frame::lidar);
   const sim::LidarRecord& lidar = sensors.lidars[0];
@@ -84,7 +84,7 @@ TEST(TrueInputs, ExactRangesLieWhereTheBeamsHit) {
   EXPECT_GT(largest_miss_m(recording.sensors, recording.truth, 17), 0.03) << "the device errs by 2 cm, one sigma";
   sim::Sensors sensors = recording.sensors;
   ASSERT_TRUE(input_named("lidar_ranges_exact").replace(sensors, recording.truth));
-  EXPECT_LT(largest_miss_m(sensors, recording.truth, 17), 1e-4);  // floats at 40 m
+  EXPECT_LT(largest_miss_m(sensors, recording.truth, 17), 1e-4);  // float rounding at 40 m
 }
 
 TEST(TrueInputs, UnbentSweepsLieRightAtOneInstant) {
@@ -120,7 +120,7 @@ TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
   EXPECT_TRUE(Failure{}.holds(outcome));
 }
 
-/// The rate that raw gives fails where the gyro clips: the unclipped gyro cures it, the accelerometer does not.
+/// The rate of `raw` fails where the gyro clips: the unclipped gyro prevents the failure, the accelerometer does not.
 TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
   Scenario scenario = load_scenario(tree_data(), "hill");
   scenario.duration_s.shape = Distribution::Shape::constant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Synthetic poses of a sensor over and under a slope whose depth is known in closed form.
+// Tests synthetic poses of a sensor above and below a slope, whose depth is known in closed form.
 #include "sim/truth/above_ground.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 constexpr double kSlope = 0.5;
 
-/// 6 m x 4 m of ground that rises along x, 1.6 m high in the middle; beside it a rock.
+/// Ground of 6 m x 4 m that rises along x, 1.6 m high in the middle, and a rock next to it.
 engine::World slope() {
   engine::World world = testing::world_of(
       "<mujoco><asset><hfield name='ground' nrow='5' ncol='7' size='3 2 3 0.3'/></asset><worldbody><geom type='hfield' "
@@ -30,8 +30,8 @@ engine::World slope() {
   return world;
 }
 
-/// A body that stands still, a sensor 0.2 m before it; the sensor is `depth_m` below the slope for some of 200 steps of
-/// 0.5 ms, which end with the recording or before it, and 0.3 m above it else.
+/// A stationary body with a sensor 0.2 m in front. The sensor is `depth_m` below the slope for some of 200 steps of 0.5
+/// ms, at the end of the recording or before it, and otherwise 0.3 m above the slope.
 Truth dip(double depth_m, int steps, int steps_after = 50) {
   Truth truth;
   const double upright = std::sqrt(1.0 + kSlope * kSlope);
@@ -72,7 +72,7 @@ TEST(AboveGround, TwoShortDipsAreNotOneLong) {
   twice.p_WB_m[100].z() += 0.5;
   EXPECT_NO_THROW(require_above_ground(slope(), twice, "lidar", kSensor_B_m));
   Truth longer = dip(0.04, 120);
-  longer.p_WB_m[31].z() += 0.5;  // out once near the start: what is left is still long
+  longer.p_WB_m[31].z() += 0.5;  // outside once near the start; the remaining interval is still long
   EXPECT_THROW(require_above_ground(slope(), longer, "lidar", kSensor_B_m), SimulationFailure);
 }
 
@@ -86,10 +86,10 @@ TEST(AboveGround, DepthIsTheDistanceFromTheTriangleAbove) {
   engine::World world = testing::world_of(
       "<mujoco><asset><hfield name='ground' nrow='2' ncol='2' size='1 1 1 0.3'/></asset><worldbody><geom type='hfield' "
       "hfield='ground'/></worldbody></mujoco>");
-  world.model->hfield_data[1] = 1.0f;  // the corner +x -y alone is high: the upper half lies level
+  world.model->hfield_data[1] = 1.0f;  // only the corner +x -y is high, so the upper half is level
   const engine::Field field(*world.model, 0);
   EXPECT_NEAR(field.depth_m({-0.5, 0.5, -0.2}), 0.2, 1e-12);
-  EXPECT_NEAR(field.depth_m({0.5, -0.5, 0.2}), 0.3 / std::sqrt(1.5), 1e-12);  // 0.5 high there, slopes of 0.5
+  EXPECT_NEAR(field.depth_m({0.5, -0.5, 0.2}), 0.3 / std::sqrt(1.5), 1e-12);  // height of 0.5 there, slopes of 0.5
   EXPECT_NEAR(field.depth_m({0.5, -0.5, 0.8}), -0.3 / std::sqrt(1.5), 1e-12);
 }
 

@@ -19,7 +19,7 @@
 namespace tumble::sim {
 namespace {
 
-// Who needs a complete situation cannot be given one that is not; who needs a world cannot be given a situation.
+// Functions that need a complete situation accept no incomplete one; functions that need a world accept no situation.
 static_assert(!std::is_default_constructible_v<ResolvedSituation>);
 static_assert(!std::is_constructible_v<ResolvedSituation, Situation>);
 static_assert(!std::is_assignable_v<ResolvedSituation&, Situation>);
@@ -39,7 +39,7 @@ concept ServesAny = std::is_constructible_v<Surface, World> || std::is_construct
 static_assert(Serves<const BuiltSituation&>);
 static_assert(!ServesAny<const Situation&> && !ServesAny<const ResolvedSituation&>);
 
-/// A sphere that begins on a slippery patch: the physics changes the floor's friction in the model that it steps.
+/// A sphere that starts on a slippery patch: the physics changes the floor's friction in its model.
 Situation on_a_patch() {
   Situation situation = roll_along(2.0);
   situation.world.values.set("patch_1_x_m", 0.0);
@@ -79,7 +79,7 @@ TEST(BuiltSituation, CopiesShareTheWorld) {
   EXPECT_EQ(copy.situation(), resolve(on_a_patch()));
 }
 
-// The robot's file is read wherever a world is composed: without it everything goes on but composing.
+// A missing robot file only affects the composition of a world.
 TEST(BuiltSituation, NothingThatIsMadeFromItComposesAgain) {
   const std::filesystem::path models =
       std::filesystem::temp_directory_path() / ("tumble_built_" + std::to_string(getpid()));
@@ -96,7 +96,7 @@ TEST(BuiltSituation, NothingThatIsMadeFromItComposesAgain) {
   EXPECT_EQ(compare_rays(only, {100}).rays, 100);
 }
 
-/// Where a robot is after half a second's fall onto its ground, and how fast.
+/// Returns position and velocity of a robot that has fallen onto its ground for half a second.
 BodyState fallen(engine::World world) {
   engine::Physics physics(world);
   BodyState state = physics.state();
@@ -126,9 +126,9 @@ TEST(BuiltSituation, WhatTheEngineIsSparedChangesNoBit) {
     engine::World whole = engine::copy_of(spared.world());
     ASSERT_NE(whole.model->opt.enableflags | whole.model->opt.disableflags, 0);
     whole.model->opt.enableflags = 0;
-    // of a sphere every pair is asked, whatever a tree holds; contacts of a rig come in the order of the engine's tree
+    // for a sphere, all pairs are tested; for a rig, contacts have the order of the engine's tree
     whole.model->opt.disableflags = situation.robot.type == "sphere" ? mjDSBL_MIDPHASE : 0;
-    for (int i = 0; i < whole.model->ngeom; ++i) {  // a box as the compiler gives one
+    for (int i = 0; i < whole.model->ngeom; ++i) {  // a bounding box as from the compiler
       if (whole.model->geom_type[i] == mjGEOM_HFIELD)
         std::fill(whole.model->geom_aabb + 6 * i + 3, whole.model->geom_aabb + 6 * i + 6, 30.0);
     }
@@ -136,7 +136,7 @@ TEST(BuiltSituation, WhatTheEngineIsSparedChangesNoBit) {
     other.model->opt.gravity[2] *= 1.0 + 1e-9;
     const BodyState expected = fallen(std::move(whole));
     EXPECT_TRUE(same_bits(fallen(engine::copy_of(spared.world())), expected));
-    EXPECT_FALSE(same_bits(fallen(std::move(other)), expected));  // and a bit would be seen
+    EXPECT_FALSE(same_bits(fallen(std::move(other)), expected));  // negative control: a changed bit is detected
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contacts of a strut with rough ground against the engine's own search, which a margin of a picometre makes it do
-// whatever stands in its table.
+// Compares contacts of a strut with rough ground with the engine's own search. A margin of a picometre makes the engine
+// use its search regardless of its table.
 #include "sim/engine/field_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 using Eigen::Vector3d;
 using Contacts = std::array<mjPreContact, mjMAXCONPAIR>;
 
-/// A strut above 6 m x 4 m of ground: rough to 0.2 m over cells of 0.2 m by 0.16 m.
+/// A strut above ground of 6 m x 4 m with a roughness of 0.2 m, in cells of 0.2 m by 0.16 m.
 class Ground {
  public:
   explicit Ground(const char* turn = "0 0 0")
@@ -49,7 +49,7 @@ class Ground {
   std::optional<int> ours(Contacts& contacts) const {
     return field_contacts(*world_.model, *data_, 0, 1, contacts.data());
   }
-  /// The engine's contacts stand in `data` until the next call.
+  /// The engine's contacts are in `data` until the next call.
   const mjData& engines() {
     mj_collision(world_.model.get(), data_.get());
     return *data_;
@@ -65,7 +65,7 @@ Eigen::Quaterniond any_attitude(Stream& chance) {
   return turn.normalized();
 }
 
-/// The largest difference of place, depth and normal, contact by contact; infinite when they are not as many.
+/// Returns the largest difference of position, depth and normal over all contacts; infinite if their numbers differ.
 double difference(const Contacts& ours, int count, const mjData& engine) {
   if (count != engine.ncon) return std::numeric_limits<double>::infinity();
   double worst = 0.0;
@@ -84,7 +84,7 @@ TEST(FieldContact, ContactsAreTheEngines) {
   Contacts contacts;
   int touching = 0, clear = 0, several = 0, deep = 0;
   for (int i = 0; i < 20000; ++i) {
-    // also over the rim, and from within the ground to above its tops
+    // also over the edge, and from within the ground to above its peaks
     ground.put({chance.uniform(-3.2, 3.8), chance.uniform(-2.6, 2.2), chance.uniform(0.15, 0.5)}, any_attitude(chance));
     const std::optional<int> count = ground.ours(contacts);
     const mjData& engine = ground.engines();
@@ -94,9 +94,9 @@ TEST(FieldContact, ContactsAreTheEngines) {
     }
     ++(*count > 0 ? touching : clear);
     several += *count > 1;
-    ASSERT_LT(difference(contacts, *count, engine), 1e-9) << "strut " << i;  // 5e-11, of the normal, is the worst
+    ASSERT_LT(difference(contacts, *count, engine), 1e-9) << "strut " << i;  // 5e-11 for the normal is the largest
   }
-  EXPECT_GT(clear, 4000);  // all kinds were there
+  EXPECT_GT(clear, 4000);  // all cases must occur
   EXPECT_GT(touching, 1000);
   EXPECT_GT(several, 700);
   EXPECT_GT(deep, 4000);
@@ -108,7 +108,7 @@ TEST(FieldContact, TheComparisonSeesAMicrometre) {
   const Eigen::Quaterniond level(Eigen::AngleAxisd(1.5, Vector3d::UnitY()));
   Vector3d at_m(0.0, 0.0, 0.5);
   std::optional<int> count = 0;
-  for (; count && *count == 0; at_m.z() -= 0.002) {  // down to the first touch
+  for (; count && *count == 0; at_m.z() -= 0.002) {  // down to the first contact
     ground.put(at_m, level);
     count = ground.ours(contacts);
   }
@@ -128,7 +128,7 @@ TEST(FieldContact, LeavesToTheEngineWhatItCannotTell) {
   EXPECT_EQ(turned.ours(contacts), std::nullopt);
   level.put({std::numeric_limits<double>::quiet_NaN(), 0, 2}, upright);
   EXPECT_EQ(level.ours(contacts), std::nullopt);
-  level.put({0, 0, -1}, upright);  // below the foot
+  level.put({0, 0, -1}, upright);  // below the base
   EXPECT_EQ(level.ours(contacts), std::nullopt);
   level.put({0, 0, 0.25}, upright);  // its lower end is in the ground
   EXPECT_EQ(level.ours(contacts), std::nullopt);

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The rig, spun near its unstable axis at 18 rad/s, thrown off 100 m above the hill.
+/// The rig, spinning near its unstable axis at 18 rad/s, thrown 100 m above the hill.
 class Flight : public ::testing::Test {
  protected:
   Flight() : world_(engine::compose(resolve(tumble_down(1.0, 100.0)), models_folder())), physics_(world_) {
@@ -73,7 +73,7 @@ TEST_F(Flight, CentreOfMassFeelsNothing) {
     before = after;
   }
   EXPECT_LT(largest, 1e-6);        // measured 3e-12
-  EXPECT_GT(largest_beside, 1.0);  // 1 cm beside it: w^2 r = 3.2 m/s^2
+  EXPECT_GT(largest_beside, 1.0);  // 1 cm off: w^2 r = 3.2 m/s^2
 }
 
 TEST_F(Flight, WrenchActsAtTheCentreOfMassInWorldAxes) {

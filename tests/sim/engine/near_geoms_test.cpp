@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A cage of three struts among a crowd of rocks on a height field or, without one, on a plane.
+/// A cage of three struts among many rocks on a height field, or on a plane.
 World crowd(bool with_field) {
   Stream chance(31, "test.near");
   const auto number = [&](double low, double high) { return " " + std::to_string(chance.uniform(low, high)); };
@@ -37,7 +37,7 @@ World crowd(bool with_field) {
   return world;
 }
 
-/// Distances and geoms of all contacts, in their order, with the robot at a place.
+/// Returns distances and geoms of all contacts, in order, with the robot at a position.
 std::vector<double> contacts_at(const mjModel& model, mjData& data, const Vector3d& p_m, const Eigen::Quaterniond& q) {
   Vector3d::Map(data.qpos) = p_m;
   data.qpos[3] = q.w();
@@ -56,7 +56,7 @@ struct Comparison {
   int with_contacts = 0, different = 0;
 };
 
-/// A walk of the robot in steps of some centimetres and now and then a leap, compared with the compiler's tree.
+/// Moves the robot in steps of some centimetres with occasional jumps, and compares with the compiler's tree.
 Comparison walk(bool with_field, bool told) {
   const World near = crowd(with_field), all = crowd(with_field);
   const DataPtr near_data(mj_makeData(near.model.get())), all_data(mj_makeData(all.model.get()));

@@ -72,12 +72,12 @@ TEST(Rolling, SlideTurnsToGripAfterTheTimeOfCoulombsLaw) {
   }
   const double inertia = world.model->body_inertia[3 * world.robot_body],
                mass = world.model->body_mass[world.robot_body];
-  // v0 - slip left over = mu g t (1 + m r^2 / I)
+  // v0 minus the remaining slip = mu g t (1 + m r^2 / I)
   const double expected_s = 0.995 / (0.1 * 9.80665 * (1.0 + mass * kRadius_m * kRadius_m / inertia));
   EXPECT_NEAR(gripped_s, expected_s, 0.005 * expected_s);  // measured 0.2 %
 }
 
-/// One patch across the way, and a burst there.
+/// One patch across the path, and a spin there.
 Situation over_a_patch(double spin_ratio) {
   Situation situation = roll_along(4.5);
   situation.world.values.set("patch_1_x_m", 0.5);
@@ -102,7 +102,7 @@ TEST(Patch, BurstSpinsTheSphereThereAndNowhereElse) {
     }
   }
   EXPECT_GT(labelled * 0.0005, 0.3);
-  EXPECT_GT(rolled_m, 1.2);  // the way is 1 m: pure rolling is visibly wrong
+  EXPECT_GT(rolled_m, 1.2);  // the path is 1 m, so pure rolling has a large error
   EXPECT_NEAR(truth.p_WB_m.back().x(), 1.0, 0.02);
 }
 
@@ -123,7 +123,7 @@ TEST(Patch, WithoutABurstTheFrictionOfThePatchIsInForce) {
   std::vector<ContactTruth> contacts;
   for (int k = 0; k < 100; ++k) physics.step({{20.0, 0, 0}, {0, 0, 0}});  // far more than mu m g = 1.6 N
   const BodyState now = physics.state();
-  // a sphere that slides is turned by friction alone: I w' = mu m g r
+  // only friction rotates a sliding sphere: I w' = mu m g r
   const double inertia = world.model->body_inertia[3 * world.robot_body];
   EXPECT_NEAR((now.q_WB * now.w_WB_B_rad_s).y(), 0.04 * 4.2 * 9.80665 * kRadius_m / inertia * 0.05, 0.03);
 }

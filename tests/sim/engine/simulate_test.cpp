@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Attitude, velocity and position that the samples of an ideal IMU lead to, beside the truth at its place.
+/// Attitude, velocity and position integrated from the samples of an ideal IMU, and the truth at its position.
 struct DeadReckoning {
   double attitude_rad, velocity_m_s, position_m, peak_m_s2, peak_rad_s;
 };
@@ -53,7 +53,7 @@ DeadReckoning integrate(const Recording& recording) {
 
 TEST(Simulate, IntegralOfTheSamplesIsTheMotionThroughImpacts) {
   const DeadReckoning r = integrate(simulate(built(tumble_down(4.0, 2000.0))));
-  EXPECT_GT(r.peak_m_s2, 60.0);  // it did hit the ground
+  EXPECT_GT(r.peak_m_s2, 60.0);  // it must hit the ground
   EXPECT_GT(r.peak_rad_s, 6.0);
   EXPECT_NEAR(r.attitude_rad, 0.0, 1e-8);
   EXPECT_NEAR(r.velocity_m_s, 0.0, 1e-7);
@@ -93,7 +93,7 @@ TEST(Simulate, TruthIsCompleteAndBeginsAtRest) {
   EXPECT_EQ(r.sensors.imus[0].time_ns.size(), 200u);
   double fastest = 0.0;
   for (std::size_t k = 0; k < 1000; ++k) fastest = std::max(fastest, truth.v_WB_m_s[k].norm());
-  EXPECT_LT(fastest, 0.005);  // the push begins at 0.5 s
+  EXPECT_LT(fastest, 0.005);  // the push starts at 0.5 s
   ASSERT_FALSE(truth.contacts.empty());
   for (const ContactTruth& contact : truth.contacts) {
     ASSERT_GE(contact.surface_id, 0);
@@ -101,12 +101,12 @@ TEST(Simulate, TruthIsCompleteAndBeginsAtRest) {
     ASSERT_NEAR(contact.normal_W.norm(), 1.0, 1e-9);
     ASSERT_NEAR(contact.normal_W.dot(contact.slip_velocity_W_m_s), 0.0, 1e-9);
   }
-  // at rest the contacts carry the weight: 8 kg
+  // at rest, the contacts support the weight: 8 kg
   double weight_n = 0.0;
   for (const ContactTruth& contact : truth.contacts) {
     if (contact.time_ns == 250'000'000) weight_n += contact.normal_force_n * contact.normal_W.z();
   }
-  EXPECT_NEAR(weight_n, 8.0 * 9.80665, 2.0);  // friction carries a little on the relief
+  EXPECT_NEAR(weight_n, 8.0 * 9.80665, 2.0);  // friction supports a part of it on the relief
 }
 
 TEST(Simulate, CentreOfMassOffItsPlaceMovesTheTrueMountingAndNotTheCalibration) {
@@ -164,7 +164,7 @@ TEST(Simulate, NeverMovingFailsTheDraw) {
 TEST(Simulate, StayingInTheGroundFailsTheDraw) {
   Situation situation = tumble_down(4.0, 100.0);
   situation.motion.values.set("lift_m_s", 10.0);
-  situation.robot.values.set("contact_time_s", 0.15);  // padding so soft that the ground swallows the cage
+  situation.robot.values.set("contact_time_s", 0.15);  // padding so soft that the cage sinks into the ground
   EXPECT_THROW(
       {
         try {
@@ -181,7 +181,7 @@ TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
   const Situation situation = tumble_down(3.0, 100.0);
   const Truth truth = simulate(built(situation)).truth;
   const Eigen::Isometry3d T_WB = start_pose(built(situation));
-  // it settles through 3 mm of gap into the give of its contacts and leans on uneven ground (measured: 7 mm, 0.040 rad)
+  // the rig sinks through a gap of 3 mm into its soft contacts and tilts on uneven ground (measured: 7 mm, 0.040 rad)
   EXPECT_LT((T_WB.translation() - truth.p_WB_m.front()).norm(), 0.03);
   EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.1);
 }

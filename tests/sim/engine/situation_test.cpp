@@ -58,7 +58,7 @@ TEST(Resolve, FillsDefaultsAndKeepsWhatIsGiven) {
   EXPECT_EQ(resolve(out), resolved);
 }
 
-/// What resolve says of the test tumble after a change.
+/// Returns the message of resolve for the test tumble after a change.
 std::string complaint(const std::function<void(Situation&)>& change) {
   Situation situation = tumble_down(2.0, 100.0);
   change(situation);

@@ -12,7 +12,7 @@ inline std::filesystem::path models_folder() {
   return test::source_dir() / "models";
 }
 
-/// The world of a situation, from the models of this tree: anew at each call.
+/// Returns the world of a situation, with the models of this tree; builds a new world in each call.
 inline BuiltSituation built(const Situation& situation) {
   return {resolve(situation), models_folder()};
 }
@@ -44,7 +44,7 @@ inline Situation tumble_down(double duration_s, double imu_rate_hz) {
   return situation;
 }
 
-/// A sphere on a level floor, led along one metre.
+/// A sphere on a level floor, guided along one metre.
 inline Situation roll_along(double duration_s) {
   Situation situation;
   situation.scenario = "test";

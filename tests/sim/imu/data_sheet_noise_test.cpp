@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The devices' data sheets against what the simulation makes of them, from an hour at rest; and the options of a
-// scenario that reach the simulation.
+// Compares the devices' data sheets with one hour of simulated data at rest. Also tests the options of a scenario that
+// reach the simulation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,8 +40,8 @@ std::vector<std::string> imus_of_the_sheets() {
   return imus;
 }
 
-/// The device with its own numbers, but for those given; at rest the bandwidths have nothing to do and are off, and so
-/// are windows shorter than a period, which let more of the noise pass, and the hold (sampling_test.cpp has them).
+/// The device with its own numbers, except for the given ones. Bandwidths have no effect at rest and are off. Windows
+/// shorter than a period, which increase the noise, and the hold are off too (sampling_test.cpp tests them).
 sim::SensorSpec device(const std::string& name, const std::map<std::string, double>& given) {
   sim::SensorSpec sensor;
   sensor.name = "imu";
@@ -83,7 +83,7 @@ void expect_within(const AllanPoint& point, AllanNoise noise, double expected, c
   EXPECT_GT(interval.high, expected) << what << " at " << point.tau_s << " s";
 }
 
-/// Numbers of one triad that make an error at rest, all 0.
+/// Numbers of one triad that cause an error at rest, all set to 0.
 std::map<std::string, double> silent() {
   return {{"gyro_noise_rad_s_sqrt_hz", 0}, {"gyro_bias_in_run_rad_s", 0}, {"gyro_bias_walk_rad_s_sqrt_s", 0},
           {"gyro_quantum_rad_s", 0},       {"gyro_handover_rad_s", 0},    {"gyro_g_sensitivity_s_m", 0},
@@ -94,7 +94,7 @@ std::map<std::string, double> silent() {
 class DataSheetNoise : public testing::TestWithParam<std::string> {
  protected:
   double number(const std::string& key) const { return device(GetParam(), {}).values.at(key); }
-  /// The device with every noise off but `keys`, as its sheet has them.
+  /// The device with all noise off except `keys`, which have the values of its data sheet.
   sim::SensorSpec only(const std::vector<std::string>& keys) const {
     std::map<std::string, double> given = silent();
     for (const std::string& key : keys) given.erase(key);
@@ -112,7 +112,7 @@ TEST_P(DataSheetNoise, WhiteNoiseOfAnHourAgrees) {
     expect_within(accel, AllanNoise::white, sim::white_deviation(number("accel_noise_m_s2_sqrt_hz"), accel.tau_s),
                   "accel");
   }
-  // and an hour tells 3 % apart
+  // one hour determines 3 %
   const AllanPoint& sharp = nearest_point(curves.gyro, 0.1);
   EXPECT_GT(confidence_interval(sharp, AllanNoise::white).low,
             0.97 * sim::white_deviation(number("gyro_noise_rad_s_sqrt_hz"), sharp.tau_s));
@@ -121,7 +121,7 @@ TEST_P(DataSheetNoise, WhiteNoiseOfAnHourAgrees) {
 TEST_P(DataSheetNoise, BiasInstabilityOfAnHourIsTheFloor) {
   const Curves curves = at_rest(only({"gyro_bias_in_run_rad_s", "accel_bias_in_run_m_s2"}), kHour_s, 12);
   for (const double tau_s : {10.0, 25.0, 63.0, 160.0}) {
-    // the floor of four processes is within 5 % of the figure (BiasStage.InRunHasAFlatFloorAtItsFigure)
+    // the floor of four processes is within 5 % of the stated value (BiasStage.InRunHasAFlatFloorAtItsFigure)
     const AllanPoint& gyro = nearest_point(curves.gyro, tau_s);
     const AllanPoint& accel = nearest_point(curves.accel, tau_s);
     expect_within(gyro, AllanNoise::flicker, 0.98 * number("gyro_bias_in_run_rad_s"), "gyro");
@@ -131,7 +131,8 @@ TEST_P(DataSheetNoise, BiasInstabilityOfAnHourIsTheFloor) {
 
 TEST_P(DataSheetNoise, RandomWalkOfAnHourAgrees) {
   const Curves curves = at_rest(only({"gyro_bias_walk_rad_s_sqrt_s", "accel_bias_walk_m_s2_sqrt_s"}), kHour_s, 13);
-  if (number("gyro_bias_walk_rad_s_sqrt_s") == 0.0) {  // the sheet states none: a constant, but for the last bits
+  // the sheet states no random walk: constant except for the last bits
+  if (number("gyro_bias_walk_rad_s_sqrt_s") == 0.0) {
     EXPECT_EQ(curves.gyro.front().deviation, 0.0);
     EXPECT_LT(curves.accel.front().deviation, 1e-14);
     return;
@@ -147,7 +148,7 @@ TEST_P(DataSheetNoise, RandomWalkOfAnHourAgrees) {
 }
 
 TEST_P(DataSheetNoise, WholeDeviceIsTheSumOfItsNoises) {
-  // without quantisation: at the step of a device with little noise, it adds up to a tenth to the white noise
+  // without quantisation, which adds up to a tenth to the white noise of a device with little noise
   const sim::SensorSpec sensor = device(
       GetParam(),
       {{"gyro_handover_rad_s", 0}, {"accel_handover_m_s2", 0}, {"gyro_quantum_rad_s", 0}, {"accel_quantum_m_s2", 0}});
@@ -187,7 +188,7 @@ TEST(DataSheetNoise, PhidgetAtRestIsReadByItsPrecisePart) {
   const sim::SensorSpec sensor = device("phidget1044", {});
   const AllanPoint gyro = nearest_point(at_rest(sensor, 300.0, 5).gyro, 0.02);
   const AllanPoint accel = nearest_point(at_rest(sensor, 300.0, 5).accel, 0.02);
-  // quantum of 0.02 deg/s under 0.13 deg/s of noise: its own noise, 1 % of the variance
+  // a quantum of 0.02 deg/s with noise of 0.13 deg/s: the quantisation noise is 1 % of the variance
   expect_within(gyro, AllanNoise::white, 1.004 * sim::white_deviation(1.048661e-4, gyro.tau_s), "gyro");
   expect_within(accel, AllanNoise::white, 1.003 * sim::white_deviation(1.736638e-4, accel.tau_s), "accel");
 }
@@ -207,7 +208,7 @@ TEST(DataSheets, EveryImuStatesEveryNumberOfItsKind) {
   }
 }
 
-/// The hill with other options of its first IMU, drawn.
+/// The drawn hill with other options of its first IMU.
 sim::SensorSpec drawn_imu(const std::string& options) {
   const std::string text = R"(
 name: options

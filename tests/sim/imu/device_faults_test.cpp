@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults of a device or its bus: wild readings, and a start after that of the recording.
+// Tests faults of a device or its bus: wrong readings, and a start later than the recording.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace tumble::sim {
 namespace {
 
-/// A body that turns about z with 3 rad/s.
+/// A body that rotates about z at 3 rad/s.
 Truth spinning(double duration_s) {
   Truth truth;
   for (int k = 0; k <= std::lround(duration_s / 0.0005); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensing elements with axes of their own: against the closed form of elements.hpp.
+// Tests sensing elements with separate axes, compared with the closed form in elements.hpp.
 #include "sim/imu/elements.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Rail clamp(double level = kRail) {
   return {{.level = level}, 0.0005, Stream(1, "test")};
 }
 
-/// Tilts of 2 to 5 %, as measured on the pendulum's rail, and scales of 1 to 3 %.
+/// Tilts of 2 to 5 %, as measured at the pendulum's saturation limit, and scale errors of 1 to 3 %.
 Matrix3d tilted() {
   Matrix3d axes;
   axes << 1.01, 0.03, -0.05, -0.04, 0.97, 0.02, 0.05, -0.01, 1.03;
@@ -80,15 +80,16 @@ TEST(Elements, OneAtItsRailReadsAPlaneAndMovesTheAxesBeside) {
     std::uint8_t flags = 0;
     const Vector3d reading = clip(elements, signal, &flags);
     ASSERT_EQ(flags, 0b100);
-    // z = (r - m_x x - m_y y) / m_z: the plane, written out
+    // z = (r - m_x x - m_y y) / m_z: equation of the plane
     ASSERT_NEAR(reading.z(), (rail - 0.05 * reading.x() + 0.01 * reading.y()) / 1.03, 1e-12);
     const double deficit = 0.05 * signal.x() - 0.01 * signal.y() + 1.03 * signal.z() - rail;
     ASSERT_NEAR(reading.x(), signal.x() - inverse(0, 2) * deficit, 1e-12);
     ASSERT_NEAR(reading.y(), signal.y() - inverse(1, 2) * deficit, 1e-12);
-    // what free elements sense is right all the same
+    // the readings of unclipped elements are correct
     ASSERT_NEAR(1.01 * reading.x() + 0.03 * reading.y() - 0.05 * reading.z(),
                 1.01 * signal.x() + 0.03 * signal.y() - 0.05 * signal.z(), 1e-12);
-    ASSERT_GT(std::abs(reading.x() - signal.x()), 0.05 * 2.0 * 0.9);  // 5 % of 2 rad/s or more: no small thing
+    // 5 % of at least 2 rad/s, which is a large effect
+    ASSERT_GT(std::abs(reading.x() - signal.x()), 0.05 * 2.0 * 0.9);
   }
 }
 
@@ -103,12 +104,12 @@ TEST(Elements, TwoAtTheirRailsLeaveOneTruthAndThreeNone) {
   flags = 0;
   const Vector3d three = clip(elements, {14.0, -13.0, 15.0}, &flags), others = clip(elements, {20.0, -25.0, 13.0});
   EXPECT_EQ(flags, 0b111);
-  EXPECT_NEAR((three - others).norm(), 0.0, 1e-12);  // only the signs are left
+  EXPECT_NEAR((three - others).norm(), 0.0, 1e-12);  // only the signs remain
   EXPECT_NEAR((tilted() * three - Vector3d(kRail, -kRail, kRail)).norm(), 0.0, 1e-12);
 }
 
 TEST(Elements, OffsetSetsTheSignsApart) {
-  // the wand: r = 7.30 rad/s, rails of x at +7.25 and -7.35
+  // the wand: r = 7.30 rad/s, x limits of +7.25 and -7.35
   const Elements elements(Matrix3d::Identity(), {0.05, 0.0, 0.0});
   Rail rail = clamp(7.30);
   std::uint8_t flags = 0;
@@ -119,14 +120,14 @@ TEST(Elements, OffsetSetsTheSignsApart) {
 }
 
 TEST(Elements, TheFlagIsThatOfTheElementAndNotOfTheAxis) {
-  // 10.3 about x is beyond an upright rail; the element, at 0.97 of it, is not
+  // 10.3 about x exceeds an upright limit, but the element with scale 0.97 is below it
   Matrix3d axes = Matrix3d::Identity();
   axes(0, 0) = 0.97;
   std::uint8_t flags = 0;
   EXPECT_EQ(clip({axes, Vector3d::Zero()}, {10.3, 0.0, 0.0}, &flags), Vector3d(10.3, 0.0, 0.0));
   EXPECT_EQ(flags, 0);
   axes(0, 0) = 1.0;
-  axes(0, 1) = 0.05;  // and 10.1 is not, but 5 % of 9 about y are sensed too
+  axes(0, 1) = 0.05;  // 10.1 does not, but the element also senses 5 % of 9 about y
   clip({axes, Vector3d::Zero()}, {10.1, 9.0, 0.0}, &flags);
   EXPECT_EQ(flags, 0b001);
 }
@@ -149,11 +150,11 @@ TEST(Elements, AreDrawnAsStated) {
   for (int device = 0; device < kDevices; ++device) {
     const Elements drawn(params, Stream(static_cast<std::uint64_t>(device), "imu.gyro.elements"));
     const Matrix3d errors = drawn.axes() - Matrix3d::Identity();
-    ASSERT_LE(errors.cwiseAbs().maxCoeff(), 0.06 + 1e-12);  // cut at three standard deviations
+    ASSERT_LE(errors.cwiseAbs().maxCoeff(), 0.06 + 1e-12);  // limited to three standard deviations
     squares += errors.cwiseAbs2();
     offsets += drawn.offset().cwiseAbs2();
   }
-  // 5 standard errors: 5 / sqrt(2 * 2000) = 8 %; the cut takes 1.3 % off
+  // 5 standard errors: 5 / sqrt(2 * 2000) = 8 %; the limit to three deviations reduces the result by 1.3 %
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       EXPECT_NEAR(std::sqrt(squares(row, column) / kDevices), row == column ? 0.01 : 0.02, 0.09 * 0.02);
@@ -168,7 +169,7 @@ TEST(Elements, AreDrawnAsStated) {
 }
 
 TEST(Elements, WhateverIsDrawnCanBeUndone) {
-  // the worst of the allowed: every entry at three standard deviations, of the sign that hurts
+  // the worst allowed case: every entry at three standard deviations, with the worst sign
   const double most = 3.0 * Elements::kMisalignmentMax;
   Matrix3d worst = Matrix3d::Constant(most);
   worst.diagonal().setConstant(1.0 - most);

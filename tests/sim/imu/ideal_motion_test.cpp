@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ideal signal: what an IMU without errors says is the true motion, in flight and through impacts, at any rate.
+// Tests the ideal signal: an IMU without errors measures the true motion, in flight and through impacts, at any rate.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Eigen::Isometry3d mounting(const Vector3d& p_BI_m) {
   return T_BI;
 }
 
-/// Free flight at 18 rad/s near the unstable axis of a body like the rig, in closed form.
+/// Free flight at 18 rad/s near the unstable axis of a body similar to the rig, in closed form.
 Truth flight(double duration_s) {
   const oracles::TorqueFreeRotation rotation({0.14, 0.161, 0.154}, {0.3, 0.2, 18.0});
   Truth truth;
@@ -41,7 +41,7 @@ Truth flight(double duration_s) {
   return truth;
 }
 
-/// The same with impacts: every 0.1 s velocity and rate jump within one step, and the body spins on from there.
+/// The same with impacts: every 0.1 s, velocity and rate jump within one step, and the body continues to spin.
 Truth flight_with_impacts(double duration_s) {
   Truth truth;
   Quaterniond q = Quaterniond::Identity();
@@ -72,7 +72,8 @@ struct Departure {
   double attitude_rad = 0.0, velocity_m_s = 0.0;
 };
 
-/// Largest departure, over all samples, of what the samples integrate to from the true attitude and velocity at T_BI.
+/// Returns the largest difference, over all samples, between the integrated samples and the true attitude and velocity
+/// at T_BI.
 Departure dead_reckon(const ImuRecord& imu, const Truth& truth, const Eigen::Isometry3d& T_BI) {
   const auto velocity = [&](std::size_t k) -> Vector3d {
     return truth.v_WB_m_s[k] + truth.q_WB[k] * truth.w_WB_B_rad_s[k].cross(T_BI.translation());
@@ -104,14 +105,14 @@ TEST(IdealMotion, CentreOfMassFeelsNothingInFlight) {
 }
 
 TEST(IdealMotion, AMillimetreBesideTheCentreOfMassIsFelt) {
-  // negative control of the test above: w^2 r = 0.32 m/s^2 beside the axis
+  // negative control of the test above: w^2 r = 0.32 m/s^2 off the axis
   const SimulatedImu r = ideal_imu(flight(0.5), 100.0, mounting({0.001, 0, 0}));
   ASSERT_FALSE(r.record.accel_m_s2.empty());
   for (const Vector3d& f : r.record.accel_m_s2) ASSERT_GT(f.norm(), 1e-3);
 }
 
 TEST(IdealMotion, LeverArmFeelsWhatTheClosedFormSays) {
-  // at 2000 Hz a step of 9 mrad: the mean over it is short of the middle by (9e-3)^2/24 and by jerk, together 1e-5
+  // at 2000 Hz, a step is 9 mrad: its mean differs from the middle by (9e-3)^2/24 and by the jerk, together 1e-5
   const oracles::TorqueFreeRotation rotation({0.14, 0.161, 0.154}, {0.3, 0.2, 18.0});
   const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
   const SimulatedImu r = ideal_imu(flight(0.5), 2000.0, T_BI);
@@ -144,11 +145,11 @@ TEST(IdealMotion, SamplesIntegrateToTheMotionOfTheEngine) {
   EXPECT_LT(d.velocity_m_s, 1e-9);
   double peak_m_s2 = 0.0;
   for (const Vector3d& f : recording.sensors.imus[0].accel_m_s2) peak_m_s2 = std::max(peak_m_s2, f.norm());
-  EXPECT_GT(peak_m_s2, 40.0);  // it did hit the ground
+  EXPECT_GT(peak_m_s2, 40.0);  // it must hit the ground
 }
 
 TEST(IdealMotion, PlainMeansWouldNotIntegrateToTheMotion) {
-  // negative control: the means of the steps' rates, as if a window did not turn
+  // negative control: the means of the steps' rates, as if a window did not rotate
   const Truth truth = flight_with_impacts(2.0);
   const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
   const SimulatedImu fine = ideal_imu(truth, 2000.0, T_BI);
@@ -167,7 +168,7 @@ TEST(IdealMotion, PlainMeansWouldNotIntegrateToTheMotion) {
 }
 
 TEST(IdealMotion, ImpulseAndTimeOfAnImpactDoNotDependOnTheSamplingPhase) {
-  // a body at rest is struck within one step; the window that holds the step holds all of the impulse
+  // a body at rest is struck within one step; the window with this step contains the whole impulse
   const Vector3d struck_m_s(0.7, -0.2, 1.3);
   double mean_error_s = 0.0;
   constexpr std::size_t kPhases = 20;

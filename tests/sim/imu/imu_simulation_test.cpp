@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A body that turns about z with a constant rate while its origin moves along x by an acceleration of a sin.
+/// A body that rotates about z at a constant rate while its origin moves along x with a sinusoidal acceleration.
 Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3.0) {
   Truth truth;
   constexpr double kFrequency_rad_s = 20.0;
@@ -31,7 +31,7 @@ Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3
   return truth;
 }
 
-/// A body that swings about an axis near x with up to 12 rad/s and is shaken along x.
+/// A body that oscillates about an axis near x at up to 12 rad/s and is shaken along x.
 Truth swinging(double duration_s) {
   Truth truth = turning(0.0, duration_s, 5.0);
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -68,7 +68,7 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation() = Vector3d(0.1, 0, 0.03);
   const SimulatedImu r = simulated(turning(15.0, 0.5, 0.0), ideal(), T_BI);
-  // w^2 r towards the axis, as a gain of velocity over a turn of 0.15 rad: the chord is shorter than the arc
+  // w^2 r towards the axis, as a velocity change over a rotation of 0.15 rad: the chord is shorter than the arc
   const Vector3d expected(-22.5 * std::sin(0.075) / 0.075, 0, kGravity_m_s2);
   ASSERT_EQ(r.record.accel_m_s2.size(), 50u);
   for (const Vector3d& f : r.record.accel_m_s2) ASSERT_NEAR((f - expected).norm(), 0.0, 1e-9);
@@ -76,7 +76,7 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
 
 TEST(ImuSimulation, MountingTurnsTheAxes) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
-  T_BI.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();  // y of I is z of B
+  T_BI.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();  // y of I equals z of B
   const SimulatedImu r = simulated(turning(5.0, 0.1, 0.0), ideal(), T_BI);
   ASSERT_EQ(r.record.gyro_rad_s.size(), 10u);
   EXPECT_NEAR((r.record.gyro_rad_s[5] - Vector3d(0, 5, 0)).norm(), 0.0, 1e-9);
@@ -109,7 +109,8 @@ TEST(ImuSimulation, RailBeforeTheMeanCutsAnOscillationThatTheMeanHides) {
   sensor.values.set("clip_after_low_pass", 1);
   const SimulatedImu after = simulated(truth, sensor);
   ASSERT_EQ(before.record.accel_m_s2.size(), 20u);
-  EXPECT_LT(before.record.accel_m_s2[5].x(), 18.0);  // measured 12.98: the upper halves are cut, the lower ones less
+  // measured 12.98: the upper halves are clipped, the lower ones less
+  EXPECT_LT(before.record.accel_m_s2[5].x(), 18.0);
   EXPECT_EQ(before.record.clip_flags[5], 0b001000);
   EXPECT_NEAR(after.record.accel_m_s2[5].x(), 20.0, 1e-9);
   EXPECT_EQ(after.record.clip_flags[5], 0);
@@ -175,7 +176,7 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
   const Truth motion = swinging(1.0);
   const SimulatedImu exact = simulated(motion, ideal());
   ASSERT_EQ(exact.record.gyro_rad_s, exact.truth.rate_rad_s);
-  // every number that makes an error, at a size that must show, after those without which it does nothing
+  // every number that causes a visible error, after the numbers that it depends on
   const std::vector<std::vector<std::pair<const char*, double>>> options = {
       {{"gyro_rail_rad_s", 8.0}},
       {{"gyro_rail_rad_s", 8.0}, {"gyro_plateau_axis_spread_rad_s", 0.1}},
@@ -241,7 +242,7 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
 }
 
 TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
-  // x swings through the rail while y and z stay below it; noise, bias and axis errors on
+  // x oscillates beyond the limit while y and z remain below it; noise, bias and axis errors are on
   SensorSpec sensor = ideal(200.0);
   for (const auto& [name, value] :
        std::initializer_list<std::pair<const char*, double>>{{"gyro_rail_rad_s", 8.0},
@@ -269,7 +270,7 @@ TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
 }
 
 TEST(ImuSimulation, WholeWindowsAtTheRailReadExactlyTheRail) {
-  // turning about an axis that turns itself: coning would move a compensated reading off the plateau
+  // the rotation axis itself rotates (coning), which would move a compensated reading off the plateau
   SensorSpec sensor = ideal();
   sensor.values.set("gyro_rail_rad_s", 7.5);
   Truth truth = turning(0.0, 0.5);
@@ -323,7 +324,7 @@ TEST(ImuSimulation, HandoverQuietensSlowAxes) {
                                                              {"gyro_handover_rad_s", 1.745},
                                                              {"gyro_precise_noise_rad_s_sqrt_hz", 0.001}})
     sensor.values.set(name, value);
-  const SimulatedImu r = simulated(turning(5.0, 10.0), sensor);  // z turns fast
+  const SimulatedImu r = simulated(turning(5.0, 10.0), sensor);  // fast rotation about z
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k)
     sum += (r.record.gyro_rad_s[k] - r.truth.rate_rad_s[k]).cwiseAbs2();

@@ -31,7 +31,8 @@ std::vector<Vector3d> straight_path() {
 TEST(MagneticField, OfADipoleAgreesWithTheTextbook) {
   MagneticField field;
   field.dipoles.push_back({{1, 2, 3}, {0, 0, 5.0}});
-  // on the axis mu_0 m / (2 pi d^3), beside it half of that against the moment (Jackson 5.56 with r along and across m)
+  // on the axis mu_0 m / (2 pi d^3); perpendicular to it half of this, against the moment (Jackson 5.56 with r along
+  // and across m)
   EXPECT_NEAR((field.at({1, 2, 3.5}) - Vector3d(0, 0, 2e-7 * 5.0 / 0.125)).norm(), 0.0, 1e-18);
   EXPECT_NEAR((field.at({1.5, 2, 3}) - Vector3d(0, 0, -1e-7 * 5.0 / 0.125)).norm(), 0.0, 1e-18);
 }
@@ -66,7 +67,7 @@ TEST(MagneticField, SourcesKeepTheirDistanceAndFollowTheSeed) {
   for (const MagneticDipole& dipole : field.dipoles) {
     double nearest_m = 1e9;
     for (const Vector3d& p : path) nearest_m = std::min(nearest_m, (p - dipole.p_W_m).norm());
-    EXPECT_GE(nearest_m, 0.4 - 0.01);  // held against every other position of the path, 1 cm apart
+    EXPECT_GE(nearest_m, 0.4 - 0.01);  // compared with every other position of the path, 1 cm apart
     EXPECT_LE(nearest_m, 1.5);
     EXPECT_GE(dipole.moment_W_a_m2.norm(), 5.0 / 3.0 - 1e-12);
     EXPECT_LE(dipole.moment_W_a_m2.norm(), 15.0 + 1e-12);
@@ -108,7 +109,7 @@ TEST(Magnetometer, ClipsAndQuantises) {
   EXPECT_NEAR(reading.z(), 1.2e-6, 1e-15);
 }
 
-/// A body that turns about z while it moves along x.
+/// A body that rotates about z while it moves along x.
 Truth turning_along() {
   Truth truth;
   for (int k = 0; k <= 2000; ++k) {
@@ -147,7 +148,7 @@ TEST(ImuMagnetometer, ReadsTheEarthInItsOwnAxes) {
   ASSERT_EQ(r.record.magnetic_field_t.size(), 100u);
   EXPECT_EQ(r.record.magnetic_field_t, r.truth.magnetic_field_t);
   for (std::size_t i = 0; i < 100; ++i) {
-    // mean over a turn of 0.06 rad about z, read half a step behind the middle of the window; y of I is z of B
+    // mean over a rotation of 0.06 rad about z, read half a step behind the middle of the window; y of I equals z of B
     const double heading = 6.0 * (0.01 * (static_cast<double>(i) + 0.5) + 0.00025);
     const Vector3d& earth = r.record.earth_field_W_t;
     const Vector3d in_B(earth.x() * std::cos(heading), -earth.x() * std::sin(heading), earth.z());
@@ -167,7 +168,7 @@ TEST(ImuMagnetometer, SourcesDisturbTheFieldBesideThePath) {
   }
   EXPECT_GT(largest, 1e-6);            // a dipole of 5 A m^2 at a metre makes 0.5 to 1 uT
   EXPECT_LT(largest, 2e-4);            // 15 A m^2 at 0.4 m makes 47 uT
-  EXPECT_GT(largest, 3.0 * smallest);  // local
+  EXPECT_GT(largest, 3.0 * smallest);  // a local disturbance
   EXPECT_EQ(disturbed.record.earth_field_W_t, calm.record.earth_field_W_t);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Devices that sample: windows, delays and rates of their own.
+// Tests devices that sample: windows, delays and separate rates.
 #include "sim/imu/sampling.hpp"
 
 #include <gmock/gmock.h>
@@ -38,12 +38,12 @@ TEST(Sampling, IsOffWithoutAWindowOrARateOfItsOwn) {
 TEST(Sampling, AWindowIsThePlainMeanOfItsLastSteps) {
   Sampling four = sampling({.window_s = 0.002});
   four.add(step(8.0, 0b001));
-  EXPECT_EQ(four.output().delivered.x(), 8.0);  // before the window is full: of what there is
+  EXPECT_EQ(four.output().delivered.x(), 8.0);  // before the window is full, the mean of the available values
   for (const double value : {1.0, 2.0, 3.0}) four.add(step(value));
   EXPECT_EQ(four.output().delivered, Vector3d::Constant(3.5));
   EXPECT_EQ(four.output().unclipped, Vector3d::Constant(7.0));
   EXPECT_EQ(four.output().railed, 0b001);
-  four.add(step(6.0, 0b010));  // the 8 has left
+  four.add(step(6.0, 0b010));  // the value 8 has left the window
   EXPECT_EQ(four.output().delivered, Vector3d::Constant(3.0));
   EXPECT_EQ(four.output().railed, 0b010);
 }
@@ -56,7 +56,7 @@ TEST(Sampling, ARateOfItsOwnHoldsTheLastReading) {
     held.add(step(k));
     const double now = held.output().delivered.x();
     if (k > 20 && now != last) {
-      ASSERT_EQ(now, k);  // a new reading is the step's own
+      ASSERT_EQ(now, k);  // a new reading is that of the step
       changes.push_back(k);
     }
     last = now;
@@ -90,7 +90,8 @@ TEST(Sampling, ThePhaseIsDrawn) {
   EXPECT_NE(first_change(1), first_change(2));
 }
 
-/// Turns about z by a rate that rises by 10 rad/s^2 from 1 rad/s; pushed along x by as many m/s^2.
+/// Rotates about z at a rate that increases by 10 rad/s^2 from 1 rad/s; accelerates along x with the same numbers in
+/// m/s^2.
 Truth ramp(double duration_s) {
   Truth truth;
   for (int k = 0; k <= std::lround(duration_s * kSteps_hz); ++k) {
@@ -126,7 +127,8 @@ TEST(SampledDevice, AWindowAsLongAsTheOutputsSaysTheSameAboutOneAxis) {
 }
 
 TEST(SampledDevice, WindowsAndDelaysOfGyroAndAccelerometerAreTenMillisecondsApart) {
-  // over a ramp a mean over T is late by T / 2, and a delay by itself: the truth is the mean over the output's 10 ms
+  // for a linear signal, a mean over T is late by T / 2, and a delay by its value; the truth is the mean over the
+  // output's 10 ms
   const SimulatedImu r = sampled_ramp({{"gyro_window_s", 0.03}, {"accel_window_s", 0.0005}, {"accel_delay_s", 0.01}});
   const SimulatedImu late = sampled_ramp({{"gyro_delay_s", 0.01}});
   for (std::size_t k = 5; k < 100; ++k) {
@@ -139,7 +141,7 @@ TEST(SampledDevice, WindowsAndDelaysOfGyroAndAccelerometerAreTenMillisecondsApar
 }
 
 TEST(SampledDevice, ALogFasterThanItsSensorRepeats) {
-  // 40 readings a second in a log of 100: 60 % repeat the one before
+  // 40 readings per second in a log of 100 Hz: 60 % repeat the previous one
   const SimulatedImu r = sampled_ramp({{"gyro_update_hz", 40.0}, {"accel_update_hz", 25.0}});
   int gyro = 0, accel = 0;
   for (std::size_t k = 4; k < 100; ++k) {
@@ -147,7 +149,7 @@ TEST(SampledDevice, ALogFasterThanItsSensorRepeats) {
     accel += r.record.accel_m_s2[k] == r.record.accel_m_s2[k - 1];
     ASSERT_EQ(r.truth.gyro_unclipped_rad_s[k] == r.truth.gyro_unclipped_rad_s[k - 1],
               r.record.gyro_rad_s[k] == r.record.gyro_rad_s[k - 1]);
-    ASSERT_NE(r.truth.rate_rad_s[k], r.truth.rate_rad_s[k - 1]);  // the truth goes on
+    ASSERT_NE(r.truth.rate_rad_s[k], r.truth.rate_rad_s[k - 1]);  // the truth continues to change
   }
   EXPECT_NEAR(gyro / 96.0, 0.60, 0.02);
   EXPECT_NEAR(accel / 96.0, 0.75, 0.02);
@@ -169,7 +171,7 @@ TEST(SampledDevice, HeldReadingsKeepTheirFlags) {
 
 TEST(SampledDevice, TheSpreadOfTheGSensitivityIsDrawn) {
   const SimulatedImu none = sampled_ramp({}), r = sampled_ramp({{"gyro_g_sensitivity_spread_s_m", 1e-3}});
-  // about x and y nothing turns: what is read there is column z of the matrix times the force
+  // there is no rotation about x and y: the readings of these axes are column z of the matrix times the force
   const Vector3d first = r.record.gyro_rad_s[10] - none.record.gyro_rad_s[10];
   const Vector3d last = r.record.gyro_rad_s[90] - none.record.gyro_rad_s[90];
   const double more = r.truth.specific_force_m_s2[90].z() / r.truth.specific_force_m_s2[10].z();

@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 inline constexpr double kGravity_m_s2 = 9.80665;
 
-/// What a device says, and what is true of it.
+/// Readings of a device, and their truth.
 struct SimulatedImu {
   ImuRecord record;
   ImuTruth truth;

@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Amplitude of the low-pass's answer to a sine, after its transient.
+/// Returns the amplitude of the low-pass's response to a sine, after its transient.
 double gain(double cutoff_hz, double tone_hz) {
   constexpr double kRate_hz = 2000.0;
   LowPass low_pass(cutoff_hz, kRate_hz);
   double in_phase = 0.0, quadrature = 0.0;
-  constexpr int kFirst = 2000, kCount = 2000;  // one second: whole periods of whole-number tones
+  constexpr int kFirst = 2000, kCount = 2000;  // one second, which contains whole periods for integer frequencies
   for (int k = 0; k < kFirst + kCount; ++k) {
     const double phase = 2.0 * std::numbers::pi * tone_hz * k / kRate_hz;
     const double y = low_pass(Vector3d(std::sin(phase), 0, 0)).x();
@@ -36,7 +36,7 @@ TEST(LowPassStage, OffReturnsTheInputBitForBit) {
 }
 
 TEST(LowPassStage, HasTheGainOfASecondOrderButterworth) {
-  // bilinear transform with the cutoff prewarped: |H|^2 = 1 / (1 + (tan(pi f / fs) / tan(pi fc / fs))^4)
+  // bilinear transform with prewarped cutoff: |H|^2 = 1 / (1 + (tan(pi f / fs) / tan(pi fc / fs))^4)
   for (const double tone_hz : {10.0, 100.0, 415.0, 700.0}) {
     const double ratio = std::tan(std::numbers::pi * tone_hz / 2000.0) / std::tan(std::numbers::pi * 415.0 / 2000.0);
     EXPECT_NEAR(gain(415.0, tone_hz), 1.0 / std::sqrt(1.0 + std::pow(ratio, 4)), 1e-9) << tone_hz << " Hz";
@@ -108,7 +108,7 @@ TEST(RangeStage, ChangesEachAxisWithHysteresis) {
     return range.pick(1.0, 0.1);
   };
   EXPECT_EQ(after({1.0, 3.0, -2.5}), Vector3d(0.1, 1.0, 1.0));
-  EXPECT_EQ(after({1.95, 1.95, -1.7}), Vector3d(0.1, 1.0, 0.1));  // y: not yet below 1.8; z is
+  EXPECT_EQ(after({1.95, 1.95, -1.7}), Vector3d(0.1, 1.0, 0.1));  // y: not yet below 1.8, but z is
   EXPECT_EQ(after({-2.01, 1.79, -1.95}), Vector3d(1.0, 0.1, 0.1));
 }
 

@@ -43,7 +43,7 @@ TEST(TimeStamps, JitterHasItsSizeAndStampsRise) {
     ASSERT_LE(std::abs(error_s), 3 * 0.0016 + 1e-9);
     sum += error_s * error_s;
   }
-  // cutting at three standard deviations takes 0.7 % of it; 5 standard errors are 2.5 %
+  // the limit of three standard deviations reduces it by 0.7 %; 5 standard errors are 2.5 %
   EXPECT_NEAR(std::sqrt(sum / kCount), 0.0016, 0.032 * 0.0016);
 }
 

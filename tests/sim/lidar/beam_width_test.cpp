@@ -18,7 +18,7 @@ using testing::resting;
 constexpr int kRays = 16;
 constexpr double kHalfAngle_rad = 5e-3;
 
-/// One beam along x, ten milliradians wide.
+/// A beam along x with a width of ten milliradians.
 SensorSpec wide_beam(double echo_length_m) {
   SensorSpec sensor = testing::exact_lidar_of("rosette_lidar");
   for (const char* name : {"prism_1_amplitude", "prism_2_amplitude", "mixed_amplitude"}) sensor.values.set(name, 0.0);
@@ -42,7 +42,7 @@ Cast cast_at(const std::string& walls, double echo_length_m) {
               resting(0.1));
 }
 
-/// The rays' tangents, written out again: equal shares of the ellipse by the golden angle.
+/// Reference for the rays' tangents: equal shares of the ellipse by the golden angle.
 Vector3d ray(int k) {
   const double radius = std::sqrt((k + 0.5) / kRays), angle = k * M_PI * (3.0 - std::sqrt(5.0));
   return {1.0, radius * std::cos(angle) * std::tan(kHalfAngle_rad),
@@ -81,13 +81,13 @@ TEST(BeamWidth, AnEdgeGivesAMixedReturnBetweenItsSurfaces) {
     near_rays += near;
     both.add((near ? kNear_m : kFar_m) * d.norm(), near ? 0.3 : 0.8, 1.0 / d.norm());
   }
-  ASSERT_GT(near_rays, 2);  // both surfaces take part
+  ASSERT_GT(near_rays, 2);  // both surfaces must contribute
   ASSERT_LT(near_rays, 14);
   ASSERT_EQ(out.record.range_m.size(), 10000u);
   const double range = both.moment / both.energy;
   EXPECT_NEAR(out.record.range_m[0], range, 1e-5);
   EXPECT_NEAR(out.record.intensity[0], both.energy / kRays * range * range, 1e-5);
-  // the exact hit lies on a surface, that of the stronger rays: bright and far
+  // the exact hit is on the surface of the stronger rays, which is bright and far
   EXPECT_EQ(out.truth.surface_id[0], 1);
   EXPECT_NEAR(out.truth.hit_W_m[0].x(), kFar_m, 1e-5);
 }
@@ -108,7 +108,7 @@ TEST(BeamWidth, SurfacesFartherApartThanTheEchoDoNotMix) {
   ASSERT_EQ(out.record.range_m.size(), 10000u);
   EXPECT_NEAR(out.record.range_m[0], stronger.moment / stronger.energy, 1e-5);
   EXPECT_EQ(out.truth.surface_id[0], near.energy > far.energy ? 0 : 1);
-  // negative control: a longer echo mixes the two
+  // negative control: a longer echo merges both surfaces
   const Cast mixed = cast_at(wall(kEdge_m, 9, kNear_m, 0.3) + wall(-9, 9, kFar_m, 0.8), 1.5);
   EXPECT_GT(std::abs(mixed.record.range_m.at(0) - out.record.range_m[0]), 0.05);
 }

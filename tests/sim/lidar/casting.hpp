@@ -13,7 +13,7 @@
 #include "sim/lidar/lidar_simulation.hpp"
 #include "sim/lidar/test_worlds.hpp"
 
-/// A lidar, a motion and a closed room whose ranges are known in closed form.
+/// A lidar, a motion and a closed room with closed-form ranges.
 namespace tumble::sim::testing {
 
 inline constexpr std::int64_t kPeriod_ns = 500000;
@@ -24,7 +24,7 @@ struct Motion {
   MotionTrack track() const { return {kPeriod_ns, p_WB_m, q_WB}; }
 };
 
-/// Constant velocity and constant rate about a fixed axis, which the interpolation follows exactly.
+/// Constant velocity and constant rate about a fixed axis, for which the interpolation is exact.
 inline Motion moving(double duration_s, const Eigen::Vector3d& start_m, const Eigen::Vector3d& velocity_m_s,
                      const Eigen::Vector3d& rate_rad_s) {
   Motion motion;
@@ -55,13 +55,13 @@ inline Cast cast(const engine::World& world, const SensorSpec& sensor, const Mot
   return out;
 }
 
-/// A closed room seen from its inside: 6 m x 10 m x 4 m.
+/// A closed room seen from inside: 6 m x 10 m x 4 m.
 inline const Eigen::Vector3d kRoom(3.0, 5.0, 2.0);
 inline engine::World room() {
   return world_of("<mujoco><worldbody><geom name='room' type='box' size='3 5 2'/></worldbody></mujoco>");
 }
 
-/// Closed form of the range inside of the room.
+/// Returns the closed-form range inside of the room.
 inline double room_range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   double range = 1e9;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every option of a lidar: off means exactly the ideal signal, on changes it.
+// Tests every option of a lidar: off gives exactly the ideal signal, on changes the signal.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ using Settings = std::vector<std::pair<const char*, double>>;
 struct Option {
   const char* name;
   Settings on;
-  Settings off;  ///< switched off, with its auxiliary IMUs at values that would show
+  Settings off;  ///< option off, with its related numbers at visible values
 };
 
 void PrintTo(const Option& option, std::ostream* out) {
@@ -38,7 +38,7 @@ void PrintTo(const Option& option, std::ostream* out) {
 
 class LidarOption : public ::testing::TestWithParam<Option> {};
 
-/// A room with a step in it, a robot with a post.
+/// A room with a step, and a robot with a post.
 engine::World stage() {
   return testing::world_of(
       "<mujoco><worldbody><geom type='box' size='3 5 2'/><geom type='box' size='0.5 0.5 2' pos='1.5 1.5 0'/>"
@@ -101,13 +101,13 @@ TEST(RosetteLidar, Mid40IsTheMiddleUnitOfAMid100) {
   ASSERT_EQ(three.record.range_m.size(), 60000u);
   for (std::size_t i = 0; i < 20000; ++i) {
     ASSERT_EQ(three.record.ring[3 * i + 1], 1);
-    // the unit's place in the packets differs, and with it the last bit
+    // the position of the unit in the packets differs, and with it the last bit
     EXPECT_LT((one.record.position_L_m[i] - three.record.position_L_m[3 * i + 1]).norm(), 2e-6f);
     EXPECT_EQ(one.record.offset_ns[i], three.record.offset_ns[3 * i + 1]);
   }
 }
 
-/// 38.4 degrees across for one unit; three at 30 degrees make 98.4 by 38.4 (data sheet).
+/// One unit has a field of 38.4 degrees; three units at 30 degrees have 98.4 by 38.4 degrees (data sheet).
 TEST(RosetteLidar, FieldOfViewIsTheDataSheets) {
   const Cast out = cast(testing::room(), testing::exact_lidar_of("rosette_lidar"), resting(1.0));
   double left = 0.0, right = 0.0, up = 0.0;
@@ -118,17 +118,18 @@ TEST(RosetteLidar, FieldOfViewIsTheDataSheets) {
     right = std::min(right, azimuth);
     up = std::max<double>(up, std::atan2(p.z(), std::hypot(p.x(), p.y())));
   }
-  // the fit of the pattern reaches 19.2 degrees within its 0.15
+  // the fitted pattern reaches 19.2 degrees within its error of 0.15
   EXPECT_NEAR(left * 180.0 / M_PI, 49.2, 0.15);
   EXPECT_NEAR(right * 180.0 / M_PI, -49.2, 0.15);
   EXPECT_NEAR(up * 180.0 / M_PI, 19.2, 0.15);
 }
 
-/// Sequences that a sample of the motion falls into turn at two rates: each firing has its own pose there too.
+/// A firing sequence that contains a sample of the motion has two rates; each firing has its own pose also there.
 TEST(SpinningLidar, DeskewIdentityThroughImpacts) {
   Stream chance(7, "test.motion");
   Motion motion = resting(0.2);
-  for (std::size_t i = 1; i < motion.q_WB.size(); ++i) {  // up to 20 rad/s and 5 m/s, other ones every half millisecond
+  // up to 20 rad/s and 5 m/s, with new values every half millisecond
+  for (std::size_t i = 1; i < motion.q_WB.size(); ++i) {
     const Vector3d turn = 0.01 * Vector3d(chance.uniform(-1, 1), chance.uniform(-1, 1), chance.uniform(-1, 1));
     motion.q_WB[i] = motion.q_WB[i - 1] * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     motion.p_WB_m[i] =

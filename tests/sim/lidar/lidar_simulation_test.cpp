@@ -41,7 +41,7 @@ TEST(LidarParameters, ResolveAndBounds) {
   EXPECT_EQ(spinning_lidar_parameters().size(), 40u);
 }
 
-/// The published formula of the rig's driver, written out again, for a lidar at rest.
+/// Reference: the published formula of the rig's driver, for a stationary lidar.
 TEST(SpinningLidar, RestingInARoomIsExact) {
   SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
   const Vector3d at(0.4, -1.3, 0.2);
@@ -70,7 +70,7 @@ TEST(SpinningLidar, RestingInARoomIsExact) {
   EXPECT_LT(worst_position_m, 5e-6);
 }
 
-/// Negative control of the test above: other published mirror offsets, turning the other way, are seen.
+/// Negative control of the test above: other published mirror offsets with opposite rotation are detected.
 TEST(SpinningLidar, AnotherMirrorOrSenseIsFound) {
   const Cast right = cast(room(), testing::exact_lidar_of("spinning_lidar"), resting(0.1, Vector3d(0.4, -1.3, 0.2)));
   const auto shift_m = [&](const char* name, double value) {
@@ -127,7 +127,7 @@ TEST(SpinningLidar, FaultyDriverStampsCompressPackets) {
   std::uint32_t worst_ns = 0;
   for (std::size_t i = 0; i < 32000; ++i)
     worst_ns = std::max(worst_ns, right.record.offset_ns[i] - faulty.record.offset_ns[i]);
-  EXPECT_EQ(worst_ns, 600000u);  // the published error: up to 0.6 ms
+  EXPECT_EQ(worst_ns, 600000u);  // the published error of up to 0.6 ms
   EXPECT_EQ(faulty.record.offset_ns[24 * 16], right.record.offset_ns[24 * 16]);
 }
 
@@ -196,7 +196,7 @@ TEST(RosetteLidar, FollowsTheFormula) {
   }
 }
 
-/// Deskewing with the true pose at each point's time puts every point onto the walls; one pose for all does not.
+/// Deskewing with the true pose at each point's time moves every point onto the walls; a single pose does not.
 TEST(LidarSimulation, DeskewIdentity) {
   const Isometry3d T_BL = mounting();
   const Vector3d rate(9.0, -6.0, 14.0);  // 17.7 rad/s
@@ -280,7 +280,7 @@ TEST(LidarSimulation, SkyGivesNoPoint) {
   const engine::World plane =
       testing::world_of("<mujoco><worldbody><geom type='plane' size='0 0 1'/></worldbody></mujoco>");
   const Cast out = cast(plane, testing::exact_lidar_of("spinning_lidar"), resting(0.1, Vector3d(0, 0, 1)));
-  // the eight channels that look down hit the unbounded plane, none of the others does
+  // the eight downward channels hit the unbounded plane, all others miss
   EXPECT_EQ(out.record.range_m.size(), 16000u);
   for (const std::uint16_t ring : out.record.ring) EXPECT_LT(ring, 8);
   const engine::World nothing = testing::world_of("<mujoco><worldbody><light/></worldbody></mujoco>");
@@ -288,7 +288,7 @@ TEST(LidarSimulation, SkyGivesNoPoint) {
   EXPECT_EQ(none.record.sweep_first, (std::vector<std::uint64_t>{0, 0, 0}));
 }
 
-/// Half of the returns come back from the wall whose signal is one, by the definition of detection_range_m.
+/// Half of the returns come from the wall with signal one, by the definition of detection_range_m.
 TEST(LidarSimulation, DropOutByRangeAndReflectivity) {
   SensorSpec sensor = testing::lidar_of("rosette_lidar");
   sensor.values.set("units", 1.0);
@@ -326,7 +326,7 @@ TEST(LidarSimulation, IntensityIsReflectivityTimesCosine) {
   }
 }
 
-/// The robot turns and its post turns with it: the post hides the same firings whatever the pose.
+/// The robot and its post rotate together, so the post hides the same firings for any pose.
 TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
   const engine::World world = testing::world_of(
       "<mujoco><worldbody><geom type='box' size='3 5 2'/>"
@@ -350,7 +350,7 @@ TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
     EXPECT_NEAR(std::hypot(p.x() - 0.3f, p.y()), 0.02, 1e-5);
     EXPECT_LT((turned.truth.hit_W_m[i] - Eigen::Vector3f(0.3f, 0.2f, 0.1f)).norm(), 0.7f);
   }
-  // beams run radially from the axis: the post spans 2 asin(0.02 / 0.3) = 0.1334 rad of the turn, in all 16 channels
+  // beams are radial from the axis: the post covers 2 asin(0.02 / 0.3) = 0.1334 rad of the rotation, in all 16 channels
   EXPECT_NEAR(static_cast<double>(cage_hits), 2 * std::asin(0.02 / 0.3) / (2 * M_PI) * 32000, 16);
   sensor.values.set("sees_own_cage", 0.0);
   for (const std::int32_t id : cast(world, sensor, resting(0.1)).truth.surface_id) ASSERT_EQ(id, 0);

@@ -28,8 +28,8 @@ Vector3d random_direction(Stream& chance) {
   return Vector3d(chance.normal(), chance.normal(), chance.normal()).normalized();
 }
 
-/// Random rays through the world, by our mirror and by the engine. Rays that graze are left out of the surface
-/// comparison: there a change of the origin within float resolution decides.
+/// Casts random rays through the world, by our copy and by the engine. Grazing rays are not compared by surface,
+/// because a change of the origin within float resolution is decisive.
 Disagreement compare_with_engine(const engine::World& world, const SceneGeometry& geometry, int packets) {
   const engine::DataPtr data(mj_makeData(world.model.get()));
   mj_forward(world.model.get(), data.get());
@@ -73,13 +73,13 @@ TEST(RayScene, AgreesWithTheEngineOnAllGeomTypes) {
   const Disagreement d = compare_with_engine(world, static_geometry(world, HeightFieldSides::closed), 1250);
   EXPECT_EQ(d.compared, 20000);
   EXPECT_GT(d.hits, 8000);
-  // measured: 0 and 0 of 20 000; two are left for rays that graze an edge
+  // measured: 0 and 0 of 20 000; two are allowed for rays that graze an edge
   EXPECT_LE(d.different_surface, 2);
   EXPECT_LE(d.farther_than_1_mm, 2);
 }
 
-/// Each geom type on its own and many times over, from all around and from inside, above a plane without edge; every
-/// type that a static world can have but the signed-distance plugins, which are refused.
+/// Tests each geom type alone and many times, from all directions and from inside, above an unbounded plane. Covers all
+/// types of a static world except signed-distance plugins, which are rejected.
 class EachGeomType : public ::testing::TestWithParam<int> {};
 
 engine::World crowd_of(int type) {
@@ -113,8 +113,8 @@ TEST_P(EachGeomType, AgreesWithTheEngine) {
   const Disagreement d = compare_with_engine(world, static_geometry(world, HeightFieldSides::closed), 500);
   EXPECT_EQ(d.compared, 8000);
   EXPECT_GT(d.hits_of_type[static_cast<std::size_t>(GetParam())], 500);
-  EXPECT_GT(d.hits_of_type[mjGEOM_PLANE], 500);  // the floor behind them
-  // one is left for a ray that grazes an edge
+  EXPECT_GT(d.hits_of_type[mjGEOM_PLANE], 500);  // the floor behind the geoms
+  // one is allowed for a ray that grazes an edge
   EXPECT_LE(d.different_surface, 1);
   EXPECT_LE(d.farther_than_1_mm, 1);
 }
@@ -185,8 +185,8 @@ void fill(Stream& chance, RayPacket& rays, int i) {
   rays.surface_id[i] = kNothing;
 }
 
-// what lies in lanes that are not used, and which rays share a packet, changes no bit: a kernel that looked at either
-// would give other recordings on other CPUs
+// contents of unused lanes and the grouping of rays into packets must change no bit; otherwise, recordings would differ
+// between CPUs
 TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
   const engine::World world = testing::rough_world(60, 60);
   const RayScene scene(static_geometry(world, HeightFieldSides::closed));
@@ -221,7 +221,7 @@ TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
   EXPECT_GT(hits, 1000);
 }
 
-/// Closed forms: an unbounded plane at an angle, a sphere off the axis, a box face.
+/// Closed forms: an unbounded plane at an angle, a sphere off the axis, a face of a box.
 TEST(RayScene, AnalyticPlaneSphereBox) {
   SceneGeometry geometry;
   Shape plane{ShapeKind::plane, Vector3d::Zero(), Eigen::Matrix3d::Identity(), {0.0, 0.0, -2.0}};
@@ -254,8 +254,8 @@ TEST(RayScene, AnalyticPlaneSphereBox) {
   }
 }
 
-/// Every primitive against its own implicit surface: a hit lies on it, nothing of it lies before the hit, a miss is
-/// one.
+/// Compares every primitive with its implicit surface: a hit is on the surface, no part of the surface is before the
+/// hit, and a miss is a true miss.
 TEST(RayScene, AnalyticPrimitivesHoldTheirEquation) {
   Stream chance(31, "test.primitives");
   for (const ShapeKind kind :

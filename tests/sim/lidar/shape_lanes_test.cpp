@@ -36,7 +36,7 @@ Vector3d normals(Stream& chance) {
   return {chance.normal(), chance.normal(), chance.normal()};
 }
 
-/// Some along the axes of the world, where a box that is not turned is met along its sides.
+/// Some rays are along the world axes, so they may be parallel to the sides of an unrotated box.
 EightRays random_rays(Stream& chance) {
   EightRays rays;
   for (std::size_t i = 0; i < kShapeLanes; ++i) {
@@ -56,7 +56,7 @@ Shape random_shape(Stream& chance, ShapeKind kind, int number) {
   Shape shape;
   shape.kind = kind;
   shape.size_m = Vector3d(chance.uniform(0.1, 3.0), chance.uniform(0.1, 3.0), chance.uniform(0.1, 3.0));
-  if (kind == ShapeKind::plane && number % 3 == 0) shape.size_m.x() = 0.0;  // without edge
+  if (kind == ShapeKind::plane && number % 3 == 0) shape.size_m.x() = 0.0;  // unbounded
   shape.p_FS_m = normals(chance);
   const Vector3d axis = normals(chance).normalized();
   if (number % 4 != 0) shape.R_FS = Eigen::AngleAxisd(chance.uniform(0.0, 3.0), axis).toRotationMatrix();
@@ -65,7 +65,7 @@ Shape random_shape(Stream& chance, ShapeKind kind, int number) {
 
 class ShapeLanes : public ::testing::TestWithParam<ShapeKind> {};
 
-/// Exactly: a draw's digest is of these bits.
+/// Exact comparison, because the digest of a draw depends on these bits.
 TEST_P(ShapeLanes, AreCastRayOfEach) {
   Stream chance(7, "test.shape_lanes");
   int met = 0;
@@ -85,7 +85,7 @@ TEST_P(ShapeLanes, AreCastRayOfEach) {
           << "shape " << n << ", ray " << i;
     }
   }
-  EXPECT_GT(met, 1000);  // of 32 000; a plane is met from its front alone
+  EXPECT_GT(met, 1000);  // of 32 000; a plane is hit only from its front
 }
 
 INSTANTIATE_TEST_SUITE_P(, ShapeLanes,

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Points all over a shape's surface, by casting at it from far away in every direction and from its centre.
+/// Points on the whole surface of a shape, by casting rays at it from far away in every direction, and from its centre.
 std::vector<Vector3d> surface_samples(const Shape& shape, int count) {
   Stream chance(5, "test.samples");
   std::vector<Vector3d> out;
@@ -31,7 +31,7 @@ std::vector<Vector3d> surface_samples(const Shape& shape, int count) {
   return out;
 }
 
-/// No sample of the surface is nearer than the distance, and a dense sampling comes close to it.
+/// No sample of the surface is nearer than the distance, and a dense sampling is close to it.
 TEST(SurfaceDistance, PrimitivesAgainstDenseSamples) {
   Stream chance(8, "test.shapes");
   for (const ShapeKind kind :
@@ -48,7 +48,8 @@ TEST(SurfaceDistance, PrimitivesAgainstDenseSamples) {
       for (const Vector3d& s : samples) nearest = std::min(nearest, (s - point).norm());
       const double distance = surface_distance(shape, point);
       EXPECT_LE(distance, nearest + 1e-9) << "kind " << static_cast<int>(kind);
-      // 40 000 samples on about 4 m^2 lie 1 cm apart, thinner near edges: the nearest misses by up to 3 cm when close
+      // 40 000 samples on about 4 m^2 are 1 cm apart, farther near edges: close to the surface, the nearest sample is
+      // up to 3 cm off
       EXPECT_GE(distance, nearest - 0.03) << "kind " << static_cast<int>(kind);
     }
     for (int i = 0; i < 100; ++i) EXPECT_NEAR(surface_distance(shape, samples[static_cast<std::size_t>(i)]), 0.0, 1e-7);
@@ -60,12 +61,12 @@ TEST(SurfaceDistance, EllipsoidOnItsSymmetryPlanes) {
   EXPECT_NEAR(surface_distance(shape, Vector3d::Zero()), 1.0, 1e-9);
   EXPECT_NEAR(surface_distance(shape, Vector3d(0.0, 5.0, 0.0)), 3.0, 1e-9);
   EXPECT_NEAR(surface_distance(shape, Vector3d(0.25, 0.0, 0.0)), 0.75, 1e-9);
-  // on the long axis inside the evolute the nearest point lies off the axis: z = 9 * 0.5 / 8, x = sqrt(1 - z^2 / 9)
+  // on the long axis inside the evolute, the nearest point is off the axis: z = 9 * 0.5 / 8, x = sqrt(1 - z^2 / 9)
   const double z = 9.0 * 0.5 / 8.0, x = std::sqrt(1.0 - z * z / 9.0);
   EXPECT_NEAR(surface_distance(shape, Vector3d(0.0, 0.0, 0.5)), std::hypot(x, z - 0.5), 1e-9);
 }
 
-/// The hierarchy against a loop over every triangle and shape.
+/// Compares the hierarchy with a loop over every triangle and shape.
 TEST(SurfaceDistance, SceneAgainstBruteForce) {
   const engine::World world = testing::rough_world(40, 30);
   const SceneGeometry geometry = static_geometry(world, HeightFieldSides::open);
@@ -91,7 +92,7 @@ TEST(SurfaceDistance, SceneAgainstBruteForce) {
   EXPECT_GT(within, 100);
 }
 
-/// The closed base of a height field is for rays: a point under the ground must not lie "near" its underside.
+/// The closed base of a height field is only for rays: a point below the ground must not be "near" its underside.
 TEST(SurfaceDistance, TheUndersideIsNoSurface) {
   const engine::World world = testing::world_of(
       "<mujoco><asset><hfield name='h' nrow='3' ncol='3' size='5 5 1 0.5'/></asset>"

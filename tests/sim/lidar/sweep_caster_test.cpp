@@ -19,13 +19,13 @@ std::atomic<long> allocation_count{0};
 
 }  // namespace
 
-// The whole test program counts its allocations, for the test below that says: none.
+// The test program counts all allocations, because a test below requires none.
 void* operator new(std::size_t bytes) {
   ++allocation_count;
   if (void* memory = std::malloc(bytes)) return memory;
   throw std::bad_alloc();
 }
-// GCC takes the pair below, inlined, for a mismatch
+// GCC would report the inlined pair below as mismatched
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void operator delete(void* memory) noexcept {
   std::free(memory);
@@ -61,7 +61,7 @@ TEST(SweepCaster, ASweepAllocatesNothing) {
   EXPECT_EQ(allocation_count - before, 1) << "negative control " << control.size();
 }
 
-/// Against the generator and the transform written plainly in double precision.
+/// Reference: generator and transform in plain double precision.
 TEST(LaneNoise, IsPhiloxAndBoxMuller) {
   const Stream stream(12, "lidar.range");
   const LaneNoiseSource source(stream);
@@ -84,7 +84,7 @@ TEST(LaneNoise, IsPhiloxAndBoxMuller) {
       ASSERT_EQ(noise.uniform[i + kLanes / 2], static_cast<float>(((word[3] >> 9) + 0.5) * 0x1p-23));
     }
   }
-  // single precision of numbers up to five; near a uniform of one the logarithm loses digits. Measured 1.6e-6
+  // single precision of numbers up to five; for a uniform number near one, the logarithm loses digits. Measured 1.6e-6
   EXPECT_LT(worst, 2e-5);
 }
 
@@ -110,7 +110,7 @@ struct Verdicts {
   int hit_packets = 0, refused_hits = 0, packets = 0, admitted = 0;
 };
 
-/// The mask of one cage against casting every packet at another.
+/// Compares the mask of a cage with casting every packet at a second cage.
 Verdicts compare(const SceneGeometry& masked, const SceneGeometry& real, const SpinningPattern& pattern) {
   const CageMask mask(masked, pattern);
   const RayScene scene(real);

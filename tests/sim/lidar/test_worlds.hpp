@@ -10,7 +10,7 @@
 
 namespace tumble::sim::testing {
 
-/// Compiles MJCF and takes every geom of the world body as a surface, in order; a body named "robot" is the robot.
+/// Compiles MJCF. Every geom of the world body is a surface, in order; a body named "robot" is the robot.
 inline engine::World world_of(const std::string& mjcf) {
   char error[1000] = "";
   mjSpec* spec = mj_parseXMLString(mjcf.c_str(), nullptr, error, sizeof error);
@@ -33,7 +33,8 @@ inline engine::World world_of(const std::string& mjcf) {
   return world;
 }
 
-/// A height field of `cells` + 1 nodes a side over 40 m x 40 m with 2 m of rough relief, and `primitives` of all kinds.
+/// A height field with `cells` + 1 nodes per side over 40 m x 40 m with 2 m of rough relief, and `primitives` of all
+/// kinds.
 inline engine::World rough_world(int cells, int primitives) {
   static constexpr const char* kKinds[] = {"sphere", "capsule", "ellipsoid", "cylinder", "box"};
   Stream chance(11, "test.world");
@@ -70,7 +71,7 @@ inline SensorSpec lidar_of(const std::string& kind) {
   return sensor;
 }
 
-/// The same with every error off and a reach of 1000 m.
+/// The same lidar with all errors off and a range of 1000 m.
 inline SensorSpec exact_lidar_of(const std::string& kind) {
   SensorSpec sensor = lidar_of(kind);
   sensor.values.set("range_noise_m", 0.0);

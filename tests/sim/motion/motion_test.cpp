@@ -53,9 +53,9 @@ TEST(Throw, LeavesTheHandWithTheStatedVelocityAndSpin) {
   const Truth truth = simulate(built(situation)).truth;
   const std::size_t released = 1601;  // 0.5 s of rest and 0.3 s of throw
   const Vector3d expected(3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 4.0);
-  EXPECT_NEAR((truth.v_WB_m_s[released] - expected).norm(), 0.0, 0.02);  // 1 mm of sag of the hand; one step of gravity
+  EXPECT_NEAR((truth.v_WB_m_s[released] - expected).norm(), 0.0, 0.02);  // the hand sags by 1 mm; one step of gravity
   EXPECT_NEAR((truth.w_WB_B_rad_s[released] - Vector3d(0, 0, 9.0)).norm(), 0.0, 0.02);
-  // then a parabola: no force at the centre of mass until it lands, 0.8 s later
+  // then a parabola without force at the centre of mass until the landing, 0.8 s later
   EXPECT_NEAR(truth.f_B_m_s2[released + 1000].norm(), 0.0, 1e-6);
   EXPECT_EQ(truth.label[released + 1000], ContactLabel::air);
 }
@@ -123,10 +123,10 @@ TEST(Twirl, SpinsAboutXInStrokesAndKeepsTheGripInTheHand) {
   EXPECT_LE(strokes, 7);
   EXPECT_LT(beside, 1.0);
   EXPECT_LT(farthest, 0.05);
-  EXPECT_LT(largest_step_m_s(truth), 0.05);  // no jump: 100 m/s^2 at most
+  EXPECT_LT(largest_step_m_s(truth), 0.05);  // without jumps: at most 100 m/s^2
 }
 
-// without sway the way is x = a sin u, y = b sin 2u, walked by `loops` of its 2 pi, headed along it
+// without sway, the path is x = a sin u, y = b sin 2u over `loops` times 2 pi, and the heading follows the path
 TEST(Stroll, WalksTheEightAndStopsWhereItShould) {
   Situation situation = moved_by("stroll", 20.0);
   for (const auto& [name, value] :
@@ -140,7 +140,7 @@ TEST(Stroll, WalksTheEightAndStopsWhereItShould) {
   double fastest = 0.0, off = 0.0;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     const Vector3d walked = heading.inverse() * (truth.p_WB_m[k] - truth.p_WB_m[0]);
-    // the curve's own equation: (y / b)^2 = 4 (x / a)^2 (1 - (x / a)^2)
+    // equation of the curve: (y / b)^2 = 4 (x / a)^2 (1 - (x / a)^2)
     const double x = walked.x() / 2.0, y = walked.y();
     off = std::max({off, std::abs(y * y - 4.0 * x * x * (1.0 - x * x)), std::abs(walked.z())});
     fastest = std::max(fastest, truth.v_WB_m_s[k].norm());
@@ -167,16 +167,16 @@ TEST(Swing, LeadsAsideAndUpHoldsAndLetsGo) {
   const Truth truth = simulate(built(situation)).truth;
   const auto at = [](double time_s) { return static_cast<std::size_t>(std::lround(time_s / 0.0005)); };
   EXPECT_EQ((truth.p_WB_m[at(0.49)] - truth.p_WB_m[0]).norm(), 0.0);
-  // held at 2.4 s: what hangs pulls the hand's spring (200 N/m at 0.9 kg) down by at most its weight, 4.4 cm
+  // held at 2.4 s: the weight stretches the spring of the hand (200 N/m at 0.9 kg) by at most 4.4 cm
   const Vector3d held = truth.p_WB_m[at(2.4)] - truth.p_WB_m[0];
   EXPECT_NEAR((held - Vector3d(0.3, 0.0, 0.3)).norm(), 0.0, 0.05);
   EXPECT_LT(truth.v_WB_m_s[at(2.4)].norm(), 0.3);
-  // let go at 2.5 s: it falls, then swings through to the other side, and nothing jumps
+  // released at 2.5 s: the pendulum falls, swings to the other side, without jumps
   EXPECT_LT(truth.p_WB_m[at(2.75)].z(), truth.p_WB_m[at(2.5)].z() - 0.1);
   double least_x_m = 0.0;
   for (std::size_t k = at(2.6); k < at(4.0); ++k) least_x_m = std::min(least_x_m, truth.p_WB_m[k].x());
   EXPECT_LT(least_x_m, -0.1);
-  EXPECT_LT(largest_step_m_s(truth), 0.2);  // 400 m/s^2 at the whip's end
+  EXPECT_LT(largest_step_m_s(truth), 0.2);  // 400 m/s^2 at the end of the whip
   // and again, 4.05 to 4.95 s after the first time
   const double again_m = (truth.p_WB_m[at(6.5)] - truth.p_WB_m[0] - Vector3d(0.3, 0.0, 0.3)).norm();
   EXPECT_LT(again_m, 0.1);

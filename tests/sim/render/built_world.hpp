@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// A world with a robot of this tree's models in it.
+/// A world with a robot from the models of this tree.
 inline BuiltSituation built_world(const std::string& world, const std::string& robot) {
   Situation situation;
   situation.seed = 3;

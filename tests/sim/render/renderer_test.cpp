@@ -30,7 +30,7 @@ View small_view() {
   return view;
 }
 
-/// Pixels near the path's colour: much red and blue, little green.
+/// Counts pixels with a colour near the path's: much red and blue, little green.
 int magenta_pixels(const Picture& picture) {
   int count = 0;
   for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {
@@ -54,7 +54,7 @@ TEST(Renderer, DrawsWorldAndPathWithoutADisplay) {
   ASSERT_EQ(with_path.rgb.size(), 320u * 180u * 3u);
   EXPECT_GT(colours(with_path), 500u);
   EXPECT_GT(magenta_pixels(with_path), 300);
-  // the same frame without the path: the colour is gone
+  // the same frame without the path: its colour is absent
   const Framing framing = frame(view, 0.4, 45.0 * M_PI / 180.0);
   view.paths.clear();
   view.look_at_W_m = framing.look_at_W_m;
@@ -122,7 +122,7 @@ TEST(Framing, APathThatRanAwayDoesNotShrinkTheRobots) {
   EXPECT_GT(frame(view, 0.4, 0.785).distance_m, 1e3) << "without robots the paths are the content";
 }
 
-/// Every point of the content projects into the picture, and the content fills a good part of it.
+/// Every point of the content is within the picture, and the content fills a large part of it.
 TEST(Framing, KeepsTheContentInThePicture) {
   for (const double azimuth : {-2.0, 0.3, 1.9}) {
     View view = small_view();

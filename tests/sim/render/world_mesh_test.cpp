@@ -17,7 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// What the triangles enclose, positive where they turn to the left seen from outside (divergence theorem).
+/// Returns the volume within the triangles; positive if they are counterclockwise seen from outside (divergence
+/// theorem).
 double volume(const Tessellation& mesh) {
   double sum = 0.0;
   for (const auto& triangle : mesh.triangles) {
@@ -47,11 +48,11 @@ TEST(Tessellation, EnclosesTheVolumeOfThePrimitive) {
       {shape_of(ShapeKind::capsule, {r, h, 0}), 2 * pi * r * r * h + 4.0 / 3.0 * pi * r * r * r}};
   for (const auto& [shape, expected] : cases) {
     const Tessellation fine = tessellate(shape, 128, 1.0), coarse = tessellate(shape, 8, 1.0);
-    // an inscribed polygon of n corners has 1 - 2/3 (pi / n)^2 of the circle's area, and a ball loses twice that
+    // an inscribed polygon of n corners has 1 - 2/3 (pi / n)^2 of the circle's area; a ball loses twice this share
     EXPECT_NEAR(volume(fine), expected, 1.5e-3 * expected) << static_cast<int>(shape.kind);
     EXPECT_GT(volume(coarse), 0.6 * expected) << static_cast<int>(shape.kind);
     EXPECT_LE(volume(coarse), (1.0 + 1e-6) * expected) << "inscribed";
-    // negative control: one triangle the wrong way round is noticed
+    // negative control: one reversed triangle is detected
     Tessellation wrong = fine;
     for (auto& triangle : wrong.triangles) std::swap(triangle[0], triangle[1]);
     EXPECT_LT(volume(wrong), 0.0);
@@ -87,7 +88,7 @@ TEST(WorldMesh, LiesOnTheSurfaceThatMapsAreScoredBy) {
     const std::vector<float> distances = surface.distances(part.vertices_m, 1.0f);
     EXPECT_LT(*std::max_element(distances.begin(), distances.end()), 1e-3f);
   }
-  // negative control: a field moved by a hand's breadth is not on it
+  // negative control: a moved height field does not match
   std::vector<Vector3f> moved = field->vertices_m;
   for (Vector3f& vertex : moved) vertex.z() += 0.1f;
   const std::vector<float> off = surface.distances(moved, 1.0f);
@@ -99,7 +100,7 @@ TEST(WorldMesh, OfAPlaneIsAFieldOfOneCellThatLooksUp) {
   const auto floor = std::find_if(parts.begin(), parts.end(), [](const MeshPart& part) { return part.rows == 2; });
   ASSERT_NE(floor, parts.end());
   ASSERT_EQ(floor->vertices_m.size(), 4u);
-  const auto& v = floor->vertices_m;  // the first triangle of a cell: here, the next, the one above it
+  const auto& v = floor->vertices_m;  // corners of the first triangle of a cell: this one, the next, and the one above
   EXPECT_GT((v[1] - v[0]).cross(v[3] - v[0]).z(), 0.0f);
 }
 
@@ -108,7 +109,7 @@ TEST(RobotMesh, HasTheRobotsSize) {
   for (const MeshPart& part : robot_mesh(built_world("hill", "rig"))) {
     for (const Vector3f& vertex : part.vertices_m) farthest = std::max<double>(farthest, vertex.norm());
   }
-  // models/rig.xml: the corner of the cage, half its tube
+  // models/rig.xml: the corner of the cage, plus half its tube
   const double corner = Vector3d(0.3095, 0.0261, 0.185).norm();
   EXPECT_GT(farthest, corner - 0.03);
   EXPECT_LT(farthest, corner + 0.06);

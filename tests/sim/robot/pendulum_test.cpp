@@ -37,7 +37,7 @@ Situation hanging(double duration_s = 6.0) {
 TEST(Pendulum, HangsWithItsImusXAxisUpAndItsZAlongTheHinge) {
   const Recording recording = simulate(built(hanging(4.0)));
   const Truth& truth = recording.truth;
-  // the settling before the recording leaves it where it hung
+  // settling before the recording leaves the pendulum at its position
   EXPECT_NEAR((truth.p_WB_m[0] - Vector3d(0, 0, kHeight_m - 2.5 * kSegment_m)).norm(), 0.0, 1e-9);
   EXPECT_NEAR(truth.q_WB[0].angularDistance(Eigen::Quaterniond::Identity()), 0.0, 1e-9);
   const ImuRecord& imu = recording.sensors.imus.at(0);
@@ -46,7 +46,7 @@ TEST(Pendulum, HangsWithItsImusXAxisUpAndItsZAlongTheHinge) {
   EXPECT_EQ(recording.sensors.robot, "pendulum");
 }
 
-// pose, velocity and rate of the lowest segment are of one motion, and its upper neighbours let it go nowhere else
+// pose, velocity and rate of the lowest segment are consistent, and the upper segments constrain its position
 TEST(Pendulum, TruthBelongsTogether) {
   const Truth truth = simulate(built(hanging())).truth;
   const double step_s = 1e-9 * static_cast<double>(truth.period_ns);
@@ -119,7 +119,7 @@ TEST(Reach, TurnsTheJointsToThePoseOrAsNearAsTheyLetIt) {
   const auto position_m = [&] { return Vector3d(Eigen::Map<const Vector3d>(data->xpos + 3 * world.robot_body)); };
   engine::reach(world, T_WB, *data);
   EXPECT_NEAR((position_m() - state.p_WB_m).norm(), 0.0, 1e-4);
-  T_WB.translation().x() += 50.0;  // out of reach: towards it, as far as its attitude lets it
+  T_WB.translation().x() += 50.0;  // out of reach: as near as possible with its attitude
   engine::reach(world, T_WB, *data);
   const Vector3d towards = position_m() - Vector3d(0, 0, kHeight_m);
   EXPECT_TRUE(towards.allFinite());

@@ -32,7 +32,7 @@ TEST(Barometer, WithoutErrorsSaysTheMeanOverItsWindowAtItsPlace) {
   EXPECT_EQ(series.quantities[0].name, "pressure_pa");
   ASSERT_EQ(series.quantities[0].values.size(), 500u);
   for (std::size_t k = 0; k < 500; ++k) {
-    // upside down: 0.1 m below the centre of mass; the steps of a window reach from a half before to its end
+    // upside down: 0.1 m below the centre of mass; the steps of a window extend from half a step before it to its end
     const double height_m = 0.02 * static_cast<double>(k) + 0.01025 - 0.1;
     EXPECT_NEAR(series.quantities[0].values[k], air_pressure_pa(101325.0, 288.15, kGravity_m_s2, height_m), 1e-6) << k;
   }

@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// Rises by 1 m/s, upside down.
+/// Rises at 1 m/s, upside down.
 inline Truth rising(double duration_s) {
   Truth truth;
   const auto steps = static_cast<std::size_t>(duration_s * 2000.0);
@@ -19,7 +19,7 @@ inline Truth rising(double duration_s) {
   return truth;
 }
 
-/// A sensor by its defaults and what is given.
+/// A sensor with its defaults and the given numbers.
 inline SensorSpec sensor(const std::string& kind, const std::map<std::string, double>& given) {
   SensorSpec out;
   out.name = "it";

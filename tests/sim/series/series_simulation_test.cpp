@@ -16,7 +16,7 @@
 namespace tumble::sim {
 namespace {
 
-/// Readings of a quantity that is always 7, and of one that is twice that.
+/// Readings of a quantity with the constant value 7, and of one with twice this value.
 Recording sevens(const std::map<std::string, double>& given, const ReadingErrors& errors, double duration_s = 10.0,
                  std::uint64_t seed = 1) {
   Recording recording;
@@ -58,7 +58,7 @@ TEST(Series, EachQuantityHasNoiseAndABiasOfItsOwn) {
   noisy.noise = 3.0;
   const Recording recording = sevens({}, noisy, 100.0);
   const std::vector<Quantity>& read = recording.sensors.series.at(0).quantities;
-  // of 5000 samples the deviation is known to 1 %: 4 of them
+  // 5000 samples determine the deviation to 1 %; the bound is four times this
   EXPECT_NEAR(deviation(read[0].values, 7.0), 3.0, 0.12);
   EXPECT_NE(read[0].values[0] - 7.0, read[1].values[0] - 14.0);
   EXPECT_EQ(read[0].noise, 3.0);
@@ -77,7 +77,7 @@ TEST(Series, StopsAtItsRangeAndHasAStep) {
   ReadingErrors coarse;
   coarse.quantum = 4.0;
   EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 8.0);
-  coarse.high = 7.5;  // 7 is nearest to 8, which is beyond
+  coarse.high = 7.5;  // 7 would be rounded to 8, which exceeds the limit
   EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 7.5);
 }
 
@@ -89,7 +89,7 @@ TEST(Series, WhatIsLostIsLostFromTheTruthToo) {
   EXPECT_LT(series.time_ns.size(), 450u);
   EXPECT_GT(series.time_ns.size(), 250u);
   EXPECT_EQ(scenarios::find_mismatch(some.sensors, some.truth), "");
-  // those that arrive are the same readings as without losses
+  // with losses, the remaining readings are unchanged
   const std::size_t row = static_cast<std::size_t>(series.time_ns.back() / 20'000'000) - 1;
   EXPECT_EQ(series.quantities[0].values.back(), all.sensors.series.at(0).quantities[0].values.at(row));
 }
@@ -119,11 +119,11 @@ TEST(Series, AScenarioCarriesOneAndNoOtherSensorChanges) {
   ASSERT_EQ(pressure.values.size(), 150u);
   double mean_pa = 0.0;
   for (std::size_t k = 0; k < pressure.values.size(); ++k) mean_pa += (pressure.values[k] - exact_pa[k]) / 150.0;
-  // 50 Pa drawn once, within 4 of them, and 2 Pa of each reading about it
+  // an offset of 50 Pa, drawn once, within four deviations, plus noise of 2 Pa per reading
   EXPECT_LT(std::abs(mean_pa), 200.0);
   for (std::size_t k = 0; k < pressure.values.size(); ++k)
     EXPECT_NEAR(pressure.values[k] - exact_pa[k], mean_pa, 10.0) << k;
-  // it rolls down some metres, 11.8 Pa each
+  // it rolls down some metres, 11.8 Pa per metre
   EXPECT_GT(exact_pa.back() - exact_pa.front(), 5.0);
 }
 

@@ -10,16 +10,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The contact point of a sphere that is launched with slip speed u0 stands still after T = u0 / k, with
-/// k = mu g (1 + m r^2 / I). The label is grip once the mean of k (T - t) over 10 ms before and after is below 0.02
-/// m/s: the window, not the threshold, sets the border.
+/// The contact point of a sphere that is launched with slip speed u0 stops after T = u0 / k, with k = mu g (1 + m r^2 /
+/// I). The label is grip if the mean of k (T - t) over 10 ms before and after is below 0.02 m/s, so the window
+/// determines the boundary, not the threshold.
 double slide_time_s(double u0_m_s, double friction, double mass_ratio) {
   constexpr double kWindow_s = 0.01, kGrip_m_s = 0.02;
   const double k = friction * kGravity_m_s2 * (1.0 + mass_ratio);
   return u0_m_s / k + kWindow_s - std::sqrt(4.0 * kWindow_s * kGrip_m_s / k);
 }
 
-// the contact chatters, so that the mean is one over some of the steps; measured 0.2 to 1.3 ms
+// the contact is intermittent, so the mean covers only some steps; measured 0.2 to 1.3 ms
 constexpr double kBlur_s = 0.003;
 
 TEST(ContactLabel, ALaunchedSphereSlidesAsLongAsCoulombSays) {
@@ -32,7 +32,7 @@ TEST(ContactLabel, ALaunchedSphereSlidesAsLongAsCoulombSays) {
     EXPECT_EQ(count(truth, ContactLabel::slip), 0u);
     // negative control: the law of a block would be wrong by a factor
     EXPECT_GT(std::abs(first_s(truth, ContactLabel::grip) - 1.5 / (friction * kGravity_m_s2)), 20 * kBlur_s);
-    // it never lets go again
+    // it grips until the end
     EXPECT_EQ(first_s(truth, ContactLabel::slide, expected_s + kBlur_s), -1.0);
   }
 }
@@ -49,7 +49,7 @@ TEST(ContactLabel, TheTimeFollowsTheInertia) {
 TEST(ContactLabel, ASpunSphereSlipsUntilItRolls) {
   FreeSphere sphere(level_floor(0.1));
   const Truth truth = sphere.launch({0, 0, kRadius_m}, Vector3d::Zero(), {0, 10.0, 0}, 1.0);
-  // the contact point begins with r w instead of v0
+  // the contact point starts with r w instead of v0
   const double expected_s = slide_time_s(10.0 * kRadius_m, 0.1, sphere.mass_ratio());
   EXPECT_NEAR(first_s(truth, ContactLabel::grip), expected_s, kBlur_s);
   EXPECT_EQ(truth.label[static_cast<std::size_t>(expected_s / 0.001)], ContactLabel::slip);
@@ -69,16 +69,16 @@ TEST(ContactLabel, ABouncingSphereIsInTheAirForTheTimeOfFreeFall) {
   FreeSphere sphere(situation);
   const double height_m = 0.2;
   const Truth truth = sphere.launch({0, 0, kRadius_m + height_m}, Vector3d::Zero(), Vector3d::Zero(), 1.0, false);
-  // the label knows of a contact 10 ms ahead and remembers it for as long
+  // the label includes contacts 10 ms before and after
   const double fall_s = std::sqrt(2.0 * height_m / kGravity_m_s2);
   const double touched_s = first_s(truth, ContactLabel::grip);
   EXPECT_NEAR(touched_s, fall_s - 0.01, 0.0011);
   const double left_s = first_s(truth, ContactLabel::air, touched_s);
   ASSERT_GT(left_s, touched_s);
-  // it leaves with some speed v and is back after 2 v / g
+  // it leaves the ground with some speed v and returns after 2 v / g
   const double v_m_s = truth.v_WB_m_s[static_cast<std::size_t>((left_s - 0.01) / 0.0005)].z();
   ASSERT_GT(v_m_s, 0.3);
-  // 2 mm: what is left of the contact when it lets go, and one step
+  // 2 mm: the remaining penetration at the end of contact, and one step
   EXPECT_NEAR(first_s(truth, ContactLabel::grip, left_s) - left_s, 2.0 * v_m_s / kGravity_m_s2 - 0.02, 0.004);
 }
 
@@ -97,7 +97,7 @@ TEST(ContactLabel, ContactsGivePointNormalAndSlipVelocity) {
   }
 }
 
-// negative control: without slip velocities the same motion is grip, without contacts it is air
+// negative control: without slip velocities, the same motion is grip; without contacts, it is air
 TEST(ContactLabel, RestsOnTheContactsAlone) {
   FreeSphere sphere(level_floor(0.1));
   Truth truth = sphere.launch({0, 0, kRadius_m}, {1.0, 0, 0}, Vector3d::Zero(), 0.1);

@@ -11,8 +11,8 @@ namespace tumble::sim {
 inline constexpr double kRadius_m = 0.145;
 inline constexpr double kGravity_m_s2 = 9.80665;
 
-/// A homogeneous sphere (its inside in the middle) on a world, set free from a given state: truth as a recording has
-/// it.
+/// A homogeneous sphere (with its interior in the middle) on a world, released from a given state. Returns truth as in
+/// a recording.
 class FreeSphere {
  public:
   explicit FreeSphere(const Situation& situation)
@@ -25,8 +25,8 @@ class FreeSphere {
     return model.body_mass[world_.robot_body] * kRadius_m * kRadius_m / model.body_inertia[3 * world_.robot_body];
   }
 
-  /// Lies still at `p_WB_m` for half a second, then has the velocity and the rate; nothing but gravity and contact
-  /// acts.
+  /// The sphere is stationary at `p_WB_m` for half a second, then has the velocity and the rate. Only gravity and
+  /// contact act.
   Truth launch(const Eigen::Vector3d& p_WB_m, const Eigen::Vector3d& v_m_s, const Eigen::Vector3d& w_rad_s,
                double duration_s, bool settle = true) {
     BodyState state;
@@ -66,7 +66,7 @@ inline Situation level_floor(double friction) {
   return situation;
 }
 
-/// First time from `from_s` on at which the label is `label`; -1 when it never is.
+/// Returns the first time after `from_s` with the label `label`; -1 if there is none.
 inline double first_s(const Truth& truth, ContactLabel label, double from_s = 0.0) {
   for (std::size_t k = static_cast<std::size_t>(from_s / 0.0005); k < truth.label.size(); ++k) {
     if (truth.label[k] == label) return static_cast<double>(k) * 0.0005;

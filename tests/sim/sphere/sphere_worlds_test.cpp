@@ -20,7 +20,7 @@ Situation in_world(const std::string& type) {
   return situation;
 }
 
-/// Share of 2000 directions, evenly over the sphere, in which a ray from `from_m` meets something within 50 m.
+/// Returns the share of 2000 uniform directions in which a ray from `from_m` hits something within 50 m.
 double closed_share(const Situation& situation, const Vector3d& from_m) {
   const engine::World world = engine::compose(resolve(situation), models_folder());
   const RayScene scene(static_geometry(world, HeightFieldSides::open));
@@ -68,7 +68,7 @@ TEST(SphereWorlds, NothingTouchesTheVaultOfTheTube) {
   EXPECT_EQ(world.model->geom_contype[vault] & world.model->geom_conaffinity[shell], 0);
 }
 
-/// Path of the contact point along the shell over the path of the centre, both from `from_s` on.
+/// Returns the path of the contact point along the shell, divided by the path of the centre, both after `from_s`.
 double rolled_share(const Truth& truth, const Vector3d& normal_W, double from_s) {
   double path_length_m = 0.0, rolled_m = 0.0;
   for (std::size_t k = static_cast<std::size_t>(from_s / 0.0005); k < truth.q_WB.size(); ++k) {
@@ -112,7 +112,7 @@ TEST(Ramp, OnIceItSlidesDownInstead) {
   EXPECT_GT(count(truth, ContactLabel::slide), truth.label.size() / 2);
 }
 
-// a height field is triangles: where they lie in one plane the law of the plane must hold
+// a height field consists of triangles: where they are coplanar, the law of the plane must hold
 TEST(Ground, AHeightFieldRollsAsAPlaneDoes) {
   Situation situation = level_floor(0.8);
   situation.world.values.set("roughness_m", 1e-9);
@@ -122,7 +122,7 @@ TEST(Ground, AHeightFieldRollsAsAPlaneDoes) {
       sphere.launch({-0.61, 0.02, kRadius_m}, {1.0, 0.13, 0}, {-0.13 / kRadius_m, 1.0 / kRadius_m, 0}, 1.0);
   EXPECT_NEAR(rolled_share(truth, Vector3d::UnitZ(), 0.0), 1.0, 1e-3);
   EXPECT_EQ(count(truth, ContactLabel::grip), truth.label.size());
-  // edges between triangles take no speed
+  // edges between triangles do not reduce the speed
   EXPECT_NEAR(truth.v_WB_m_s.back().norm(), truth.v_WB_m_s.front().norm(), 0.01 * truth.v_WB_m_s.front().norm());
 }
 
@@ -152,7 +152,7 @@ double sink_m(double soft_time_s) {
 TEST(Ground, SoftGroundLetsTheSphereSink) {
   EXPECT_LT(sink_m(0.0), 5e-5);
   EXPECT_NEAR(sink_m(0.004), sink_m(0.0), 1e-6);  // as hard as the robot's own 4 ms
-  // stiffness goes with the inverse square of the time
+  // the stiffness is proportional to the inverse square of the time
   EXPECT_NEAR(sink_m(0.02) / sink_m(0.004), 25.0, 5.0);
 }
 

@@ -11,8 +11,8 @@
 namespace tumble::sim {
 namespace {
 
-/// Mean power per wave number [m^2 per rad/m, arbitrary scale] of cuts along x, over many reliefs, at `k_rad_m`:
-/// Fourier transform of a cut of 60 m under a Hann window.
+/// Mean power per wave number [m^2 per rad/m, arbitrary scale] of sections along x, over many reliefs, at `k_rad_m`:
+/// Fourier transform of a section of 60 m with a Hann window.
 double cut_power(const ReliefSpectrum& spectrum, double k_rad_m) {
   constexpr int kReliefs = 300, kSamples = 600;
   constexpr double kStep_m = 0.1;
@@ -30,7 +30,7 @@ double cut_power(const ReliefSpectrum& spectrum, double k_rad_m) {
   return power;
 }
 
-/// Exponent with which the power falls between wavelengths of 6 and 2 m.
+/// Returns the exponent of the power's decrease between wavelengths of 6 and 2 m.
 double measured_exponent(const ReliefSpectrum& spectrum) {
   const double low = 2.0 * std::numbers::pi / 6.0, high = 2.0 * std::numbers::pi / 2.0;
   return -std::log(cut_power(spectrum, high) / cut_power(spectrum, low)) / std::log(high / low);
@@ -38,12 +38,12 @@ double measured_exponent(const ReliefSpectrum& spectrum) {
 
 TEST(Relief, PowerFallsOffWithTheStatedExponent) {
   for (const double exponent : {1.0, 2.0, 3.0}) {
-    // long waves beyond both ends, so that neither end bends the line; ruled: a cut along x sees every wave at its own
-    // wave number. 300 reliefs of 32 waves leave about 0.15 of scatter (measured: 0.02 to 0.12 off)
+    // long waves exceed both ends, so neither end bends the line; for a ruled relief, a section along x has every wave
+    // at its own wave number. 300 reliefs of 32 waves have a scatter of about 0.15 (measured errors: 0.02 to 0.12)
     const ReliefSpectrum spectrum{0.2, 0.5, 20.0, exponent, true};
     EXPECT_NEAR(measured_exponent(spectrum), exponent, 0.35) << "ruled";
   }
-  // of waves in all directions a cut sees each at a smaller wave number; a power law keeps its exponent
+  // for waves in all directions, a section has smaller wave numbers, but a power law keeps its exponent
   EXPECT_NEAR(measured_exponent({0.2, 0.25, 20.0, 3.0, false}), 3.0, 0.4);
 }
 
