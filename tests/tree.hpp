@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-/// Paths that tests need at run time. They are functions instead of definitions on the command line: only tree.cpp
+/// Paths that tests need at run time. The paths are functions instead of definitions on the command line: only tree.cpp
 /// contains paths of this checkout, so a compiler cache serves all other files.
 namespace tumble::test {
 

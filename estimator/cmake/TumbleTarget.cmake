@@ -82,8 +82,8 @@ function(tumble_precompiled_flags target)
   endif()
 endfunction()
 
-# tumble_precompile(TARGET HEADER...) precompiles headers for all files of a target. It only saves time: every file still
-# includes the headers that it uses. The debug build checks this, because it has no precompiled headers.
+# tumble_precompile(TARGET HEADER...) precompiles headers for all files of a target. Precompiled headers only save time: every file still
+# includes the headers that it uses. The debug build has no precompiled headers, so it detects missing includes.
 function(tumble_precompile target)
   if(NOT TUMBLE_PRECOMPILE)
     return()

@@ -105,7 +105,8 @@ TEST(Fields, NameEachNumberOfAParams) {
   EXPECT_GT(numbers, 350u);
 }
 
-/// Params that users of methods do not set, checked by hand. They are derived from structs that have the fields.
+/// Params that users of methods do not set, checked by hand. The library derives these structs from others that have
+/// fields.
 const std::set<std::string> kDerived = {"hand_held_model.hpp", "force_errors.hpp", "rate_recovery.hpp"};
 
 TEST(Fields, EveryParamsHasThem) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rate_contact SCENARIO FIRST LAST: measures how well a contact model could predict the torque on a tumbling rig. For
 // every IMU sample with contact and a clipped gyro, it takes the true torque about the centre of mass and the true
-// force, as means over the window. It predicts the torque by (a) zero, (b) a force through one point, perpendicular to
-// it, (c) a force through the point of the previous sample, (d) a force through the best single point of the whole
-// impact. Prints the remaining share of the torque, and the duration of contacts. This program is not a test; it takes
-// 2 s per draw.
+// force, as means over the window. The program predicts the torque by (a) zero, (b) a force through one point,
+// perpendicular to it, (c) a force through the point of the previous sample, (d) a force through the best single point
+// of the whole impact. Prints the remaining share of the torque, and the duration of contacts. This program is not a
+// test; it takes 2 s per draw.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // wrong inputs (units, axes, signs, clocks, mountings, failing sensors, dust, people). Compares the method's report of
 // its own quality with the truth.
 // A run is wrong if its end error exceeds five standard deviations (slam: pose NEES above 25). A run of rates or
-// attitudes is wrong if a tenth of the samples in rotation or motion exceed five standard deviations. It is also wrong
-// if half of these samples have an error above a fifth of their rate, or above 0.5 rad of tilt without
+// attitudes is wrong if a tenth of the samples in rotation or motion exceed five standard deviations. Such a run is
+// also wrong if half of the samples have an error above a fifth of their rate, or above 0.5 rad of tilt without
 // `attitude_unknown_s`.
 // A run reports trouble by its status, `localised`, or a key of its health. A method may also increase its covariance
 // when it reports trouble. Rates are therefore also judged by the covariance before this increase, and a slam pose also

@@ -4,7 +4,7 @@
 # Negative controls: without the package, the project must not configure. A program with another memory layout must not link.
 # Other compiler flags must be detected.
 # With ALONE=ON, a copy of the folder is built and tested, then installed as files, as a Debian package and from its source
-# archive. The project that contains the folder is built and run. This takes as long as a build, so it belongs to the long suite.
+# archive. The project that contains the folder is built and run. The test with ALONE=ON takes as long as a build, so it belongs to the long suite.
 include(${CMAKE_CURRENT_LIST_DIR}/compilations.cmake)
 
 function(run expected)

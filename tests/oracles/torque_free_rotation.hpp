@@ -10,8 +10,8 @@ namespace tumble::oracles {
 ///
 /// Body axes B are principal axes. The rate is given by Jacobi elliptic functions (Landau & Lifshitz, Mechanics,
 /// section 37). The constant angular momentum determines two angles of the attitude. The third angle, about the angular
-/// momentum, is an elliptic integral of the third kind. It is computed by Gauss-Legendre quadrature of the closed-form
-/// rate (converged to rounding); whole half-periods are counted and integrated only once.
+/// momentum, is an elliptic integral of the third kind. This angle is computed by Gauss-Legendre quadrature of the
+/// closed-form rate (converged to rounding); whole half-periods are counted and integrated only once.
 ///
 /// Accepts principal moments in any order, also equal moments. Throws std::invalid_argument for impossible moments, and
 /// for the separatrix, where the period is infinite (1 - k^2 < 1e-9), unless the spin is constant.

@@ -9,8 +9,9 @@
 #include <vector>
 
 /// Stand-ins for the real recordings: short files in the original formats, with closed-form motions, so that every test
-/// on real recordings runs in every clone. They test formats, conventions, and the behaviour of a method on a similar
-/// motion. Only the real files show the accuracy on real devices; the same tests also read them if they are available.
+/// on real recordings runs in every clone. Stand-ins test formats, conventions, and the behaviour of a method on a
+/// similar motion. Only the real files show the accuracy on real devices; the same tests also read them if they are
+/// available.
 namespace tumble::test {
 
 /// Data of a test: the stand-in of a source, or the source itself.

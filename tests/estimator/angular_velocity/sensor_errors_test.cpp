@@ -252,7 +252,7 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
 }
 
 // If there are too few strokes to find the delay, the flight is classified as contact of another rig, and the constants
-// are not updated. The smoother then reports this.
+// are not updated. Health then reports the fixed constants.
 TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
   for (const std::uint64_t seed : {1u, 4u, 8u}) {
     const TumbleRecording late = late_tumble(seed, 1);
@@ -309,8 +309,8 @@ TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   EXPECT_GT(report.synchronous_probability, 0.5);
 }
 
-// The next run starts with the estimated delay of the accelerometer. It finds the delay in its first optimisation
-// instead of the second or third, and with a smaller deviation.
+// The next run starts with the estimated delay of the accelerometer. The next run finds the delay in its first
+// optimisation instead of the second or third, and with a smaller deviation.
 TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 1);
   std::vector<RateState> states;

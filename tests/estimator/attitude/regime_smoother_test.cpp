@@ -72,8 +72,8 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
 }
 
 // The body reverses ten times, with few unclipped readings, so all clipped samples form one segment. The regime in the
-// first tenth of a second is unknown, because the rate is unknown. This must not affect the rest, which would have
-// errors of 10 rad/s.
+// first tenth of a second is unknown, because the rate is unknown. The unknown regime at the start must not affect the
+// later samples, which would have errors of 10 rad/s.
 TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;

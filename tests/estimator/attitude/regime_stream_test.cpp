@@ -200,8 +200,8 @@ TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
 }
 
 /// The body reverses once per second, with few unclipped readings, so all clipped samples form one segment. The regime
-/// at the start is unknown, because the rate is unknown. This must not affect the rest. With the flight model, the
-/// error is 10 rad/s.
+/// at the start is unknown, because the rate is unknown. The unknown regime at the start must not affect the later
+/// samples. With the flight model, the error is 10 rad/s.
 TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
@@ -256,9 +256,9 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   return state.probabilities.hand_held;
 }
 
-/// A throw by a hand contradicts rig hypotheses, which are dropped in successive steps, up to 20 times per lag. This
-/// must not affect the following flight: the additional uncertainty ends before the lag. The control keeps the
-/// uncertainty.
+/// A throw by a hand contradicts rig hypotheses, which are dropped in successive steps, up to 20 times per lag. Dropped
+/// hypotheses must not affect the following flight: their additional uncertainty ends before the lag. The control keeps
+/// the uncertainty.
 TEST(RegimeStream, AFlightIsSeenThoughThePushBeforeItBentTheRig) {
   for (const std::uint64_t seed : {5, 7}) {
     EXPECT_LT(share_in_flight(seed, 20.0), 0.02) << seed;

@@ -111,8 +111,8 @@ TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
   EXPECT_LT(worst_a, 0.5 * worst_b);
 }
 
-/// A body that moves down a slope: 2 m/s^2 for 1.5 s, 3 m/s for 1 s, then decelerates. It rotates about its vertical
-/// axis meanwhile, so the gyro shows that it is not at rest.
+/// A body that moves down a slope: 2 m/s^2 for 1.5 s, 3 m/s for 1 s, then decelerates. The body rotates about its
+/// vertical axis meanwhile, so the gyro shows that the body is not at rest.
 std::vector<ImuSample> far_run() {
   std::vector<ImuSample> samples;
   for (int k = 0; k <= 1500; ++k) {

@@ -57,8 +57,8 @@ Dense inverse(const Dense& matrix) {
   return matrix.ldlt().solve(Dense::Identity(matrix.rows(), matrix.cols()));
 }
 
-/// A linear system of sweeps, each measured in some directions. It is solved by a Kalman filter with a window, and at
-/// once.
+/// A linear system of sweeps, each measured in some directions. The test solves the system by a Kalman filter with a
+/// window, and in one step.
 struct System {
   LagWindow window{kSweeps};
   Dense information = Dense::Zero(kSweeps * kFree, kSweeps* kFree);

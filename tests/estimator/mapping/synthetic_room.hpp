@@ -11,7 +11,8 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 
-/// An analytic world, motion and sensors. They are a reference for the mapping code, and independent of it.
+/// An analytic world, motion and sensors. The mapping code is tested with this world, which does not use the mapping
+/// code.
 namespace tumble::test {
 
 inline constexpr double kRoomGravity_m_s2 = 9.80665;

@@ -136,7 +136,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
 }
 
 /// The failure is caused by clipped readings. Without a saturation limit, the toy method fails for another reason,
-/// which true rates do not prevent. Such a reduction is rejected.
+/// which true rates do not prevent. A reduction with another cause of failure is rejected.
 TEST(Shrink, OnlyWhatTheSameInputCuresIsKept) {
   Scenario scenario = losing_samples();
   fix_number(scenario, "sensors.imu.gyro_range_rad_s", 1.0);

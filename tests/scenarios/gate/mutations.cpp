@@ -136,7 +136,7 @@ void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   }
 }
 
-/// Moves poses below the ground, increasingly with distance.
+/// Moves poses below the ground, increasingly with time.
 void sink_poses(const sim::Recording&, Estimate& estimate) {
   for (PoseState& pose : estimate.poses) {
     pose.p_WA_m.z() -= kSink_m_s * 1e-9 * static_cast<double>(pose.time_ns - estimate.poses.front().time_ns);

@@ -57,7 +57,7 @@ TEST_P(MethodContract, DescribesItself) {
   EXPECT_NE(info.name, "");
   EXPECT_NE(info.doc, "");
   EXPECT_NE(info.source, "");
-  // our methods may name the method that they replace; a comparison method is not shown as ours
+  // the source of our methods starts with "ours", and may also cite a publication; other methods name their source
   EXPECT_TRUE(info.ours ? info.source.starts_with("ours") : info.source != "ours") << "whose it is, told twice";
   for (const sim::Parameter& parameter : info.parameters) {
     EXPECT_NE(parameter.doc, "") << parameter.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The methods `tumble` and `tumble_lag` must use all data of a recording: further IMUs, clip flags, stated ranges, and
-// accelerometer limits. They must report suspicious data.
+// accelerometer limits. Both methods must report suspicious data.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -66,7 +66,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
 }
 
-// The same test, live: from earlier samples only. TumblingOdometry also reports this to its user.
+// Tests the findings of live methods, which use earlier samples only. TumblingOdometry also reports this to its user.
 TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);

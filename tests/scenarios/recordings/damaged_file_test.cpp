@@ -53,7 +53,7 @@ TEST_F(DamagedFile, TruncationIsRecognisedAtEveryLength) {
   EXPECT_GT(lengths, 200);
 }
 
-// A flipped byte is rejected, or is in an unused gap. It never causes other data or a crash.
+// A flipped byte is rejected, or is in an unused gap. A flipped byte never changes data or causes a crash.
 TEST_F(DamagedFile, FlippedBytesNeverGiveOtherData) {
   int refused = 0;
   int flips = 0;

@@ -205,7 +205,7 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
 }
 
-// some estimators read the last point of an empty sweep, or do not reject it, so empty sweeps are left out
+// only estimators that accept empty sweeps get them; others would read the last point of an empty sweep
 TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
   const std::string peer = GetParam().peer;
   const bool takes = peer == "fast-lio" || peer == "point-lio" || peer == "norlab";

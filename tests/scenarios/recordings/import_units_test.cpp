@@ -43,7 +43,7 @@ class ImportSphere : public fixture::Folder {
   }
 };
 
-// the rotation within 0.2 s is too large for even windows; a range of 150 rad/s accepts a factor of 229
+// the rotation within 0.2 s is too large for even windows; a stated range of 150 rad/s does not reject 229 rad/s
 TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
   constexpr double kDegrees = 57.29577951308232;
   const Imported good = import(rolled(4.0, 1.0), 150.0);

@@ -13,7 +13,7 @@ constexpr std::size_t kStepsPerSample = 20, kSamples = 200;
 constexpr double kRail_rad_s = 10.5, kAccelRail_m_s2 = 50.0;
 
 /// A motion of two seconds along x: at rest, from 0.5 s to 1.5 s at 2 m/s with rotation, at rest again. The body is in
-/// the air from 1.0 s to 1.25 s. It has three impacts, the last two 10 ms apart.
+/// the air from 1.0 s to 1.25 s. The body has three impacts, the last two 10 ms apart.
 sim::Recording hand_made() {
   sim::Recording recording;
   sim::Truth& truth = recording.truth;
