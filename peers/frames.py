@@ -7,8 +7,8 @@ from recording import Recording
 
 
 def followed(odometry, sensors: Recording) -> Track:
-    """Returns the poses of the lidar from `register_frame(points, seconds)` and `last_pose`. Each sweep is deskewed to its last
-    point, so this point's time is the time of the pose."""
+    """Returns the poses of the lidar from `register_frame(points, seconds)` and `last_pose`. Each sweep is deskewed to
+    its last point, so this point's time is the time of the pose."""
     track = Track([], [], "lidar")
     for sweep in sensors.sweeps:
         odometry.register_frame(sweep.points_L_m, sweep.offset_ns * 1e-9)

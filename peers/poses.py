@@ -36,8 +36,8 @@ def turning(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def levelled(track: Track, sensors: Recording) -> Track:
-    """Returns the trajectory in a world with z up, whose origin is the first pose. If the first pose is at most LATE_S late, this
-    pose is also used for the start of the recording, because the rig is at rest then."""
+    """Returns the trajectory in a world with z up, whose origin is the first pose. If the first pose is at most LATE_S
+    late, this pose is also used for the start of the recording, because the rig is at rest then."""
     if not track.time_ns:
         raise SystemExit("the peer gave no pose")
     level = np.eye(4)
@@ -62,7 +62,8 @@ def quaternion_xyzw(R: np.ndarray) -> np.ndarray:
 
 
 def write_tum(path: str, track: Track) -> None:
-    """Writes lines `t x y z qx qy qz qw`, with t in seconds from the start of the recording. The file gets its name when complete."""
+    """Writes lines `t x y z qx qy qz qw`, with t in seconds from the start of the recording. The file gets its name
+    when complete."""
     with open(path + ".part", "w") as out:
         for time_ns, T in zip(track.time_ns, track.T_WA):
             seconds, rest = divmod(int(time_ns), 1_000_000_000)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes twirl.h5, so that the first notebook needs only the Python package: keep_twirl.py [FILE.h5]
 
-The recording contains the first 12 s of `tumble record twirl --seed 1`. The truth has the rate of the IMU, 100 Hz, instead of the
-2 kHz of the simulation. Needs the program.
+The recording contains the first 12 s of `tumble record twirl --seed 1`. The truth has the rate of the IMU, 100 Hz,
+instead of the 2 kHz of the simulation. Needs the program.
 """
 import dataclasses
 import pathlib

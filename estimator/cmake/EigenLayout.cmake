@@ -1,6 +1,6 @@
-# tumble_eigen_layout(OUT) returns definitions that fix the memory layout of Eigen matrices to the layout of this build. The
-# layout is Eigen's largest alignment in bytes, and whether Eigen assumes that malloc aligns its memory. Both depend on the
-# vector instructions that the compiler may use, and on sanitizers.
+# tumble_eigen_layout(OUT) returns definitions that fix the memory layout of Eigen matrices to the layout of this build.
+# The layout is Eigen's largest alignment in bytes, and whether Eigen assumes that malloc aligns its memory. Both depend
+# on the vector instructions that the compiler may use, and on sanitizers.
 include_guard()
 include(CheckCXXSourceCompiles)
 

@@ -15,8 +15,9 @@ function(tumble_accelerate target)
 endfunction()
 
 # tumble_target(TARGET [LIGHT|COMPUTES]) sets the language level, warnings and instrumentation of a target.
-# LIGHT: low optimisation, for code that needs little run time (command line, pages, tests). Compiling takes two thirds of the
-# time; results are bit-identical. COMPUTES: full optimisation even with TUMBLE_LIGHT, for code that tests wait for.
+# LIGHT: low optimisation, for code that needs little run time (command line, pages, tests). Compiling takes two thirds
+# of the time; results are bit-identical. COMPUTES: full optimisation even with TUMBLE_LIGHT, for code that tests wait
+# for.
 # The function sets no global flags, so that a project that embeds this one keeps its own flags.
 include_guard()
 
@@ -63,16 +64,16 @@ function(tumble_target target)
     target_compile_definitions(${target} PUBLIC EIGEN_INITIALIZE_MATRICES_BY_NAN)
   endif()
   if(TUMBLE_SANITIZE)
-    # The excluded checks are redundant, because the address sanitizer or the processor detects the same faults, or need RTTI of
-    # other libraries. Without them, a source with Eigen compiles in half the time
+    # The excluded checks are redundant, because the address sanitizer or the processor detects the same faults, or need
+    # RTTI of other libraries. Without them, a source with Eigen compiles in half the time
     target_compile_options(${target} PUBLIC -fsanitize=${TUMBLE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
       -fno-sanitize=null,alignment,vptr,object-size,nonnull-attribute,returns-nonnull-attribute,pointer-overflow)
     target_link_options(${target} PUBLIC -fsanitize=${TUMBLE_SANITIZE})
   endif()
 endfunction()
 
-# ccache needs the first flag of each compiler. The other flags suppress false warnings about std::string, because GCC 12 does
-# not treat precompiled headers as system headers.
+# ccache needs the first flag of each compiler. The other flags suppress false warnings about std::string, because GCC
+# 12 does not treat precompiled headers as system headers.
 function(tumble_precompiled_flags target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
@@ -82,8 +83,9 @@ function(tumble_precompiled_flags target)
   endif()
 endfunction()
 
-# tumble_precompile(TARGET HEADER...) precompiles headers for all files of a target. Precompiled headers only save time: every file still
-# includes the headers that it uses. The debug build has no precompiled headers, so it detects missing includes.
+# tumble_precompile(TARGET HEADER...) precompiles headers for all files of a target. Precompiled headers only save time:
+# every file still includes the headers that it uses. The debug build has no precompiled headers, so it detects missing
+# includes.
 function(tumble_precompile target)
   if(NOT TUMBLE_PRECOMPILE)
     return()

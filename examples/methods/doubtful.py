@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A rate method in one function: returns the unchanged gyro readings, with a large variance for clipped readings.
-Run it with `tumble run hill --seed 1 --method examples/methods/doubtful.py`, or with `tumble bench`. doubtful.c is the same in C."""
+Run it with `tumble run hill --seed 1 --method examples/methods/doubtful.py`, or with `tumble bench`. doubtful.c is the
+same in C."""
 import numpy as np
 
 AT_RAIL = 0.98                         # of the largest reading of an axis

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Attitude filters for gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony, extended Kalman filter), imufusion (x-io).
+"""Attitude filters for gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony, extended Kalman
+filter), imufusion (x-io).
 
-Each package has its default settings, and the rate of the IMU. The Kalman filter uses the frame "NED", in which the specific force at
-rest points along z; in its "ENU", the specific force points against z. The filters of ahrs start at the attitude from gravity. The
-other filters start as their packages do; imufusion has a high gain in its first 3 s. Attitudes are those of the IMU, W with z up."""
+Each package has its default settings, and the rate of the IMU. The Kalman filter uses the frame "NED", in which the
+specific force at rest points along z; in its "ENU", the specific force points against z. The filters of ahrs start at
+the attitude from gravity. The other filters start as their packages do; imufusion has a high gain in its first 3 s.
+Attitudes are those of the IMU, W with z up."""
 import numpy as np
 
 from poses import Track, quaternion_xyzw, turning, up_in

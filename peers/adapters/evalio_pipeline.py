@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs any pipeline of evalio (Potokar, Kaess 2025, PyPI evalio): DLIO, LIO-SAM, CT-ICP, MAD-ICP, LOAM, FORM.
 
-Settings are evalio's defaults, which are those of the pipelines' authors, and the additional KEY=VALUE of a peer's YAML. The
-calls have the order of evalio's Experiment.setup. The poses are those of the IMU.
-MAD-ICP deskews, because points have times. Its option `realtime` is off, because it limits the computing time.
+Settings are evalio's defaults, which are those of the pipelines' authors, and the additional KEY=VALUE of a peer's
+YAML. The calls have the order of evalio's Experiment.setup. The poses are those of the IMU. MAD-ICP deskews, because
+points have times. Its option `realtime` is off, because it limits the computing time.
 
-`shift_s=T` is an option of this adapter. It corrects time stamps of a pipeline that states the start of a sweep, although its pose
-belongs to another time. Each shift is the one with the smallest error on `stroll`. A pose that is identical to the previous one is left
-out, because LIO-SAM skips sweeps within its mappingProcessInterval."""
+`shift_s=T` is an option of this adapter. It corrects time stamps of a pipeline that states the start of a sweep,
+although its pose belongs to another time. Each shift is the one with the smallest error on `stroll`. A pose that is
+identical to the previous one is left out, because LIO-SAM skips sweeps within its mappingProcessInterval."""
 import numpy as np
 from evalio import pipelines, types
 from evalio._cpp import helpers

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pelorus (University of Osnabrueck, PyPI pelorus, MIT or Apache-2.0). Uses lidar and IMU.
 
-Settings are the package's default configuration with the rig's extrinsics, and the vendor Ouster, whose points have times in
-nanoseconds. The poses are those of the lidar."""
+Settings are the package's default configuration with the rig's extrinsics, and the vendor Ouster, whose points have
+times in nanoseconds. The poses are those of the lidar."""
 import tempfile
 import time
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """RKO-LIO (Malladi et al., RA-L 2026), PyPI rko-lio. Uses lidar and IMU.
 
-Settings are the package's defaults with the initialisation phase, which levels the world and estimates the gyro bias at rest. The
-documentation recommends this phase for robots that start at rest. The poses are those of the base, here the IMU, at the last
-point of a sweep."""
+Settings are the package's defaults with the initialisation phase, which levels the world and estimates the gyro bias at
+rest. The documentation recommends this phase for robots that start at rest. The poses are those of the base, here the
+IMU, at the last point of a sweep."""
 import numpy as np
 from rko_lio.config import LIOConfig
 from rko_lio.lio import LIO

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""small_gicp (Koide, JOSS 2024), PyPI small_gicp. Uses only the lidar. The package is a registration library, so this adapter follows
-the authors' scan-to-model example (kitti_odometry.py): it registers each sweep to a map of Gaussian voxels, with a constant-motion start.
+"""small_gicp (Koide, JOSS 2024), PyPI small_gicp. Uses only the lidar. The package is a registration library, so this
+adapter follows the authors' scan-to-model example (kitti_odometry.py): it registers each sweep to a map of Gaussian
+voxels, with a constant-motion start.
 
-Settings are those of the example: voxels of 0.25 m for a sweep and 1 m for the map, 10 neighbours. Sweeps are not deskewed."""
+Settings are those of the example: voxels of 0.25 m for a sweep and 1 m for the map, 10 neighbours. Sweeps are not
+deskewed."""
 import numpy as np
 import small_gicp
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares the processor time for a whole recording in Python with the time of the same method in the program: speed.py [RUNS]
+"""Compares the processor time for a whole recording in Python with the time of the same method in the program: speed.py
+[RUNS]
 
-For the program, the time is the metric estimate_cpu_s, which covers only the estimate. For Python, the time is that of one call with
-the recording's arrays. The script takes the minimum of RUNS (5) runs each. It is called by hand.
+For the program, the time is the metric estimate_cpu_s, which covers only the estimate. For Python, the time is that of
+one call with the recording's arrays. The script takes the minimum of RUNS (5) runs each. It is called by hand.
 """
 import pathlib
 import sys

@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures how much velocity and angular rate change during a gap in the IMU data, from the truth of simulated recordings.
+"""Measures how much velocity and angular rate change during a gap in the IMU data, from the truth of simulated
+recordings.
 
     gap_walks.py RECORDING.h5...
 
-The script uses the samples while the body rotates (from the first to the last sample above 2 rad/s), and gaps of 0.05 to 0.5 s.
-It prints these root mean squares per axis:
+The script uses the samples while the body rotates (from the first to the last sample above 2 rad/s), and gaps of 0.05
+to 0.5 s. It prints these root mean squares per axis:
 
     change of velocity divided by the square root of the gap [m/s/sqrt(s)]
     change of velocity divided by the gap [m/s^2]
-    rate in the middle minus the mean rate of both ends, divided by half the square root of the gap [rad/s/sqrt(s)]: the random
-    walk of a Brownian bridge
+    rate in the middle minus the mean rate of both ends, divided by half the square root of the gap [rad/s/sqrt(s)]: the
+    random walk of a Brownian bridge
 
-The parameters gap_velocity_walk_m_s_sqrt_s and gap_rate_walk_rad_s_sqrt_s have these units: docs/maths/mapping.md (R44), (R43).
+The parameters gap_velocity_walk_m_s_sqrt_s and gap_rate_walk_rad_s_sqrt_s have these units: docs/maths/mapping.md
+(R44), (R43).
 """
 import sys
 

@@ -4,9 +4,10 @@
 
     import_variants.py PROGRAM RECORDING.h5
 
-The script writes the recording as MCAP with one change at a time: signs and order of the gyro axes, gyro unit, lidar mounting or lidar
-clock. It imports each file, and prints the sentence that compares the gyro with the lidar, or "nothing said". Needs the package
-`tumble` and numpy. The numbers in the changelog are from `stroll`, seeds 98001 and 98002.
+The script writes the recording as MCAP with one change at a time: signs and order of the gyro axes, gyro unit, lidar
+mounting or lidar clock. It imports each file, and prints the sentence that compares the gyro with the lidar, or
+"nothing said". Needs the package `tumble` and numpy. The numbers in the changelog are from `stroll`, seeds 98001 and
+98002.
 """
 import pathlib
 import subprocess

@@ -4,9 +4,10 @@
 
     sweep_jitter.py PROGRAM RECORDING.h5 [METHOD]...
 
-The script moves the start of each sweep to a random earlier time, by up to 0, 20 ns, 50 us and 3 ms. The points keep their times, so the
-sweeps overlap. It maps with slam/tumble and slam/tumble_lag, or the named methods, and prints status and end error relative to the
-truth. Needs the package `tumble` and numpy. The sweeps of RECORDING must have no gaps, as those of `tumble record stroll --seed 98001`.
+The script moves the start of each sweep to a random earlier time, by up to 0, 20 ns, 50 us and 3 ms. The points keep
+their times, so the sweeps overlap. It maps with slam/tumble and slam/tumble_lag, or the named methods, and prints
+status and end error relative to the truth. Needs the package `tumble` and numpy. The sweeps of RECORDING must have no
+gaps, as those of `tumble record stroll --seed 98001`.
 """
 import json
 import pathlib

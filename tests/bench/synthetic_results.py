@@ -4,9 +4,9 @@
 
     synthetic_results.py SMALL.db FOLDER --outcomes N [--shards K]
 
-The script repeats rows of SMALL.db with new seeds until there are N outcomes. It multiplies each value by a number between 0.5 and 2.
-It distributes contiguous parts of the seeds to FOLDER/shard_1.db ... shard_K.db, as `tumble sweep --shard` does. Schema, notes and
-certificates are copied from SMALL.db. The scores are artificial.
+The script repeats rows of SMALL.db with new seeds until there are N outcomes. It multiplies each value by a number
+between 0.5 and 2. It distributes contiguous parts of the seeds to FOLDER/shard_1.db ... shard_K.db, as `tumble sweep
+--shard` does. Schema, notes and certificates are copied from SMALL.db. The scores are artificial.
 """
 import argparse
 import pathlib

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Counts false warnings of `tumble score` about the attitude convention of trajectories whose convention is correct. Must print 0.
+"""Counts false warnings of `tumble score` about the attitude convention of trajectories whose convention is correct.
+Must print 0.
 
     turning_words.py PROGRAM [FIRST LAST]
 
-The script runs four `slam` methods on seeds FIRST to LAST (98302 to 98305) of five scenarios, and scores each trajectory twice: complete,
-and with every 20th pose. It prints each warning, then the numbers of trajectories and of warnings. The changelog contains this
-number. Takes 15 min on one core.
+The script runs four `slam` methods on seeds FIRST to LAST (98302 to 98305) of five scenarios, and scores each
+trajectory twice: complete, and with every 20th pose. It prints each warning, then the numbers of trajectories and of
+warnings. The changelog contains this number. Takes 15 min on one core.
 """
 import json
 import pathlib

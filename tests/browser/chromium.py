@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Controls a headless Chromium through pipes (Chrome DevTools Protocol, --remote-debugging-pipe). A message is JSON text that
-ends in a zero byte. Chromium renders in software and needs no display."""
+"""Controls a headless Chromium through pipes (Chrome DevTools Protocol, --remote-debugging-pipe). A message is JSON
+text that ends in a zero byte. Chromium renders in software and needs no display."""
 import base64
 import json
 import os

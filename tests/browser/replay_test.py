@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests the replay page in headless Chromium with software rendering, with and without truth. The page must draw, write nothing to
-the console, and make no network requests. As negative controls, every check must fail for a damaged page.
+"""Tests the replay page in headless Chromium with software rendering, with and without truth. The page must draw, write
+nothing to the console, and make no network requests. As negative controls, every check must fail for a damaged page.
 
     replay_test.py PROGRAM WORK_FOLDER
 """

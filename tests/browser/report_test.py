@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests the report page in headless Chromium: in light and dark, on a phone, on paper, and with names that contain HTML. The page must
-draw its plots and animations, have no broken links, write nothing to the console and make no network requests. As negative
-controls, every check must fail for a damaged page.
+"""Tests the report page in headless Chromium: in light and dark, on a phone, on paper, and with names that contain
+HTML. The page must draw its plots and animations, have no broken links, write nothing to the console and make no
+network requests. As negative controls, every check must fail for a damaged page.
 
     report_test.py PROGRAM WORK_FOLDER
 """
@@ -43,7 +43,8 @@ def tumble(*arguments: object) -> None:
 
 
 def make_hostile(small: pathlib.Path, database: pathlib.Path) -> None:
-    """Generates 40 draws from four. The names of a scenario and a method, and messages, contain text that ends an HTML element."""
+    """Generates 40 draws from four. The names of a scenario and a method, and messages, contain text that ends an HTML
+    element."""
     subprocess.run([sys.executable, SYNTHETIC, small, WORK / "big", "--outcomes", "120"], check=True, stdout=subprocess.DEVNULL)
     shutil.copy(WORK / "big" / "shard_1.db", database)
     with sqlite3.connect(database) as rows:
@@ -77,7 +78,8 @@ class ReportPage(unittest.TestCase):
         return page
 
     def complaints(self, page: Page, seconds: float = 60.0) -> list[str]:
-        """Returns the faults of the page: missing plots, console messages, requests, or broken links. Empty for a correct page."""
+        """Returns the faults of the page: missing plots, console messages, requests, or broken links. Empty for a
+        correct page."""
         found = []
         if not page.wait_for(f"{STATE} === 'drawn'", seconds):
             found.append("state: not drawn")

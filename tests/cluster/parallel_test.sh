@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs the command of tools/parallel/README.md and kills one of its three shards. The same command must resume the shard, and the
-# merged database must equal that of one undisturbed sweep. Needs GNU parallel (tools/setup --for cluster); exits with 77 without it.
+# Runs the command of tools/parallel/README.md and kills one of its three shards. The same command must resume the
+# shard, and the merged database must equal that of one undisturbed sweep. Needs GNU parallel (tools/setup --for
+# cluster); exits with 77 without it.
 #   parallel_test.sh SOURCE_TREE PROGRAM
 set -euo pipefail
 root=$1 program=$2

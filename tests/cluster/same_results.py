@@ -1,4 +1,5 @@
-"""Checks that two results databases have the same rows and scores, except for time and memory: same_results.py WHOLE.db OTHER.db SEEDS"""
+"""Checks that two results databases have the same rows and scores, except for time and memory: same_results.py WHOLE.db
+OTHER.db SEEDS"""
 import sqlite3
 import sys
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs tools/slurm/submit on three nodes of one machine and kills one node with all its processes. The result must equal that of one
-# undisturbed sweep. Needs root, Debian's slurm-wlm and munge (tools/setup --for cluster); exits with 77 without them.
+# Runs tools/slurm/submit on three nodes of one machine and kills one node with all its processes. The result must equal
+# that of one undisturbed sweep. Needs root, Debian's slurm-wlm and munge (tools/setup --for cluster); exits with 77
+# without them.
 #   slurm_test.sh SOURCE_TREE PROGRAM
 set -euo pipefail
 root=$1 program=$2
@@ -14,7 +15,8 @@ declare -A node
 killed=0
 others=()
 say() { printf 'slurm_test: %s\n' "$*"; }
-# Prints the processes of a node. Their environment names the node, but the environment of their parent, slurmstepd, does not
+# Prints the processes of a node. Their environment names the node, but the environment of their parent, slurmstepd,
+# does not
 processes_of() {
   local file pid parent said
   for file in /proc/[0-9]*/environ; do

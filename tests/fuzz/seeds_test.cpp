@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every reader takes its seeds, and neither cut nor spoiled copies of them bring it to more than a refusal. What runs
-// for hours is fuzz_target.cpp; this is its small, ordinary neighbour.
+// Every reader accepts its seeds, and rejects or accepts truncated and corrupted copies without a crash. This is a
+// short test; fuzz_target.cpp runs for hours.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::vector<Seed> seeds_of(const Reader& reader) {
   return seeds;
 }
 
-/// What a reader does with bytes: "taken", "refused", or what it threw.
+/// Returns the result of a reader: "taken", "refused", or the message of another exception.
 std::string answer(const Reader& reader, const std::string& bytes, const std::filesystem::path& folder) {
   try {
     return takes(reader, bytes, folder) ? "taken" : "refused";
@@ -74,13 +74,13 @@ TEST_P(Readers, TakeTheirSeeds) {
   const std::vector<Seed> seeds = seeds_of(GetParam());
   ASSERT_FALSE(seeds.empty());
   for (const Seed& seed : seeds) {
-    // those called so were found by the fuzzer: they must be refused
+    // the fuzzer found the files with this prefix, and the reader must reject them
     const std::string expected = seed.name.starts_with("refused") ? "refused" : "taken";
     EXPECT_EQ(answer(GetParam(), seed.bytes, folder.path()), expected) << seed.name;
   }
 }
 
-// every length of a short seed; of a long one those at its ends and a hundred between
+// every length of a short seed; for a long seed, lengths near its ends and a hundred between them
 TEST_P(Readers, BearASeedCutAtAnyLength) {
   const Folder folder("cut_" + std::string(GetParam().name));
   std::size_t refused = 0, cuts = 0;
@@ -97,7 +97,7 @@ TEST_P(Readers, BearASeedCutAtAnyLength) {
   EXPECT_GT(refused, 0u) << "the cuts hurt nothing";
 }
 
-/// A byte as spoiled copies have it in its place.
+/// Returns the corrupted value of a byte.
 constexpr unsigned char kSpoiled[] = {0x00, 0xff, 0x7f, 0x80};
 
 TEST_P(Readers, BearSpoiledBytes) {
@@ -107,7 +107,7 @@ TEST_P(Readers, BearSpoiledBytes) {
   for (const Seed& seed : seeds_of(GetParam())) {
     for (int i = 0; i < 200 && !seed.bytes.empty(); ++i) {
       state = state * 6364136223846793005u + 1442695040888963407u;
-      // every second one near the beginning, where headers stand
+      // every second byte near the start, which contains headers
       const std::size_t at =
           (state >> 20) % (i % 2 == 0 ? seed.bytes.size() : std::min<std::size_t>(seed.bytes.size(), 400));
       std::string spoiled = seed.bytes;
@@ -120,7 +120,7 @@ TEST_P(Readers, BearSpoiledBytes) {
       refused += said == "refused";
     }
   }
-  // numbers and nothing else: any bytes are a cloud of KITTI
+  // a KITTI cloud consists only of numbers, so any bytes are valid
   if (GetParam().name != "kitti_cloud") {
     EXPECT_GT(refused, 0u) << "the spoiled bytes hurt nothing";
   }

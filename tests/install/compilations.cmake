@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Compares the compiler arguments of two build trees (compile_commands.json).
 
-# read_compilations(BUILD FOLDER OUT) returns "FILE FLAGS" of each file below FOLDER that BUILD compiles, sorted. The flags are
-# definitions, optimisation, language, -f and -m, which change results. Paths, warnings and instrumentation are left out.
+# read_compilations(BUILD FOLDER OUT) returns "FILE FLAGS" of each file below FOLDER that BUILD compiles, sorted. The
+# flags are definitions, optimisation, language, -f and -m, which change results. Paths, warnings and instrumentation
+# are left out.
 function(read_compilations build folder out)
   file(READ ${build}/compile_commands.json json)
   string(JSON count LENGTH "${json}")

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests the library as users get it. estimator/ can be configured alone, with the same compiler arguments as in the whole tree.
+# Tests the library as users get it. estimator/ can be configured alone, with the same compiler arguments as in the
+# whole tree.
 # A project outside of the tree can use the installed library. Another project can contain the folder of the library.
-# Negative controls: without the package, the project must not configure. A program with another memory layout must not link.
+# Negative controls: without the package, the project must not configure. A program with another memory layout must not
+# link.
 # Other compiler flags must be detected.
-# With ALONE=ON, a copy of the folder is built and tested, then installed as files, as a Debian package and from its source
-# archive. The project that contains the folder is built and run. The test with ALONE=ON takes as long as a build, so it belongs to the long suite.
+# With ALONE=ON, a copy of the folder is built and tested, then installed as files, as a Debian package and from its
+# source archive. The project that contains the folder is built and run. The test with ALONE=ON takes as long as a
+# build, so it belongs to the long suite.
 include(${CMAKE_CURRENT_LIST_DIR}/compilations.cmake)
 
 function(run expected)
@@ -65,7 +68,8 @@ function(consume prefix)
   endforeach()
 endfunction()
 
-# embed FOLDER configures a project that contains the estimator's folder. Its program must have the library's memory layout
+# embed FOLDER configures a project that contains the estimator's folder. Its program must have the library's memory
+# layout
 function(embed folder)
   file(COPY ${SOURCE}/tests/install/embedded DESTINATION ${WORK})
   run(passes ${CMAKE_COMMAND} -S ${WORK}/embedded -B ${WORK}/robot ${common} -DESTIMATOR=${folder}
@@ -97,8 +101,8 @@ if(NOT ALONE)
   return()
 endif()
 
-# A copy of the folder is built, tested and installed. Its Debian package is unpacked to an empty folder. Its source archive is
-# built and compared. The compiler cache is used if the tree uses it
+# A copy of the folder is built, tested and installed. Its Debian package is unpacked to an empty folder. Its source
+# archive is built and compared. The compiler cache is used if the tree uses it
 list(APPEND OPTIONS -DTUMBLE_ACCELERATE=${ACCELERATE})
 file(COPY ${SOURCE}/estimator DESTINATION ${WORK}/copy)
 run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common} ${OPTIONS} -DTUMBLE_BUILD_TESTS=ON

@@ -4,8 +4,8 @@
 
     bags.py TUMBLE WORK      TUMBLE: the program; WORK: folder for the packages and the files
 
-The packages come from PyPI, pinned with hashes (requirements.txt; for estimators, programs.txt), and are installed once to WORK. The
-test fails if they cannot be installed.
+The packages come from PyPI, pinned with hashes (requirements.txt; for estimators, programs.txt), and are installed once
+to WORK. The test fails if they cannot be installed.
 """
 import hashlib
 import os

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks that bags.py runs with its packages on the path: dialects_checks.py TUMBLE FOLDER
 
-Reads the bags of `tumble export --for PEER` with rosbags. Checks topics, message types, and fields of points with their types. Compares
-each time in the peer's unit with the recording's nanoseconds, which are read from PLY files.
+Reads the bags of `tumble export --for PEER` with rosbags. Checks topics, message types, and fields of points with their
+types. Compares each time in the peer's unit with the recording's nanoseconds, which are read from PLY files.
 """
 import json
 import pathlib

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks that bags.py runs with the packages of programs.txt on the path: programs_checks.py TUMBLE FOLDER
 
-Runs two external estimators in the folder that `tumble export stroll.h5 --for PEER --with-truth` writes, by the command in its
-manifest. Compares their last poses with `truth.tum`.
+Runs two external estimators in the folder that `tumble export stroll.h5 --for PEER --with-truth` writes, by the command
+in its manifest. Compares their last poses with `truth.tum`.
 """
 import json
 import pathlib
@@ -19,7 +19,8 @@ from program import run
 
 TUMBLE = FOLDER = None
 PACKAGES = pathlib.Path(numpy.__file__).resolve().parent.parent
-# Bound of the end error on a path of 11 m in a hall. The measured errors are 0.051 m (kiss-icp 1.3.0) and 0.046 m (rko-lio 0.4.0).
+# Bound of the end error on a path of 11 m in a hall. The measured errors are 0.051 m (kiss-icp 1.3.0) and 0.046 m
+# (rko-lio 0.4.0).
 # The papers report about 1 % of the path; the stated lidar mounting, with errors of 1 cm and 1 deg, increases the error
 BOUND_M = 0.3
 PEERS = {"kiss-icp": "lidar", "rko-lio": "body"}  # frame of the estimated poses

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that the errors of three external estimators on one draw of `stroll` are within a bound: stroll.py ROOT PROGRAM WORK.
+"""Tests that the errors of three external estimators on one draw of `stroll` are within a bound: stroll.py ROOT PROGRAM
+WORK.
 
-Negative control: with two exchanged point axes, the error exceeds the bound. Exits with 77 if the packages cannot be installed."""
+Negative control: with two exchanged point axes, the error exceeds the bound. Exits with 77 if the packages cannot be
+installed."""
 import json
 import os
 import pathlib
@@ -9,8 +11,9 @@ import shutil
 import subprocess
 import sys
 
-# Bound of the end error on a path of 12 m in a hall. The papers state errors of 0.2 to 1 % of the path, at most 0.12 m. The stated lidar
-# mounting, with errors of 1 cm and 1 deg, increases the error. The measured errors are 0.006 to 0.025 m.
+# Bound of the end error on a path of 12 m in a hall. The papers state errors of 0.2 to 1 % of the path, at most 0.12 m.
+# The stated lidar mounting, with errors of 1 cm and 1 deg, increases the error. The measured errors are 0.006 to 0.025
+# m.
 BOUND_M = 0.3
 SEED = 61003
 PEERS = ("kiss_icp", "rko_lio", "pelorus")

@@ -8,7 +8,8 @@ mkdir -p "$work"
 [ -x "$environment/bin/python" ] || /usr/bin/python3 -m venv "$environment"
 pip() { "$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; }
 
-# builds the wheel from the source distribution; checks its size, and that it needs only shared libraries that every system has
+# builds the wheel from the source distribution; checks its size, and that it needs only shared libraries that every
+# system has
 "$tree/python/make_wheel" "$work/wheel"
 wheel=$(echo "$work"/wheel/dist/*.whl)
 pip --force-reinstall --no-deps "$wheel"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks the contents of the installed package and of the folder of python/make_wheel: wheel_check.py ENVIRONMENT FOLDER. Must run in
-this environment's interpreter. Exits with 1 if files are missing, unexpected or too large."""
+"""Checks the contents of the installed package and of the folder of python/make_wheel: wheel_check.py ENVIRONMENT
+FOLDER. Must run in this environment's interpreter. Exits with 1 if files are missing, unexpected or too large."""
 import importlib.metadata
 import pathlib
 import re

@@ -3,8 +3,8 @@
 """An independent publisher, which plays a recording in real time like the drivers of an IMU and a lidar.
 
 play.py RECORDING SENT TOPIC...    waits for a subscriber of each topic (imu, points), then publishes the messages at their times. Writes the
-                                   sending time of each message to SENT (monotonic clock, seconds). From tumble, the script uses only
-                                   the reader of recordings.
+                                   sending time of each message to SENT (monotonic clock, seconds). From tumble, the
+                                   script uses only the reader of recordings.
 """
 import array
 import json

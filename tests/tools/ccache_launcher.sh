@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests the checksum of a precompiled header: it depends only on the header, and is deleted with the header. A fake ccache writes
-# the given contents, or fails.
+# Tests the checksum of a precompiled header: it depends only on the header, and is deleted with the header. A fake
+# ccache writes the given contents, or fails.
 #   ccache_launcher.sh ROOT
 set -eu
 launcher=$1/estimator/cmake/ccache_launcher

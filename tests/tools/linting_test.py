@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests the parts of tools/lint other than clang-format and clang-tidy: missing includes, and joint texts of many sources.
+"""Tests the parts of tools/lint other than clang-format and clang-tidy: missing includes, and joint texts of many
+sources.
 
     linting_test.py TOOLS_FOLDER
 """

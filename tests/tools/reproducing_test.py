@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests tools/reproduce without the program: scores of a small database, numbers of a page, and the check for stale numbers.
+"""Tests tools/reproduce without the program: scores of a small database, numbers of a page, and the check for stale
+numbers.
 
     reproducing_test.py TOOLS_FOLDER
 """

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests which arguments tools/slurm/submit passes to a fake sbatch, and which it rejects. tests/cluster uses the real Slurm.
+# Tests which arguments tools/slurm/submit passes to a fake sbatch, and which it rejects. tests/cluster uses the real
+# Slurm.
 #   slurm_submit.sh TREE
 set -euo pipefail
 scratch=$(mktemp -d)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests, with fake cmake and ctest, that tools/test runs all stages even if one fails, and reports the failure with its exit status.
+# Tests, with fake cmake and ctest, that tools/test runs all stages even if one fails, and reports the failure with its
+# exit status.
 #   stages.sh TREE
 set -euo pipefail
 scratch=$(mktemp -d)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the commands of a tutorial: follow.py TUTORIAL.md FOLDER. Exits with 1 at the first command that fails.
 
-A block of code after a line that contains only `NAME`: is written to the file NAME. A block of the language sh is run by bash in FOLDER,
-which is created empty. A block after <!-- not run: REASON --> is skipped. A block of another language without a name is an error. A
-tutorial without commands is an error, too.
+A block of code after a line that contains only `NAME`: is written to the file NAME. A block of the language sh is run
+by bash in FOLDER, which is created empty. A block after <!-- not run: REASON --> is skipped. A block of another
+language without a name is an error. A tutorial without commands is an error, too.
 """
 import pathlib
 import re

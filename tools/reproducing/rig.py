@@ -17,7 +17,8 @@ from .runs import Runs, Scores
 
 RAW, PUBLISHED, TUNED, BATCH, LAG = RATES = ("rate/raw", "rate/saave", "rate/saave at 10.0", "rate/tumble", "rate/tumble_lag")
 SWEPT = (RAW, PUBLISHED, BATCH, LAG)
-# the saturation limits of the simulated gyros differ by one percent between devices and axes; 10.0 rad/s is below all limits
+# the saturation limits of the simulated gyros differ by one percent between devices and axes; 10.0 rad/s is below all
+# limits
 DEFAULT_THRESHOLD_RAD_S = 10.45  # the program's default, for a nominal saturation limit of 10.5 rad/s
 THRESHOLD = "saturation_point_rad_s=10.0"
 MAPS = dict(zip(RATES, ("slam/icp_raw", "slam/published", f"slam/published slam/published.{THRESHOLD}", "slam/tumble", "slam/tumble_lag")))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures the time of small_gicp's single-thread point-to-plane registration on the clouds of registration_clouds. See README.md."""
+"""Measures the time of small_gicp's single-thread point-to-plane registration on the clouds of registration_clouds. See
+README.md."""
 import pathlib
 import sys
 import time
