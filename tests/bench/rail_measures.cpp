@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rail_measures AXIS RAIL FILE...: measures the behaviour of a gyro at its saturation limit of RAIL rad/s on AXIS (x,
-// y, z), with a line per file. Prints the share of repeated rows, the share of original gyro readings at the limit, the
-// duration at the limit, and the true rate there. Also prints the scatter of the readings of one sign within segments,
-// before and after a plane is fitted. FILE is a simulated recording (.h5) or a RepoIMU file (.csv), whose reference
-// rate comes from cameras. This program is not a test.
+// y, z), with a line per file. Prints the share of repeated rows, the share of original gyro readings at the saturation
+// limit, the duration at the saturation limit, and the true rate there. Also prints the scatter of the readings of one
+// sign within segments, before and after a plane is fitted. FILE is a simulated recording (.h5) or a RepoIMU file
+// (.csv), whose reference rate comes from cameras. This program is not a test.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -42,7 +42,7 @@ std::filesystem::path written(const DataFolder& folder);
 /// Number of the stand-in trial of BROAD, whose file name starts with it.
 inline constexpr const char* kStandInTrial = "00";
 inline constexpr std::size_t kStandInTrialSamples = 25714;
-/// A wand whose gyro clips about x at a tilted limit, as in TStick_Test05 of RepoIMU.
+/// A wand whose gyro clips about x at a tilted saturation limit, as in TStick_Test05 of RepoIMU.
 inline constexpr const char* kStandInWand = "TStick_StandIn.csv";
 inline constexpr const char* kStandInFlight = "stand_in_flight.csv";
 inline constexpr const char* kSphereLogFile = "orientation_all.csv";
@@ -60,7 +60,7 @@ Eigen::Isometry3d norlab_pose(double t_s);
 struct WandRail {
   double distance_rad_s = 7.2987, offset_rad_s = -0.046, y_slope = 0.006, z_slope = -0.0181;
 };
-/// Number of samples of the stand-in wand at this limit, counted on the motion itself.
+/// Number of samples of the stand-in wand at this saturation limit, counted on the motion itself.
 int stand_in_wand_clipped();
 
 }  // namespace tumble::test

@@ -18,8 +18,8 @@ struct Wand {
   double gyro_hz = 0.0;   ///< rate of a sensor slower than the log; 0: rate of the log
   double accel_hz = 0.0;  ///< the same for the accelerometer
   double rail_rad_s = 7.3;
-  double rail_tilt = -0.02;   ///< tilt of the x limit, per rad/s of z
-  double rail_y_slope = 0.0;  ///< tilt of the x limit, per rad/s of y
+  double rail_tilt = -0.02;   ///< tilt of the x saturation limit, per rad/s of z
+  double rail_y_slope = 0.0;  ///< tilt of the x saturation limit, per rad/s of y
   double rail_offset_rad_s = 0.0;
   double delay_s = 0.012;  ///< delay of the reference relative to the IMU
   Eigen::Quaterniond q_IV = Eigen::Quaterniond(Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.2, -0.5, 0.8).normalized()));

@@ -79,7 +79,7 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
   }
 }
 
-// A rate well below the limit, or slow near the limit, counts as measured.
+// A rate well below the saturation limit, or slow near the saturation limit, counts as measured.
 TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
   const auto none = [](const std::vector<std::uint8_t>& near) {
     return std::all_of(near.begin(), near.end(), [](std::uint8_t bits) { return bits == 0; });

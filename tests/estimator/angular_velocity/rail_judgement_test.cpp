@@ -106,7 +106,7 @@ TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
 }
 
 /// A wand that swings about x beyond its saturation limit. The element is not tilted. The device subtracts its offset
-/// after clipping, so the limits of the two signs differ.
+/// after clipping, so the saturation limits of the two signs differ.
 std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) {
   constexpr double kSwungRail_rad_s = 7.44;
   oracles::Gaussian noise(5);
@@ -264,7 +264,7 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
     const StreamingClippingFinder watch({.clipping = {}, .readings_max = readings_max});
     StreamingClippingFinder::State state = watch.start();
     const auto reading = [](int k) {
-      // a slow oscillation near one level: no reading is at a limit
+      // a slow oscillation near one level: no reading is at a saturation limit
       return Vector3d(9.0 + 0.3 * std::sin(0.7 * k) + 1e-6 * k, 0.1 * std::cos(0.3 * k), 1e-3 * k);
     };
     constexpr int kSamples = 3000;
@@ -285,8 +285,8 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   }
 }
 
-// A reading before a segment at the limit whose window was partly clipped is detected at the next sample. With known
-// limits, stream and batch agree.
+// A reading before a segment at the saturation limit whose window was partly clipped is detected at the next sample.
+// With known saturation limits, stream and batch agree.
 TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found batch = ClippingFinder({}).find(tumble.samples);

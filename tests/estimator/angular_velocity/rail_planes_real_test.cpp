@@ -47,7 +47,7 @@ struct Known {
   const char* file;
   int axis;
   double distance, offset, first_slope, second_slope;  // slopes along (axis + 1) % 3 and (axis + 2) % 3
-  int samples;                                         // samples at the limit, counted by hand
+  int samples;                                         // samples at the saturation limit, counted by hand
 };
 
 class RealRails : public ::testing::TestWithParam<Known> {};

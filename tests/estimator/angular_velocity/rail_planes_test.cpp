@@ -54,7 +54,7 @@ RailPlanes find(const std::vector<Vector3d>& rates) {
   return RailPlaneFinder({}).find(samples_of(rates));
 }
 
-// Counts samples at a limit, those that were found, and false detections.
+// Counts samples at a saturation limit, those that were found, and false detections.
 struct Score {
   int deep = 0, found = 0, wrong = 0;
   void add(const std::vector<ImuSample>& samples, const std::vector<Vector3d>& hidden) {
@@ -159,8 +159,8 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   EXPECT_FALSE(find(free).any());
 }
 
-// A stated range is evidence against a limit far below it. However, the range may be set to another value, so many
-// segments outweigh the stated range.
+// A stated range is evidence against a saturation limit far below it. However, the range may be set to another value,
+// so many segments outweigh the stated range.
 TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
   const Eigen::Matrix3d rows = drawn_rows(1, 0.03);
   const std::vector<ImuSample> many =

@@ -45,7 +45,7 @@ TEST(RateElements, ATiltedRailIsReadAsWellAsAnUprightOne) {
 }
 
 TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
-  // measured at 5 %: 0.983; the rest is in impacts, and in a few samples of elements with an unknown limit
+  // measured at 5 %: 0.983; the rest is in impacts, and in a few samples of elements with an unknown saturation limit
   for (const double tilt : {0.02, 0.05}) {
     const double share = smoothed(tilt).share_within();
     EXPECT_GT(share, 0.98) << tilt;
@@ -90,8 +90,8 @@ TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   EXPECT_TRUE(report.clips_after_compensation);
 }
 
-// A rate about y that increases and decreases linearly and is clipped at a level; the limit of another element is
-// known.
+// A rate about y that increases and decreases linearly and is clipped at a level; the saturation limit of another
+// element is known.
 std::vector<RateObservation> cut_tops(double level_rad_s, double up_rad_s, double down_rad_s, int sign) {
   std::vector<RateObservation> out(60);
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -112,7 +112,7 @@ RailPlanes plane_of_x(double distance_rad_s) {
   return out;
 }
 
-// The triangle exceeds the limit by 2 rad/s. Whole samples leave an uncertainty of half a step at both ends.
+// The triangle exceeds the saturation limit by 2 rad/s. Whole samples leave an uncertainty of half a step at both ends.
 TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
@@ -137,7 +137,7 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
   EXPECT_TRUE(suspect(plane_of_x(8.7), top));
   EXPECT_FALSE(suspect({}, top));
-  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a limit that differs by 6 % belongs to another element
+  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a saturation limit that differs by 6 % belongs to another element
   RailPlanes own = plane_of_x(8.7);
   own.element[1] = own.element[0];
   EXPECT_FALSE(suspect(own, top));
@@ -146,14 +146,14 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   EXPECT_FALSE(suspect(plane_of_x(8.7), flagged));
 }
 
-// A reading of 9.5 beside a rate of 2 bounds a limit with tilt 0.06: it is at least 9.5 - 0.06 * 2. A reading of 8.5
-// beside 0.5 is at most at a limit of 8.53.
+// A reading of 9.5 beside a rate of 2 bounds a saturation limit with tilt 0.06: it is at least 9.5 - 0.06 * 2. A
+// reading of 8.5 beside 0.5 is at most at a saturation limit of 8.53.
 TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
   MinSaturationLevels least;
   least.add({2.0, 9.5, 0.0});
   EXPECT_TRUE(least.rules_out({0.5, 8.5, 0.0}, 1));
   EXPECT_FALSE(least.rules_out({0.5, 9.4, 0.0}, 1));
-  // the tilt changes the limit more for large rates about other axes
+  // the tilt changes the saturation limit more for large rates about other axes
   EXPECT_FALSE(least.rules_out({13.0, 8.5, 0.0}, 1));
   EXPECT_FALSE(least.rules_out({0.5, -8.5, 0.0}, 1));  // there are no readings of this sign
   EXPECT_FALSE(least.rules_out({8.5, 0.5, 0.0}, 0));   // there are no readings of this element

@@ -108,7 +108,7 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
   TumbleRecording tumble = make_tumble(options);
   std::size_t flips = 0;
   for (std::size_t k = 1; k < tumble.samples.size(); ++k) {
-    // every third reading at the limit overflows after another reading
+    // every third reading at the saturation limit overflows after another reading
     Vector3d& reading = tumble.samples[k].angular_velocity_rad_s;
     for (int j = 0; j < 3; ++j) {
       const double before = tumble.samples[k - 1].angular_velocity_rad_s[j];

@@ -84,7 +84,8 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
         apart.push_back((live[k].w_WI_I_rad_s - batch[k].w_WI_I_rad_s).cwiseQuotient(sigma).norm());
       }
       ASSERT_GT(apart.size(), 50u);
-      // edges of segments: when a limit is found, the stream classifies the readings before the segment again
+      // edges of segments: when a saturation limit is found, the stream classifies the readings before the segment
+      // again
       EXPECT_LE(judged_apart, 5) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.5), 0.3) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.9), 1.5) << tilt << " " << seed;
@@ -133,7 +134,7 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
   }
 }
 
-/// A body that swings about x, faster after 4 s; its x element then clips at a tilted limit of 7.4 rad/s.
+/// A body that swings about x, faster after 4 s; its x element then clips at a tilted saturation limit of 7.4 rad/s.
 struct Swing {
   std::vector<ImuSample> samples;
   std::vector<Vector3d> truth;
@@ -155,7 +156,7 @@ struct Swing {
   }
 };
 
-/// Statistics of samples that the stream reported while the limit was unknown.
+/// Statistics of samples that the stream reported while the saturation limit was unknown.
 struct Believed {
   int clipped = 0, within = 0, measured = 0;
 };
@@ -182,8 +183,8 @@ Believed believed(const RateStream::Params& params) {
   return out;
 }
 
-// A limit is detected some samples after the first clipping, when the lag is already over. Until then, readings are
-// suspect.
+// A saturation limit is detected some samples after the first clipping, when the lag is already over. Until then,
+// readings are suspect.
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
@@ -203,7 +204,7 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   EXPECT_LT(trusted.within, 0.05 * trusted.clipped);
 }
 
-/// Number of samples at the limit after it is known, and share within three deviations.
+/// Number of samples at the saturation limit after it is known, and share within three deviations.
 std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
   int clipped = 0, within = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -234,15 +235,15 @@ TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
   EXPECT_LT(believed, 0.9 * clipped);
 }
 
-// The limit of x is known. y remains at a similar rate and is suspect, and then reads a much larger value within the
-// lag.
+// The saturation limit of x is known. y remains at a similar rate and is suspect, and then reads a much larger value
+// within the lag.
 TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed, 800).samples;
     constexpr std::size_t kTop = 752;  // x crosses zero at 7.54 s
     const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 7.2, 8.2, 9.0, 9.6, 9.6, 8.6, 7.0, 5.0, 3.0};
     for (std::size_t i = 0; i < std::size(steps); ++i) {
-      // equal readings would indicate a limit
+      // equal readings would indicate a saturation limit
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
     auto params = with_lever_arm<RateStream::Params>();
@@ -269,7 +270,8 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
   }
 }
 
-// Nothing contradicts this limit, so all samples are reported as suspect, also the rest of the segment at the end.
+// Nothing contradicts this saturation limit, so all samples are reported as suspect, also the rest of the segment at
+// the end.
 TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed).samples;
@@ -289,7 +291,8 @@ TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
   }
 }
 
-// Motions that resemble a limit: a torque-free spin, the flat top of a slow oscillation, and a nearly constant rate.
+// Motions that resemble a saturation limit: a torque-free spin, the flat top of a slow oscillation, and a nearly
+// constant rate.
 TEST(RateStreamElements, SpinsAndTopsAreNoRails) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     oracles::Gaussian noise(seed);

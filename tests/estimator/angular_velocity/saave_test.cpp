@@ -173,7 +173,7 @@ TEST(SaaveEdge, TheVarianceOfAnEstimateDependsOnNothing) {
 }
 
 TEST(SaaveEdge, SmoothedRatesMayFallBelowTheRail) {
-  // all clipped samples are rejected, so the curve between the unclipped samples may be below the limit
+  // all clipped samples are rejected, so the curve between the unclipped samples may be below the saturation limit
   std::vector<ImuSample> run;
   for (std::size_t k = 0; k < 60; ++k) {
     const bool clip = k >= 25 && k < 35;

@@ -11,8 +11,8 @@
 #include "tumble/common/so3.hpp"
 
 /// Closed-form motion of a hand-held body, similar to a twirled wand: Exp(a(t) x) Exp(b(t) y). The spin a about the
-/// long axis exceeds the gyro's limit for some tenths of a second at a time; the tilt b is slow. The hand moves along
-/// sines of some decimetres. Readings are the values at the middle of their window.
+/// long axis exceeds the gyro's saturation limit for some tenths of a second at a time; the tilt b is slow. The hand
+/// moves along sines of some decimetres. Readings are the values at the middle of their window.
 namespace tumble::testing {
 
 struct HandHeldMotion {
@@ -86,7 +86,7 @@ inline HandHeldRecording record(const HandHeldMotion& motion, double hz, double 
   return out;
 }
 
-/// Makes each third reading at the limit overflow to the opposite sign; `sign` is its sign.
+/// Makes each third reading at the saturation limit overflow to the opposite sign; `sign` is its sign.
 inline HandHeldRecording with_wraps(const HandHeldRecording& recording, std::int8_t sign) {
   HandHeldRecording out = recording;
   int at_rail = 0;

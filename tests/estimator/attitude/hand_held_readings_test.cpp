@@ -144,8 +144,8 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   EXPECT_NEAR(std::sqrt(apart), std::sqrt(expected), 0.05 * std::sqrt(expected));
 }
 
-/// A rate far above the limit whose slope reverses while it is clipped. The readings around the segment do not show
-/// this curvature. Control: the same readings without clipping.
+/// A rate far above the saturation limit whose slope reverses while it is clipped. The readings around the segment do
+/// not show this curvature. Control: the same readings without clipping.
 TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
   constexpr double kPeriod_s = 0.0035, kAmplitude_rad_s = 20.0, kTurn_rad_s = 21.0;
   std::vector<ImuSample> samples;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the hand-held smoother on real recordings, if they are available, and on their stand-ins. Uses BROAD with the
-// gyro clipped at a third of its peak, and RepoIMU's twirled wand, whose gyro clips at a tilted limit and whose
-// reference is optical.
+// gyro clipped at a third of its peak, and RepoIMU's twirled wand, whose gyro clips at a tilted saturation limit and
+// whose reference is optical.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -108,7 +108,7 @@ TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
 }
 
 /// If the window contains the whole segment, the deviation is that of white jerk between known values on both sides, at
-/// the limit and far above it.
+/// the saturation limit and far above it.
 TEST(HandHeldRevolutions, ABoundSaysNothingOfHowFar) {
   const HandHeldStream::Params params = calm_hand(0.6);
   for (const double lasts_s : {0.3, 0.5}) {

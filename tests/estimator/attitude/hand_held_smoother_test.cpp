@@ -189,7 +189,7 @@ TEST(HandHeldSmoother, FollowsAFreeGyroAndFindsTheVertical) {
 }
 
 TEST(HandHeldSmoother, RecoversATwirlBeyondTheRail) {
-  // peaks of 11.3 rad/s with a limit of 7.3; half of each rotation is clipped
+  // peaks of 11.3 rad/s with a saturation limit of 7.3; half of each rotation is clipped
   const HandHeldRecording recording = testing::record({}, 100.0, 20.0, 7.3);
   const RateErrors errors = rate_errors(recording, smoothed_carriage(recording));
   ASSERT_GT(errors.clipped.size(), 500u);

@@ -55,7 +55,7 @@ ImuMerge::Params spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_
 }
 
 struct MergeErrors {
-  double rate_error_rad_s = 0.0;     ///< largest error after 0.1 s at the limit
+  double rate_error_rad_s = 0.0;     ///< largest error after 0.1 s at the saturation limit
   double clipped_error_rad_s = 0.0;  ///< error of a single gyro
   int railed = 0, flagged = 0;
 };

@@ -67,7 +67,7 @@ Joined joined(const std::vector<ImuSample>& samples, const RegimeStream::Params&
 }
 
 /// The twirl of HandHeldMotion with a slow start: its time runs at 0.3 of normal for four seconds, then accelerates to
-/// 1 within two seconds. The samples have clip flags, so no limit must be found first.
+/// 1 within two seconds. The samples have clip flags, so no saturation limit must be found first.
 struct SlowlyBegun {
   HandHeldMotion motion;
   double speed(double t) const { return 0.3 + 0.7 * std::clamp(0.5 * (t - 4.0), 0.0, 1.0); }

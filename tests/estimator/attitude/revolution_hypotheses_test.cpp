@@ -83,9 +83,9 @@ TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
   EXPECT_NEAR(stated, spread, 0.15 * spread);
 }
 
-/// A spin for which the first optimisation, started at the limit, loses a revolution and remains at the bound. Gravity
-/// after the segment determines the angle modulo whole revolutions. The solution with the smallest jerk is selected;
-/// more revolutions remain possible.
+/// A spin for which the first optimisation, started at the saturation limit, loses a revolution and remains at the
+/// bound. Gravity after the segment determines the angle modulo whole revolutions. The solution with the smallest jerk
+/// is selected; more revolutions remain possible.
 TEST(RevolutionHypotheses, WhatFollowsDecides) {
   ClippedSpin spin;
   spin.more_rad_s = 7.5;

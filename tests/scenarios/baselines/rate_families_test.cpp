@@ -24,7 +24,8 @@ using Eigen::Vector3d;
 
 constexpr double kRail = 10.5, kPeriod = 0.01, kGravity = 9.80665;
 
-// A smooth swing about a fixed horizontal axis from rest to rest, beyond the limit once: rate = peak sin^2(pi t / T).
+// A smooth swing about a fixed horizontal axis from rest to rest, beyond the saturation limit once: rate = peak
+// sin^2(pi t / T).
 struct Swing {
   Vector3d axis = Vector3d(0.2, 1.0, 0.1).normalized();
   double peak = 13.0, duration = 0.6, rest = 1.0;
@@ -166,7 +167,7 @@ TEST(PublishedFamilies, RefuseBadInput) {
   EXPECT_THROW(StandstillSmoother({.rails = {}, .gravity_m_s2 = 0.0}), InvalidParams);
 }
 
-// A rate that crosses the limit with constant slope: deficit and reading in closed form.
+// A rate that crosses the saturation limit with constant slope: deficit and reading in closed form.
 TEST(SubsampleSaturation, IsExactForAConstantSlope) {
   for (const double slope : {0.5, 2.0, 5.0}) {    // slope per window
     for (const double share : {0.2, 0.5, 0.8}) {  // clipped share of the window
@@ -180,14 +181,14 @@ TEST(SubsampleSaturation, IsExactForAConstantSlope) {
   }
   EXPECT_FALSE(subsample_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // completely clipped
   EXPECT_FALSE(subsample_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // clipped except for a hundredth
-  // a slowly decreasing plateau, as for a limit tilted by a thousandth: all readings are flagged, without a step to a
-  // neighbour
+  // a slowly decreasing plateau, as for a saturation limit tilted by a thousandth: all readings are flagged, without a
+  // step to a neighbour
   EXPECT_FALSE(subsample_saturation(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).saturated);
   EXPECT_TRUE(subsample_saturation(kRail - 0.05, kRail - 0.3, kRail, 5e-3).saturated);
 }
 
-// All readings decrease from sample to sample along a tilted limit and are flagged. None of them has a partly clipped
-// window, except a reading after an unclipped reading.
+// All readings decrease from sample to sample along a tilted saturation limit and are flagged. None of them has a
+// partly clipped window, except a reading after an unclipped reading.
 TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
   RailDetector::State state;
   state.channels[0].rail = kRail;

@@ -96,7 +96,7 @@ TEST(MethodAccuracy, TumbleAttitudeFollowsAGyroThatClips) {
   EXPECT_LT(tumble, 0.02);  // measured 0.0090: the rotation is forced, not a torque-free flight
   // negative control: the saturation deficit is large
   EXPECT_GT(scores_of("integrate", recording).at("inclination_rmse_rad"), 0.5);
-  // the oracle ignores the limit: its result is the same with and without clipping
+  // the oracle ignores the saturation limit: its result is the same with and without clipping
   testing::SyntheticMotion free;
   free.rail_rad_s = 100.0;
   EXPECT_EQ(scores_of("attitude/oracle", testing::synthetic_rig()),
@@ -247,9 +247,9 @@ TEST(MethodAccuracy, SlamOracleEndsWhereTheTruthEnds) {
   EXPECT_GT(oracle.at("map_coverage"), 0.8);
 }
 
-// A pendulum whose plateaus resemble a limit, but not clearly. The readings are suspect, but not classified as clipped.
-// The smoother's rates replace these readings. An attitude from the readings has an error of 0.6 rad after the first
-// plateau.
+// A pendulum whose plateaus resemble a saturation limit, but not clearly. The readings are suspect, but not classified
+// as clipped. The smoother's rates replace these readings. An attitude from the readings has an error of 0.6 rad after
+// the first plateau.
 TEST(MethodAccuracy, AnAttitudeIsNotTurnedByReadingsThatAreDoubted) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "swing"), 91201, 1, Lidars::left_out);

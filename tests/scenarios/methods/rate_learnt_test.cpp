@@ -214,9 +214,8 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
   }
 }
 
-// which limit, by how many samples of either sign, with slope and deviation
-// A wand run determines neither lever arm nor inertia, but its limits. A run that is too short to detect the limits
-// uses those of the previous run.
+// A run with a hand-held wand determines its saturation limits, but neither lever arm nor inertia. A later run that is
+// too short to detect the saturation limits uses those of the previous run.
 TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
   const DataRoot data{test::source_dir()};
   sim::Recording recording = simulate_draw(data, load_scenario(data, "twirl"), 99560, 1, Lidars::left_out).recording;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The methods `tumble` and `tumble_lag` must use all data of a recording: further IMUs, clip flags, stated ranges, and
-// accelerometer limits. Both methods must report suspicious data.
+// accelerometer saturation limits. Both methods must report suspicious data.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   EXPECT_EQ(estimated_rates("tumble", accelerometers).health.at("imus"), 3.0);
 }
 
-// an oscillating limit without plateau and stated range: only the flags show it
+// an oscillating saturation limit without plateau and stated range: only the flags show it
 TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();

@@ -100,7 +100,7 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
 }
 
 // If two elements only clipped together, the offset of the plane along each row is unknown. The next run would clip
-// elsewhere and find a wrong limit.
+// elsewhere and find a wrong saturation limit.
 TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
   RailPlane plane;
   plane.row = {1.0, 0.05, 0.0};
@@ -129,7 +129,7 @@ TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
 }
 
 // A plane from a few readings, one of them partly clipped, had stated slope deviations of 5e-4 and errors of 0.02. With
-// this calibration, the next run of the device had twice the error at its true limit.
+// this calibration, the next run of the device had twice the error at its true saturation limit.
 TEST_F(RigCalibrationFile, SlopesOfUnsurePlanesAreDoubted) {
   RailPlane plane;
   plane.row = {1.0, 0.0244, 0.0107};

@@ -208,8 +208,8 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_TRUE(frozen.z_frozen);
 }
 
-// A gyro that clips in its flights, too: if readings at a limit do not count, no flight agrees with the correct or with
-// other axis signs (docs/maths/imu_merge.md (I32)).
+// A gyro that clips in its flights, too: if readings at a saturation limit do not count, no flight agrees with the
+// correct or with other axis signs (docs/maths/imu_merge.md (I32)).
 TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);

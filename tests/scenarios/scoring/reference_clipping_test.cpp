@@ -18,7 +18,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRail = 7.3, kTilt = 0.05, kOffset = -0.05;
 
-/// A gyro with a tilted x limit and an offset, and a reference with noise and a gap.
+/// A gyro with a tilted x saturation limit and an offset, and a reference with noise and a gap.
 struct Made {
   std::vector<Eigen::Vector3d> rate, reading, reference;
   std::vector<bool> clipped;
@@ -70,7 +70,7 @@ TEST(ReferenceClipping, CallsTheClippedSamplesAndNoOthers) {
     const double deficit = std::abs(recording.rate[k].x() - recording.reading[k].x());
     clipped += recording.clipped[k] ? 1 : 0;
     if (deficit > 0.5 && axes[k] != 1) ++deep_missed;
-    // within 2 % of the limit plus the noise of the reference, both classifications are allowed
+    // within 2 % of the saturation limit plus the noise of the reference, both classifications are allowed
     if (std::abs(recording.rate[k].x()) < 0.93 * kRail && axes[k] != 0) ++free_called;
   }
   ASSERT_GT(clipped, 500u);
@@ -78,7 +78,7 @@ TEST(ReferenceClipping, CallsTheClippedSamplesAndNoOthers) {
   EXPECT_EQ(free_called, 0u);
 }
 
-// negative controls: a motion below the limit, and one that only reverses at its peak
+// negative controls: a motion below the saturation limit, and one that only reverses at its peak
 TEST(ReferenceClipping, AMotionWithoutARailHasNone) {
   for (const double peak : {3.0, 7.0}) {
     const Made recording = made(peak, 0.1);

@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 // a seed that is used in development, for which the gyro clips in every scenario; in mild draws, the rate is below the
-// limit
+// saturation limit
 constexpr std::uint64_t kClippedSeed = 1003;
 
 // scenarios that test sensors have separate suites; `stroll` belongs to peers/gentle.yaml, where no gyro clips
@@ -153,7 +153,8 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
 }
 
 // external estimators must follow this gentle motion, or their failure on a tumble is not meaningful. The rate is far
-// below the limit, there is no contact, and the end is not the start, where an estimate without motion would be correct
+// below the saturation limit, there is no contact, and the end is not the start, where an estimate without motion would
+// be correct
 TEST(StrollScenario, IsGentleGoesAwayAndEndsAtRest) {
   for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
     const sim::ResolvedSituation situation =

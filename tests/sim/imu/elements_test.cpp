@@ -109,7 +109,7 @@ TEST(Elements, TwoAtTheirRailsLeaveOneTruthAndThreeNone) {
 }
 
 TEST(Elements, OffsetSetsTheSignsApart) {
-  // the wand: r = 7.30 rad/s, x limits of +7.25 and -7.35
+  // the wand: r = 7.30 rad/s, x saturation limits of +7.25 and -7.35
   const Elements elements(Matrix3d::Identity(), {0.05, 0.0, 0.0});
   Rail rail = clamp(7.30);
   std::uint8_t flags = 0;
@@ -120,7 +120,7 @@ TEST(Elements, OffsetSetsTheSignsApart) {
 }
 
 TEST(Elements, TheFlagIsThatOfTheElementAndNotOfTheAxis) {
-  // 10.3 about x exceeds an upright limit, but the element with scale 0.97 is below it
+  // 10.3 about x exceeds an upright saturation limit, but the element with scale 0.97 is below it
   Matrix3d axes = Matrix3d::Identity();
   axes(0, 0) = 0.97;
   std::uint8_t flags = 0;

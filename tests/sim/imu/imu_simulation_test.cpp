@@ -242,7 +242,7 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
 }
 
 TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
-  // x oscillates beyond the limit while y and z remain below it; noise, bias and axis errors are on
+  // x oscillates beyond the saturation limit while y and z remain below it; noise, bias and axis errors are on
   SensorSpec sensor = ideal(200.0);
   for (const auto& [name, value] :
        std::initializer_list<std::pair<const char*, double>>{{"gyro_rail_rad_s", 8.0},

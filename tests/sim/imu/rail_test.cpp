@@ -35,7 +35,7 @@ TEST(RailStage, ClampsEachAxisAndFlagsIt) {
   Rail clamp = rail({.level = 10.5});
   std::uint8_t flags = 0;
   EXPECT_EQ(clamp({11.0, -10.6, 10.5}, 3, flags), Vector3d(10.5, -10.5, 10.5));
-  EXPECT_EQ(flags, 0b011000);  // a value exactly at the limit does not exceed it
+  EXPECT_EQ(flags, 0b011000);  // a value exactly at the saturation limit does not exceed it
 }
 
 TEST(RailStage, EveryKindLeavesWhatIsWithinTheRailAlone) {
@@ -70,7 +70,7 @@ TEST(RailStage, PlateauDiffersFromOneClippingToTheNextAndKeepsWithinOne) {
   constexpr int kEvents = 400;
   for (int event = 0; event < kEvents; ++event) {
     const double level = x_of(plateau, 13.0);
-    // noise around the limit does not end a clipping: 9.6 exceeds nine tenths of any level here
+    // noise around the saturation limit does not end a clipping: 9.6 exceeds nine tenths of any level here
     for (const double x : {14.0, 9.8, 12.0, 15.0}) ASSERT_EQ(x_of(plateau, x), std::min(x, level)) << "event " << event;
     levels.insert(level);
     sum += level - 10.5;
@@ -94,7 +94,7 @@ TEST(RailStage, WrapChangesTheSignAndLosesWholeTurns) {
 TEST(RailStage, SlowRecoveryFadesWithItsTime) {
   Rail slow = rail({.level = 10.0, .recovery_s = 0.05, .recovery_share = 0.3});
   for (int k = 0; k < 2000; ++k) ASSERT_EQ(x_of(slow, 12.0), 10.0);  // one second, until it is fully charged
-  EXPECT_NEAR(x_of(slow, 1.0), 4.0, 1e-6);                           // 1 and 0.3 of the limit
+  EXPECT_NEAR(x_of(slow, 1.0), 4.0, 1e-6);                           // 1 and 0.3 of the saturation limit
   for (int k = 1; k < 100; ++k) x_of(slow, 1.0);
   EXPECT_NEAR(x_of(slow, 1.0), 1.0 + 3.0 * std::exp(-1.0), 1e-6);  // 100 periods are one time constant
   for (int k = 0; k < 4000; ++k) x_of(slow, 1.0);

@@ -58,14 +58,14 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
   return out;
 }
 
-/// Returns the largest difference between `row` . y and `level` over windows completely at the positive limit of z, and
-/// their number.
+/// Returns the largest difference between `row` . y and `level` over windows completely at the positive saturation
+/// limit of z, and their number.
 std::pair<double, int> off_plane(const SimulatedImu& r, const Vector3d& row, double level) {
   double largest = 0.0;
   int windows = 0;
   for (std::size_t k = 1; k + 1 < r.record.gyro_rad_s.size(); ++k) {
     const auto whole = [&](std::size_t i) { return r.truth.gyro_unclipped_rad_s[i].z() > kRail_rad_s + 1.5; };
-    if (!whole(k - 1) || !whole(k) || !whole(k + 1)) continue;  // at the limit during the whole window
+    if (!whole(k - 1) || !whole(k) || !whole(k + 1)) continue;  // at the saturation limit during the whole window
     largest = std::max(largest, std::abs(row.dot(r.record.gyro_rad_s[k]) - level));
     ++windows;
   }
