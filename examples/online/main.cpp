@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimates poses of a rolling sphere from the samples of its IMU, which it reads line by line from standard input, as on
-// a robot: tumble_online RADIUS_M [LEVER_X LEVER_Y LEVER_Z [GYRO_RANGE_RAD_S [ACCEL_RANGE_M_S2]]]
-// From a socket: nc -l 5000 | tumble_online 0.145
-// Invalid lines are reported on standard error and skipped. Exit status: 0; 1 if no line was valid; 2 for wrong
-// arguments.
+// Estimates poses of a rolling sphere from the samples of its IMU, which it reads line by line from standard input, as
+// on a robot: tumble_online RADIUS_M [LEVER_X LEVER_Y LEVER_Z [GYRO_RANGE_RAD_S [ACCEL_RANGE_M_S2]]] From a socket: nc
+// -l 5000 | tumble_online 0.145 Invalid lines are reported on standard error and skipped. Exit status: 0; 1 if no line
+// was valid; 2 for wrong arguments.
 #include <charconv>
 #include <cstdio>
 #include <cstring>
