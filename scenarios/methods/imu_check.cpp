@@ -21,7 +21,7 @@ constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relatio
 constexpr double kArmShareOff = 0.06;
 
 void report_readings(const ImuFindings::Readings& readings, Estimate& estimate) {
-  estimate.health["imu_rest_force_share"] = readings.rest_force_share;
+  estimate.health["imu_rest_force_share"] = readings.rest_force_ratio;
   estimate.health["imu_force_share"] = readings.force_ratio;
   estimate.health["imu_rotation_unexplained"] = readings.unexplained_rotation_ratio;
   estimate.health["imu_rotation_slope"] = readings.rotation_slope;

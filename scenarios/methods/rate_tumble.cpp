@@ -61,7 +61,7 @@ const Settings<RateSmoother::Params>& rate_tumble_settings() {
 }
 
 const CalibratedRig* RigCalibrationUse::found() const {
-  const bool more = of_batch && of_batch->rails_alone && of_stream && !of_stream->rails_alone;
+  const bool more = of_batch && of_batch->only_rails && of_stream && !of_stream->only_rails;
   if (of_batch && !more) return &*of_batch;
   return of_stream ? &*of_stream : nullptr;
 }
@@ -71,10 +71,10 @@ namespace {
 /// Compares a stored calibration with a calibration from a run that did not use the stored calibration. Returns false
 /// and adds a failed health check if the two calibrations belong to different rigs.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
-  constexpr double kDistanceMax = 2.0;  // see distance_of_rigs
+  constexpr double kDistanceMax = 2.0;  // see calibration_distance
   report_no_findings(HealthFinding::About::learnt_rig, result);
-  if (!fresh || fresh->rails_alone) return true;
-  const double distance = distance_of_rigs(given.calibration, fresh->calibration);
+  if (!fresh || fresh->only_rails) return true;
+  const double distance = calibration_distance(given.calibration, fresh->calibration);
   if (distance <= kDistanceMax) return true;
   add_finding({HealthFinding::About::learnt_rig, distance}, result);
   return false;
@@ -130,7 +130,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
-    if (given != nullptr) start_from_calibration(*given, params);
+    if (given != nullptr) apply_saved_calibration(*given, params);
     std::vector<AuxiliaryRecording> auxiliary_imus;
     estimate.status = auxiliary_recordings(sensors, auxiliary_imus);
     RegimeSmoother::Report report;

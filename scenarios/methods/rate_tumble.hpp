@@ -63,7 +63,7 @@ struct RigCalibrationUse {
 
 /// Returns `method` with a calibration that starts from and updates `learning`. `learning` must outlive the returned
 /// method. If `learning` has a start calibration, the method also runs without this calibration. If the results of the
-/// two runs differ (distance_of_rigs), the estimate gets a failed health check and no calibration is saved. Throws
+/// two runs differ (calibration_distance), the estimate gets a failed health check and no calibration is saved. Throws
 /// BadInput unless the method is rate/tumble or rate/tumble_lag.
 Method calibrating_method(const Method& method, RigCalibrationUse& learning);
 

@@ -21,7 +21,8 @@ namespace {
 const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
   static const Settings<RegimeStream::Params> all = [] {
     std::vector<std::string> stated = stated_densities();
-    stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "carried_min"});
+    stated.insert(stated.end(),
+                  {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
     // RegimeStream takes these parameters from its RateStream. The hand-held stream iterates continuously.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
@@ -47,7 +48,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   params.hand_held.body.expert.gap_max_s = rate.gap_max_s;
   if (given == nullptr) return params;
 
-  start_from_calibration(*given, rate);
+  apply_saved_calibration(*given, rate);
   return params;
 }
 
@@ -66,7 +67,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   if (!estimate.status.ok()) return estimate;
   // Auxiliary IMUs determine the rate even if the body is hand-held, but the hand-held smoother does not use auxiliary
   // IMUs.
-  if (!auxiliary_imus.empty() && !parameters.has("carried_min")) params.carried_min = 1.0;
+  if (!auxiliary_imus.empty() && !parameters.has("hand_held_probability_min")) params.hand_held_probability_min = 1.0;
   const RegimeStream joined(params);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();

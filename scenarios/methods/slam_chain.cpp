@@ -85,7 +85,8 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
   params.own_body_L = presets::rig_body_L();
-  params.expert.matching.agreeing_matches_min = RegistrationParams().expert.agreeing_min;  // disables with_few_matches
+  params.expert.matching.agreeing_matches_min =
+      RegistrationParams().expert.agreeing_matches_needed;  // disables with_few_matches
   return params;
 }
 

@@ -24,7 +24,7 @@ const Settings<SlamParams>& prior_settings() {
 
 /// Parameters of the odometer that rolling provides.
 struct AlongParams {
-  double grip_sigma_share = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
+  double grip_sigma_ratio = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
   double rotation_sigma_rad = 2e-4;
   double moving_m_s = 0.03;
   double correction_m = 0.03, correction_rad = 0.015, loose_correction_m = 0.1;
@@ -33,7 +33,7 @@ struct AlongParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.grip_sigma_share,
+    visit(p.grip_sigma_ratio,
           {"along_grip_sigma_share", "1", 1e-6, 1.0,
            "standard deviation of the rolling velocity while gripping, as a share of the velocity (scale error)"});
     visit(p.still_sigma_m_s, {"along_still_sigma_m_s", "m/s", 1e-9, 10.0,
@@ -187,7 +187,7 @@ class RolledMotion {
       const double speed_m_s = rolled_.poses[k].v_WA_m_s.norm();
       const bool loose = loosely_ || rolled_.contacts[k] != sim::ContactLabel::grip;
       double sigma_m_s =
-          params_.still_sigma_m_s + (loose ? params_.loose_sigma_share : params_.grip_sigma_share) * speed_m_s;
+          params_.still_sigma_m_s + (loose ? params_.loose_sigma_share : params_.grip_sigma_ratio) * speed_m_s;
       if (loose && speed_m_s > params_.moving_m_s) sigma_m_s = std::max(sigma_m_s, params_.loose_sigma_m_s);
       largest_m_s = std::max(largest_m_s, sigma_m_s);
     }

@@ -79,7 +79,8 @@ ClippingFinder::Found ClippingFinder::find(std::span<const ImuSample> samples) c
     if (!planes.any()) continue;
     const std::vector<Neighbours> beside = other_readings(samples, triad);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      out.clippings[k] = clip_by_planes(planes, triad, out.clippings[k], beside[k].before, samples[k], beside[k].after);
+      out.clippings[k] =
+          classify_by_planes(planes, triad, out.clippings[k], beside[k].before, samples[k], beside[k].after);
     }
   }
   return out;

@@ -39,7 +39,7 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
 
 // Computes the second moment cov_i + m_i m_i' of one device: rate_stream.md (R102). If the information matrix is
 // indefinite, returns false.
-bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
+bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
@@ -54,9 +54,9 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
   for (int j = 0; j < SensorErrors::kSize;
        ++j) {  // column by column, because a product of all columns would use more stack
     const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
-    work.about_corrected.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
+    work.corrected_covariance.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
   }
-  return work.about_corrected.allFinite();
+  return work.corrected_covariance.allFinite();
 }
 
 }  // namespace
@@ -64,33 +64,33 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
 DeviceUncertainty::DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated)
     : data_sheet_sigma_(prior_sigmas(sizes, 0.0)),
       uncalibrated_sigma_(prior_sigmas(sizes, 1.0)),
-      uncalibrated_(uncalibrated) {}
+      uncalibrated_prior_(uncalibrated) {}
 
 void DeviceUncertainty::reset(Posterior& posterior) const {
-  posterior.uncalibrated_probability = uncalibrated_;
-  posterior.covariance =
-      ((1.0 - uncalibrated_) * data_sheet_sigma_.cwiseAbs2() + uncalibrated_ * uncalibrated_sigma_.cwiseAbs2())
-          .asDiagonal();
+  posterior.uncalibrated_probability = uncalibrated_prior_;
+  posterior.covariance = ((1.0 - uncalibrated_prior_) * data_sheet_sigma_.cwiseAbs2() +
+                          uncalibrated_prior_ * uncalibrated_sigma_.cwiseAbs2())
+                             .asDiagonal();
 }
 
 void DeviceUncertainty::update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
                                bool unlike_sheet) const {
   if (unlike_sheet) {
-    if (!about_corrected(evidence, uncalibrated_sigma_, work))
-      work.about_corrected = uncalibrated_sigma_.cwiseAbs2().asDiagonal();
-    posterior.covariance = work.about_corrected;
+    if (!corrected_covariance(evidence, uncalibrated_sigma_, work))
+      work.corrected_covariance = uncalibrated_sigma_.cwiseAbs2().asDiagonal();
+    posterior.covariance = work.corrected_covariance;
     posterior.uncalibrated_probability = 1.0;
     return;
   }
-  const double odds = std::log(uncalibrated_ / (1.0 - uncalibrated_)) +
+  const double odds = std::log(uncalibrated_prior_ / (1.0 - uncalibrated_prior_)) +
                       log_odds(evidence, uncalibrated_sigma_, work.system) -
                       log_odds(evidence, data_sheet_sigma_, work.system);
   const double unlike = 1.0 / (1.0 + std::exp(-odds));
-  bool known = std::isfinite(unlike) && about_corrected(evidence, data_sheet_sigma_, work);
-  if (known) posterior.covariance = (1.0 - unlike) * work.about_corrected;
-  known = known && about_corrected(evidence, uncalibrated_sigma_, work);
+  bool known = std::isfinite(unlike) && corrected_covariance(evidence, data_sheet_sigma_, work);
+  if (known) posterior.covariance = (1.0 - unlike) * work.corrected_covariance;
+  known = known && corrected_covariance(evidence, uncalibrated_sigma_, work);
   if (!known) return reset(posterior);
-  posterior.covariance += unlike * work.about_corrected;
+  posterior.covariance += unlike * work.corrected_covariance;
   posterior.uncalibrated_probability = unlike;
 }
 
@@ -100,7 +100,7 @@ double DeviceUncertainty::data_sheet_odds(double delay_s, double sigma_s) const 
   };
   const double sheet = variance(data_sheet_sigma_), unknown = variance(uncalibrated_sigma_);
   const double log_odds = 0.5 * delay_s * delay_s * (1.0 / unknown - 1.0 / sheet) + 0.5 * std::log(unknown / sheet);
-  return (1.0 - uncalibrated_) / uncalibrated_ * std::exp(log_odds);
+  return (1.0 - uncalibrated_prior_) / uncalibrated_prior_ * std::exp(log_odds);
 }
 
 double DeviceUncertainty::delay_correction_s(const SensorErrorEvidence& evidence, double reach_s) const {

@@ -12,16 +12,16 @@ namespace tumble {
 namespace {
 
 // A cross-axis sensitivity with a standard deviation below kDeterminedSlopeSigma counts as known. A cross-axis
-// sensitivity counts as zero if its magnitude is below kNil within its uncertainty.
-constexpr double kDeterminedSlopeSigma = 2e-3, kNil = 3e-3;
+// sensitivity counts as zero if its magnitude is below kNegligibleSlope within its uncertainty.
+constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
 // Maximum relative difference between positive and negative saturation level of a device that clips its digital output.
-constexpr double kLopsidedShare = 1e-4;
+constexpr double kUnequalLevelsRatio = 1e-4;
 // `kUprightSigma` is the standard deviation of a saturation plane's tilt if the device clips its digital output.
 // `kSlopeSigmaMin` is the minimum standard deviation of a cross-axis sensitivity, due to residual misalignment.
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // Maximum distance of a partly saturated sample from the saturation level, as a fraction of the preceding step between
 // samples.
-constexpr double kEdgeOfStep = 0.5;
+constexpr double kEdgeStepRatio = 0.5;
 
 // Returns the sign of the saturation level at which element j is saturated.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
@@ -43,19 +43,21 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   if (depth > kNearRailRatio * rail.distance_rad_s) return false;
   if (outside == nullptr) return true;
   const double before = rail.margin_rad_s(reading_of(*outside, triad), sign);
-  return depth < kEdgeOfStep * (before - depth);
+  return depth < kEdgeStepRatio * (before - depth);
 }
 
 // Returns whether the positive and the negative saturation level differ. The levels differ if the device subtracts the
 // element's offset after clipping.
-bool lopsided(const RailPlane& rail) {
+bool has_unequal_levels(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
-         std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
+         std::abs(rail.offset_rad_s) >
+             kUnequalLevelsRatio * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
 // Returns two plane finders. The first finder uses the stated range, or the range of the axis-aligned saturation levels
 // if no range is stated. The second finder searches without a range.
-std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
+std::array<RailPlaneFinder, 2> finders_with_and_without_range(RailPlaneFinder::Params params,
+                                                              const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;
   if (!params.stated_rad_s) params.stated_rad_s = stated;
@@ -65,8 +67,8 @@ std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, co
 }  // namespace
 
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params) {
-  return {stated_and_not(params.planes, params.axis_aligned_rails.stated_gyro_rad_s),
-          stated_and_not(params.accel_planes, params.axis_aligned_rails.stated_accel_m_s2)};
+  return {finders_with_and_without_range(params.planes, params.axis_aligned_rails.stated_gyro_rad_s),
+          finders_with_and_without_range(params.accel_planes, params.axis_aligned_rails.stated_accel_m_s2)};
 }
 
 bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad) {
@@ -81,7 +83,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
     const double plateau = rails.channels[first_channel(triad) + j].rail;
-    if (rail && lopsided(*rail)) return false;
+    if (rail && has_unequal_levels(*rail)) return false;
     if (rail && plateau > 0.0) {
       // on a tilted saturation plane, most clipped samples would have different readings
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
@@ -99,7 +101,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     for (int i = 0; i < 2; ++i) {
       const double slope = rail->row[static_cast<Eigen::Index>((j + 1 + static_cast<std::size_t>(i)) % 3)];
       const double sigma = std::sqrt(rail->covariance(i, i));
-      if (std::abs(slope) > kNil + 4.0 * sigma) return false;
+      if (std::abs(slope) > kNegligibleSlope + 4.0 * sigma) return false;
       nil += sigma < kDeterminedSlopeSigma ? 1 : 0;
     }
   }
@@ -114,8 +116,8 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
   return out;
 }
 
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
-                        const ImuSample* before, const ImuSample& now, const ImuSample* after) {
+Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
+                            const ImuSample* before, const ImuSample& now, const ImuSample* after) {
   Clipping out = by_axis_aligned_rails;
   std::uint8_t& bits = triad == Triad::gyro ? out.gyro : out.accel;
   const std::uint8_t unreadable = triad == Triad::gyro ? by_axis_aligned_rails.unusable_gyro : 0;
@@ -173,7 +175,7 @@ std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool u
   return EstimatedSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, estimated};
 }
 
-RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright) {
+RigCalibration prior_with_planes(const RateModel& before, const RailPlanes& planes, bool upright) {
   RigCalibration out{before.prior_constants(), before.prior_covariance()};
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;

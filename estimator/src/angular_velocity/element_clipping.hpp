@@ -43,8 +43,8 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 /// saturation plane clips according to the plane or the device's flag. A neighbour of a clipped sample also counts as
 /// clipped if the neighbour was saturated for a part of its window. A neighbour was partly saturated if its distance
 /// from the plane is less than half of the distance of the next sample. `before` and `after` may be null.
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
-                        const ImuSample* before, const ImuSample& now, const ImuSample* after);
+Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
+                            const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
 /// Finds partly saturated axes like mark_subsample_saturation() of RateObservation, but uses the saturation level of
 /// each element whose plane is known.
@@ -62,6 +62,6 @@ std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool u
                                                 const Eigen::Matrix2d& before);
 
 /// Returns the prior calibration, updated by the information of saturation planes about RigConstants::elements.
-RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright);
+RigCalibration prior_with_planes(const RateModel& before, const RailPlanes& planes, bool upright);
 
 }  // namespace tumble

@@ -28,42 +28,42 @@ struct Axes {
   }
 };
 
-constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, kYFlipped{{0, 1, 2}, {1, -1, 1}},
+constexpr Axes kUnchangedAxes{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, kYFlipped{{0, 1, 2}, {1, -1, 1}},
     kZFlipped{{0, 1, 2}, {1, 1, -1}}, kFlipped{{0, 1, 2}, {-1, -1, -1}}, kXYSwapped{{1, 0, 2}, {1, 1, 1}},
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
 /// Conversion of readings under a hypothesis about sign, axis order or scale of a sensor.
-struct Sense {
+struct ReadingHypothesis {
   Axes force, rate;
   const char* name;
 };
 
-constexpr std::array<Sense, FlightSignCheck::kAlternatives> kSensors = {{
-    {kAsRead, kAsRead, "flight time in s"},
-    {kFlipped, kAsRead, "flight time in s that a sign error of the accelerometer explains"},
-    {kXFlipped, kAsRead, "flight time in s that a sign error of accelerometer axis x explains"},
-    {kYFlipped, kAsRead, "flight time in s that a sign error of accelerometer axis y explains"},
-    {kZFlipped, kAsRead, "flight time in s that a sign error of accelerometer axis z explains"},
-    {kXYSwapped, kAsRead, "flight time in s that exchanged accelerometer axes x and y explain"},
-    {kYZSwapped, kAsRead, "flight time in s that exchanged accelerometer axes y and z explain"},
-    {kZXSwapped, kAsRead, "flight time in s that exchanged accelerometer axes z and x explain"},
-    {kAsRead, kFlipped, "flight time in s that a sign error of the gyro explains"},
-    {kAsRead, kXFlipped, "flight time in s that a sign error of gyro axis x explains"},
-    {kAsRead, kYFlipped, "flight time in s that a sign error of gyro axis y explains"},
-    {kAsRead, kZFlipped, "flight time in s that a sign error of gyro axis z explains"},
-    {kAsRead, kXYSwapped, "flight time in s that exchanged gyro axes x and y explain"},
-    {kAsRead, kYZSwapped, "flight time in s that exchanged gyro axes y and z explain"},
-    {kAsRead, kZXSwapped, "flight time in s that exchanged gyro axes z and x explain"},
-    {kAsRead, kHalf, "flight time in s that a gyro with twice the true scale explains"},
-    {kAsRead, kTwice, "flight time in s that a gyro with half the true scale explains"},
+constexpr std::array<ReadingHypothesis, FlightSignCheck::kAlternatives> kReadingHypotheses = {{
+    {kUnchangedAxes, kUnchangedAxes, "flight time in s"},
+    {kFlipped, kUnchangedAxes, "flight time in s that a sign error of the accelerometer explains"},
+    {kXFlipped, kUnchangedAxes, "flight time in s that a sign error of accelerometer axis x explains"},
+    {kYFlipped, kUnchangedAxes, "flight time in s that a sign error of accelerometer axis y explains"},
+    {kZFlipped, kUnchangedAxes, "flight time in s that a sign error of accelerometer axis z explains"},
+    {kXYSwapped, kUnchangedAxes, "flight time in s that exchanged accelerometer axes x and y explain"},
+    {kYZSwapped, kUnchangedAxes, "flight time in s that exchanged accelerometer axes y and z explain"},
+    {kZXSwapped, kUnchangedAxes, "flight time in s that exchanged accelerometer axes z and x explain"},
+    {kUnchangedAxes, kFlipped, "flight time in s that a sign error of the gyro explains"},
+    {kUnchangedAxes, kXFlipped, "flight time in s that a sign error of gyro axis x explains"},
+    {kUnchangedAxes, kYFlipped, "flight time in s that a sign error of gyro axis y explains"},
+    {kUnchangedAxes, kZFlipped, "flight time in s that a sign error of gyro axis z explains"},
+    {kUnchangedAxes, kXYSwapped, "flight time in s that exchanged gyro axes x and y explain"},
+    {kUnchangedAxes, kYZSwapped, "flight time in s that exchanged gyro axes y and z explain"},
+    {kUnchangedAxes, kZXSwapped, "flight time in s that exchanged gyro axes z and x explain"},
+    {kUnchangedAxes, kHalf, "flight time in s that a gyro with twice the true scale explains"},
+    {kUnchangedAxes, kTwice, "flight time in s that a gyro with half the true scale explains"},
 }};
 
 /// Converts a reading to the reading of a sensor with the hypothetical sign, axis order or scale: imu_merge.md (I32).
 /// `known` is true if the centripetal equation |w x t|^2 = -f t determines the rate of a saturated axis, beyond the
 /// saturation level.
-FlightSignCheck::Reading as_read(const FlightSignCheck::Reading& reading, const Sense& sense,
-                                 const Eigen::Vector3d& t) {
+FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const ReadingHypothesis& sense,
+                                         const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;
   out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
   out.force_m_s2 = sense.force.of(reading.force_m_s2);
@@ -87,11 +87,12 @@ FlightSignCheck::Reading as_read(const FlightSignCheck::Reading& reading, const 
 
 /// Returns whether the middle reading of three agrees with flight under a hypothesis about the sensor: imu_merge.md
 /// (I31).
-bool flies(const Sense& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
-           const FlightSignCheck::Params& params) {
+bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
+                        const FlightSignCheck::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
-  const FlightSignCheck::Reading first = as_read(readings[0], sense, t), middle = as_read(readings[1], sense, t),
-                                 last = as_read(readings[2], sense, t);
+  const FlightSignCheck::Reading first = convert_reading(readings[0], sense, t),
+                                 middle = convert_reading(readings[1], sense, t),
+                                 last = convert_reading(readings[2], sense, t);
   if (!first.known || !middle.known || !last.known) return false;
   const double dt_s = seconds(last.time_ns - first.time_ns);
   const Eigen::Vector3d &w = middle.rate_rad_s, alpha = (last.rate_rad_s - first.rate_rad_s) / dt_s;
@@ -157,7 +158,7 @@ void FlightSignCheck::process_reading(const Reading& now, State& state) const {
   const double dt_s = seconds(now.time_ns - first.time_ns);
   for (std::size_t sense = 0; sense < kAlternatives; ++sense) {
     if (!is_tested(sense, params_.body)) continue;
-    if (!flies(kSensors[sense], {first, middle, now}, params_)) {
+    if (!agrees_with_flight(kReadingHypotheses[sense], {first, middle, now}, params_)) {
       state.run_s[sense] = 0.0;
       continue;
     }
@@ -178,19 +179,19 @@ Status FlightSignCheck::current_verdict(const State& state) const {
 Status FlightSignCheck::verdict(const State& state) const {
   const bool thrown = params_.body == Body::thrown;
   const double sound_s =
-      (thrown ? params_.thrown_evidence_ratio : params_.alternative_evidence_ratio) * state.flight_duration_s[0];
+      (thrown ? params_.thrown_ratio_min : params_.alternative_ratio_min) * state.flight_duration_s[0];
   std::size_t longest = 0;
   double most_s = 0.0;
   for (std::size_t sense = 1; sense < kAlternatives; ++sense) {
     const double bound_s =
-        std::max(sense == kHalfScaleGyro ? params_.half_scale_flight_s : params_.alternative_flight_s, sound_s);
+        std::max(sense == kHalfScaleGyro ? params_.half_scale_flight_min_s : params_.alternative_flight_min_s, sound_s);
     if (state.flight_duration_s[sense] <= bound_s || state.flight_duration_s[sense] <= state.flight_duration_s[longest])
       continue;
     longest = sense;
     most_s = bound_s;
   }
   if (longest == 0) return {};
-  return {ErrorCode::out_of_range, kSensors[longest].name, state.flight_duration_s[longest], most_s};
+  return {ErrorCode::out_of_range, kReadingHypotheses[longest].name, state.flight_duration_s[longest], most_s};
 }
 
 }  // namespace tumble

@@ -9,18 +9,18 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLonger = 10.0;         // minimum ratio of a repetition to the longest earlier repetition
-constexpr double kRailShare = 0.9;       // fraction of the stated range above which a reading may be saturated
-constexpr double kExtremeShare = 0.5;    // fraction of the stated range for a reading that is an extreme of the axis
-constexpr double kQuanta = 50.0;         // change of another axis in quanta; 2 % cross-axis sensitivity causes one
-constexpr double kRotating_rad_s = 0.3;  // change of another gyro axis that indicates motion
-constexpr double kPushed_m_s2 = 1.0;     // change of another accelerometer axis that indicates motion
+constexpr double kMinRepetitionRatio = 10.0;  // minimum ratio of a repetition to the longest earlier repetition
+constexpr double kPossibleRailRatio = 0.9;    // fraction of the stated range above which a reading may be saturated
+constexpr double kExtremeRatio = 0.5;      // fraction of the stated range for a reading that is an extreme of the axis
+constexpr double kMotionQuanta = 50.0;     // change of another axis in quanta; 2 % cross-axis sensitivity causes one
+constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion
+constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
 // Limits for a body at rest: rate of another axis, and change of the specific force.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
 // Largest reading of a working axis at rest, caused by bias and gravity.
-constexpr double kRestMost_rad_s = 1.0, kRestMost_m_s2 = 15.0;
+constexpr double kRestRateMax_rad_s = 1.0, kRestForceMax_m_s2 = 15.0;
 
 constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
@@ -36,7 +36,7 @@ std::array<double, 6> readings(const ImuSample& sample) {
   return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z()};
 }
 
-void begin_repeat(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
+void start_repetition(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
   axis.reading = now[channel];
   axis.since_ns = time_ns;
   axis.repeated_s = axis.samples = axis.stationary_s = 0.0;
@@ -78,9 +78,9 @@ void FrozenAxes::step(const ImuSample& sample, State& state) const {
         const double change = std::abs(now[c] - axis.reading);
         axis.smallest_change = axis.smallest_change > 0.0 ? std::min(axis.smallest_change, change) : change;
         if (!axis.frozen && !at_rail(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
-        axis.changing_s += dt_s;
+        axis.changing_duration_s += dt_s;
       }
-      begin_repeat(c, now, sample.time_ns, axis);
+      start_repetition(c, now, sample.time_ns, axis);
     }
     track_repetition(c, now, dt_s, sample.device_clip_flags, state);
   }
@@ -111,16 +111,17 @@ void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 
       axis.stationary_reference = now;
     }
   }
-  const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
-  // No motion keeps the rate vector exactly on one axis for `rail_stationary_s`. The test therefore ignores the update
-  // rate of the other axes.
-  const bool at_its_rail = at_rail(channel, axis);
-  const bool of_no_motion = axis.stationary_s >= params_.rail_stationary_s ||
-                            (axis.repeated_s >= params_.rail_repeated_s && others_move(channel, 0.0, axis));
-  const bool froze = at_its_rail ? of_no_motion && std::abs(axis.reading) >= most
-                                 : axis.changing_s >= params_.frozen_s &&
-                                       axis.repeated_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
-                                       others_move(channel, kChanging, axis);
+  const double most = is_gyro(channel) ? kRestRateMax_rad_s : kRestForceMax_m_s2;
+  // No motion keeps the rate vector exactly on one axis for `rail_stationary_min_s`. The test therefore ignores the
+  // update rate of the other axes.
+  const bool is_at_rail = at_rail(channel, axis);
+  const bool was_stationary = axis.stationary_s >= params_.rail_stationary_min_s ||
+                              (axis.repeated_s >= params_.rail_repetition_max_s && others_move(channel, 0.0, axis));
+  const bool froze = is_at_rail
+                         ? was_stationary && std::abs(axis.reading) >= most
+                         : axis.changing_duration_s >= params_.frozen_s &&
+                               axis.repeated_s >= std::max(params_.frozen_s, kMinRepetitionRatio * axis.longest_s) &&
+                               others_move(channel, kChanging, axis);
   axis.frozen = axis.frozen || froze;
   axis.ever_frozen = axis.ever_frozen || froze;
 }
@@ -128,16 +129,17 @@ void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 
 bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
-  if (stated > 0.0 && size >= kRailShare * stated) return true;
+  if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
   // A flag shows that the device saturated. The flag does not show that the repeated value is the saturation level.
-  if (axis.device_flagged && size >= kExtremeShare * stated) return true;
-  return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
+  if (axis.device_flagged && size >= kExtremeRatio * stated) return true;
+  return size >= kExtremeRatio * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
 /// Returns whether the other axes of the triad change by far more than a quantum of the tested axis. The other axes
 /// must change in at least the fraction `changing_share` of the samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
-  const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.smallest_change);
+  const double least =
+      std::max(is_gyro(channel) ? kRotating_rad_s : kMotionForce_m_s2, kMotionQuanta * axis.smallest_change);
   for (std::size_t k = 0; k < 2; ++k) {
     const bool changes = axis.others_changes[k] >= changing_share * axis.samples;
     if (changes && axis.others_max[k] - axis.others_min[k] >= least) return true;

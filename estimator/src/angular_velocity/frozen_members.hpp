@@ -15,7 +15,7 @@ void members(Self& s, Visitor& visit) {
   visit("frozen.frozen", s.frozen);
   visit("frozen.ever_frozen", s.ever_frozen);
   visit("frozen.longest_s", s.longest_s);
-  visit("frozen.moved_s", s.changing_s);
+  visit("frozen.moved_s", s.changing_duration_s);
   visit("frozen.quantum", s.smallest_change);
   visit("frozen.min_reading", s.min_reading);
   visit("frozen.max_reading", s.max_reading);

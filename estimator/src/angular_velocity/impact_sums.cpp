@@ -8,15 +8,16 @@ namespace tumble {
 
 namespace {
 
-// `kStruckRate_rad_s` is the minimum rate of a moving body. `kCorrelationMin` is the minimum correlation for an
-// accepted delay. `kStruckSigma` is the standard deviation of the delay, as a fraction of the slower triad's period.
-constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
-constexpr double kStruckMin = 30.0;
-// `kStroke_m_s2` is the minimum specific force of an impact. `kFlying_m_s2` is the maximum specific force of free
-// flight. `kFlyingShareMin` is the minimum fraction of intervals in flight. A body with impacts that never flies is
-// hand-held.
-constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
-constexpr double kStrokesMin = 10.0;
+// `kMovingRateMin_rad_s` is the minimum rate of a moving body. `kCorrelationMin` is the minimum correlation for an
+// accepted delay. `kDelaySigmaRatio` is the standard deviation of the delay, as a fraction of the slower triad's
+// period.
+constexpr double kMovingRateMin_rad_s = 1.0, kCorrelationMin = 0.6, kDelaySigmaRatio = 0.15;
+constexpr double kCorrelatedImpactsMin = 30.0;
+// `kImpactForceMin_m_s2` is the minimum specific force of an impact. `kFlightForceMax_m_s2` is the maximum specific
+// force of free flight. `kFlightFractionMin` is the minimum fraction of intervals in flight. A body with impacts that
+// never flies is hand-held.
+constexpr double kImpactForceMin_m_s2 = 30.0, kFlightForceMax_m_s2 = 5.0, kFlightFractionMin = 0.1;
+constexpr double kImpactsMin = 10.0;
 
 // Returns the correlation between the change of rate and the mean specific force: rate_smoother.md (R45).
 double correlation(const ImpactSums& sums, int i) {
@@ -28,14 +29,14 @@ double correlation(const ImpactSums& sums, int i) {
 
 // Returns the correlation. If the body has no impacts or no flight, returns 0.
 double score(const ImpactSums& sums, int i) {
-  if (sums.impacts[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
+  if (sums.impacts[i] < kImpactsMin || sums.flying[i] < kFlightFractionMin * sums.intervals) return 0.0;
   return correlation(sums, i);
 }
 
 }  // namespace
 
 bool ImpactSums::counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s) {
-  return std::min(before_rad_s.norm(), after_rad_s.norm()) >= kStruckRate_rad_s;
+  return std::min(before_rad_s.norm(), after_rad_s.norm()) >= kMovingRateMin_rad_s;
 }
 
 void ImpactSums::add(double acceleration_rad_s2, const DelayGrid& force_m_s2) {
@@ -45,8 +46,8 @@ void ImpactSums::add(double acceleration_rad_s2, const DelayGrid& force_m_s2) {
   acceleration_squared += x * x;
   for (int i = 0; i < kDelayCount; ++i) {
     const double mean = force_m_s2[i], root = std::sqrt(std::max(0.0, mean));
-    impacts[i] += mean > kStroke_m_s2 ? 1.0 : 0.0;
-    flying[i] += mean < kFlying_m_s2 ? 1.0 : 0.0;
+    impacts[i] += mean > kImpactForceMin_m_s2 ? 1.0 : 0.0;
+    flying[i] += mean < kFlightForceMax_m_s2 ? 1.0 : 0.0;
     force[i] += root;
     force_squared[i] += root * root;
     product[i] += x * root;
@@ -64,7 +65,7 @@ double ImpactSums::correlation_at(double delay_s, double period_s) const {
 }
 
 TriadDelay ImpactSums::estimate_delay(double period_s, double slower_s) const {
-  if (intervals < kStruckMin) return {};
+  if (intervals < kCorrelatedImpactsMin) return {};
   int at = 0;
   double best = -1.0;
   for (int i = 0; i < kDelayCount; ++i) {
@@ -74,7 +75,7 @@ TriadDelay ImpactSums::estimate_delay(double period_s, double slower_s) const {
   if (best < kCorrelationMin || at == 0 || at == kDelayCount - 1) return {};
   const double left = score(*this, at - 1), right = score(*this, at + 1), bend = left - 2.0 * best + right;
   const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
-  return {(at - kDelayMax + part) * (period_s / kDelaysPerSample), kStruckSigma * slower_s};
+  return {(at - kDelayMax + part) * (period_s / kDelaysPerSample), kDelaySigmaRatio * slower_s};
 }
 
 }  // namespace tumble

@@ -15,24 +15,24 @@ using Eigen::Vector3d;
 // Standard deviation of the time of a reading, in sample periods. In a stream, the time of a reading is uniformly
 // distributed over the preceding sample period, with standard deviation 1/sqrt(12). In a recording, the standard
 // deviation is smaller, because the clock of the sensor is estimated.
-constexpr double kTaken = 0.29, kTakenByClock = 0.1;
+constexpr double kReadingTimeSigma_samples = 0.29, kClockedReadingSigma_samples = 0.1;
 
 // A gyro reading and its time stamp. The time stamp is that of a sample whose averaging window is centred at the middle
 // of the reading's averaging window.
-struct OwnReading {
+struct TimedReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
   bool read = false;  ///< all axes are measured
 };
 
-Vector3d slope(const OwnReading& a, const OwnReading& b) {
+Vector3d slope(const TimedReading& a, const TimedReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
 // Interpolates the rate between the readings a and b. If the reading z before a and the reading c after b are usable,
 // they provide the slopes at a and b.
-std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b,
-                                        const OwnReading& c, double time_s, double moment_s) {
+std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReading& a, const TimedReading& b,
+                                        const TimedReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
   if (!a.read || !b.read || !(span_s > 0.0) || u < 0.0 || v < 0.0) return std::nullopt;
   const Vector3d chord = slope(a, b);
@@ -64,20 +64,21 @@ std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStream
                                                       double period_s) {
   if (!window[k].repeated.is_slower_than_log()) return std::nullopt;
   const auto at = [&](std::size_t i) {
-    if (i >= window.size()) return OwnReading{};
+    if (i >= window.size()) return TimedReading{};
     const RateStreamKnot& knot = window[i];
     const RateObservation& o = knot.observation;
     const double stamp_s = seconds(o.sample.time_ns - window[k].observation.sample.time_ns);
-    return OwnReading{stamp_s - knot.repeated.delay_samples() * period_s, o.sample.angular_velocity_rad_s,
-                      knot.repeated.is_slower_than_log() && !o.is_element_clipped() && o.partly_saturated_axes() == 0};
+    return TimedReading{
+        stamp_s - knot.repeated.delay_samples() * period_s, o.sample.angular_velocity_rad_s,
+        knot.repeated.is_slower_than_log() && !o.is_element_clipped() && o.partly_saturated_axes() == 0};
   };
   std::size_t b = new_reading(window, k + 1);
   while (b < window.size() && at(b).time_s < 0.0) b = new_reading(window, b + 1);
   if (b == window.size() || !at(k).read) return std::nullopt;
   std::size_t z = b - 1;
   while (z > 0 && window[z].repeats) --z;
-  return between(z > 0 ? at(z - 1) : OwnReading{}, at(b - 1), at(b), at(new_reading(window, b + 1)), 0.0,
-                 kTaken * period_s);
+  return between(z > 0 ? at(z - 1) : TimedReading{}, at(b - 1), at(b), at(new_reading(window, b + 1)), 0.0,
+                 kReadingTimeSigma_samples * period_s);
 }
 
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
@@ -90,21 +91,21 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
                                                                     const std::optional<RepeatedReadings>& repeated) {
   const double sample_s = median_period_s(samples);
   if (!in_time(repeated, sample_s)) return {};
-  std::vector<OwnReading> own;
+  std::vector<TimedReading> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (repeated->repeats[k]) continue;
     const double stamp_s = seconds(samples[k].time_ns - samples[0].time_ns);
-    own.push_back({stamp_s - repeated->behind_s(k), samples[k].angular_velocity_rad_s, hidden[k] == 0});
+    own.push_back({stamp_s - repeated->reading_age_s(k), samples[k].angular_velocity_rad_s, hidden[k] == 0});
   }
   std::vector<std::optional<InterpolatedRate>> out(samples.size());
-  const double moment_s = kTakenByClock * sample_s;
+  const double moment_s = kClockedReadingSigma_samples * sample_s;
   std::size_t b = 1;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const double time_s = seconds(samples[k].time_ns - samples[0].time_ns);
     while (b < own.size() && own[b].time_s < time_s) ++b;
     if (b == own.size()) break;
-    out[k] = between(b > 1 ? own[b - 2] : OwnReading{}, own[b - 1], own[b],
-                     b + 1 < own.size() ? own[b + 1] : OwnReading{}, time_s, moment_s);
+    out[k] = between(b > 1 ? own[b - 2] : TimedReading{}, own[b - 1], own[b],
+                     b + 1 < own.size() ? own[b + 1] : TimedReading{}, time_s, moment_s);
   }
   return out;
 }
@@ -120,12 +121,12 @@ std::vector<Vector3d> forces_between_readings(std::span<const ImuSample> samples
   std::vector<Vector3d> out(samples.size());
   std::size_t b = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto taken_s = [&](std::size_t i) { return stamp_s(own[i]) - repeated->behind_s(own[i]); };
-    while (b < own.size() && taken_s(b) < stamp_s(k)) ++b;
+    const auto reading_time_s = [&](std::size_t i) { return stamp_s(own[i]) - repeated->reading_age_s(own[i]); };
+    while (b < own.size() && reading_time_s(b) < stamp_s(k)) ++b;
     out[k] = samples[k].specific_force_m_s2;
     if (b == 0 || b == own.size()) continue;
-    const double span_s = taken_s(b) - taken_s(b - 1);
-    const double u = span_s > 0.0 ? (stamp_s(k) - taken_s(b - 1)) / span_s : 0.0;
+    const double span_s = reading_time_s(b) - reading_time_s(b - 1);
+    const double u = span_s > 0.0 ? (stamp_s(k) - reading_time_s(b - 1)) / span_s : 0.0;
     out[k] = (1.0 - u) * samples[own[b - 1]].specific_force_m_s2 + u * samples[own[b]].specific_force_m_s2;
   }
   return out;

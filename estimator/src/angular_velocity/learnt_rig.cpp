@@ -15,14 +15,14 @@ namespace tumble {
 
 namespace {
 
-constexpr double kTrust = 4.0;
+constexpr double kNextRunInflation = 4.0;
 // Standard deviation of the change of a gyro's cross-axis sensitivity between runs. In six runs of a hand-held device,
 // the cross-axis sensitivity was 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
 // Standard deviation of the change of an accelerometer's cross-axis sensitivity between runs, equal to the gyro's.
 constexpr double kSlopeDrift = 2e-3;
 // Planes with lower log-odds are not saved, because a peak of the motion can resemble a saturation plane.
-constexpr double kSureLogOdds = 10.0;
+constexpr double kCertainLogOdds = 10.0;
 // Lower bound of the standard deviation of a cross-axis sensitivity, equation (R59) of rails.md.
 constexpr double kSlopeSigmaMin = 3e-4;
 
@@ -36,14 +36,14 @@ std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
 
 // Readings within this fraction of the saturation level count as saturated. Saturation levels are stable to 0.05 %, but
 // their offset drifts with the bias.
-constexpr double kToleranceShare = 2e-3;
+constexpr double kLevelToleranceRatio = 2e-3;
 
 // Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
 // If two elements only clip together, the cross-axis sensitivity between the two elements is unknown. The intercept of
 // the plane is then unknown too.
-bool reported_level(const RailPlane& plane, int sign) {
+bool is_level_known(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
-  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
+  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.distance_rad_s;
   return variance <= most * most;
 }
 
@@ -61,7 +61,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
   Planes& kept = triad == Triad::gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2;
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
-    if (plane && plane->log_odds < kSureLogOdds) {
+    if (plane && plane->log_odds < kCertainLogOdds) {
       // The covariance of the plane's cross-axis sensitivities is also increased.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
@@ -69,7 +69,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
       continue;
     }
     for (const int sign : {-1, 1}) {
-      if (plane && plane->seen(sign) && reported_level(*plane, sign)) {
+      if (plane && plane->seen(sign) && is_level_known(*plane, sign)) {
         kept[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
       }
     }
@@ -84,7 +84,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
 namespace {
 
 // Stores cross-axis sensitivities and intercepts of an element whose plane is certain.
-void take_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
+void store_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
                                plane.row[static_cast<Eigen::Index>((j + 2) % 3)]);
@@ -103,11 +103,11 @@ void take_element(const RailPlane& plane, Triad triad, std::size_t j, Calibrated
 
 }  // namespace
 
-std::optional<CalibratedRig> with_rails(const CalibratedRig& before, const SaturationLevels& rails) {
+std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails) {
   CalibratedRig found, out = before;
   if (!rails.gyro_clips_after_compensation) found.keep(rails.planes);
   if (!rails.accel_clips_after_compensation) found.keep(rails.accel_planes, Triad::accelerometer);
-  out.rails_alone = true;
+  out.only_rails = true;
   bool sure = false;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const bool gyro = triad == Triad::gyro;
@@ -119,7 +119,7 @@ std::optional<CalibratedRig> with_rails(const CalibratedRig& before, const Satur
         if (now[j][i] || !plane || plane->samples[i] == 0) kept[j][i] = now[j][i];
       }
       if (!now[j][0] && !now[j][1]) continue;
-      take_element(*plane, triad, j, out);
+      store_element(*plane, triad, j, out);
       sure = true;
     }
   }
@@ -145,8 +145,8 @@ RailPlanes CalibratedRig::planes(Triad triad) const {
         gyro ? Eigen::Matrix2d(calibration.covariance.block<2, 2>(first, first))
              : Eigen::Matrix2d(kSlopeDrift * kSlopeDrift * Eigen::Matrix2d::Identity());
     plane.samples = {low ? 1 : 0, high ? 1 : 0};
-    plane.log_odds = kSureLogOdds;
-    plane.tolerance_rad_s = kToleranceShare * plane.distance_rad_s;
+    plane.log_odds = kCertainLogOdds;
+    plane.tolerance_rad_s = kLevelToleranceRatio * plane.distance_rad_s;
     plane.deviation_rad_s = 0.25 * plane.tolerance_rad_s;
     out.element[static_cast<std::size_t>(j)] = plane;
   }
@@ -172,9 +172,9 @@ void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& pa
   if (const auto rail = lowest_rail(rig, 3)) params.rails.stated_accel_m_s2 = rail;
 }
 
-void start_from_calibration(const CalibratedRig& rig, RateSmoother::Params& params) {
+void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
-  start_from(rig, kTrust, params);
+  start_from(rig, kNextRunInflation, params);
   // Biases change at every switch-on, so the default prior replaces the saved covariance of the biases.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
@@ -185,7 +185,7 @@ void start_from_calibration(const CalibratedRig& rig, RateSmoother::Params& para
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
   // Limits the covariance to the default prior.
-  const RigConstants::Matrix floor = (1.0 - 1.0 / kTrust) * prior.inverse();
+  const RigConstants::Matrix floor = (1.0 - 1.0 / kNextRunInflation) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();
   RigConstants::Matrix information = filled.inverse() + floor;
@@ -193,19 +193,19 @@ void start_from_calibration(const CalibratedRig& rig, RateSmoother::Params& para
   covariance = information.inverse();
 }
 
-CalibratedRig known_before(const CalibratedRig* given, const RateModelParams& model) {
+CalibratedRig prior_rig_calibration(const CalibratedRig* given, const RateModelParams& model) {
   if (given != nullptr) return *given;
   const RateModel assumed(model, 0.01);
   return {{assumed.prior_constants(), assumed.prior_covariance()}, {}};
 }
 
-void start_from_calibration(const CalibratedRig& rig, RateStream::Params& params) {
+void apply_saved_calibration(const CalibratedRig& rig, RateStream::Params& params) {
   RateSmoother::Params batch;
   batch.model = params.model;
   batch.rails = params.rails;
   batch.expert.planes = params.expert.planes;
   batch.expert.accel_planes = params.expert.accel_planes;
-  start_from_calibration(rig, batch);
+  apply_saved_calibration(rig, batch);
   params.model = batch.model;
   params.rails = batch.rails;
   params.expert.planes = batch.expert.planes;
@@ -220,7 +220,7 @@ std::optional<CalibratedRig> learnt(const RateReport& report, const CalibratedRi
   rails.planes = report.planes;
   rails.gyro_clips_after_compensation = report.clips_after_compensation;
   rails.accel_planes = report.accel_planes;
-  return with_rails(known_before(given, model), rails);
+  return calibration_with_rails(prior_rig_calibration(given, model), rails);
 }
 
 bool is_at_prior(const RateStream& stream, const RateStream::State& state) {
@@ -230,7 +230,8 @@ bool is_at_prior(const RateStream& stream, const RateStream::State& state) {
 
 namespace {
 
-CalibratedRig rig_of(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
+CalibratedRig stream_calibration(const RateStream& stream, const RateStream::Params& params,
+                                 const RateStream::State& state) {
   CalibratedRig rig{stream.calibration(state), {}};
   const RailDetector axis_aligned_rails(params.rails);
   const SaturationLevels& known = state.rails.known;
@@ -252,23 +253,23 @@ std::optional<CalibratedRig> learnt(const RateStream& stream, const RateStream::
   const bool late = state.device.front().delay.found;
   std::optional<CalibratedRig> rig;
   if (!is_at_prior(stream, state)) {
-    rig = rig_of(stream, params, state);
+    rig = stream_calibration(stream, params, state);
     if (given != nullptr) rig->device_errors = given->device_errors;
   } else {
-    const CalibratedRig before = known_before(given, params.model);
-    rig = with_rails(before, state.rails.known);
+    const CalibratedRig before = prior_rig_calibration(given, params.model);
+    rig = calibration_with_rails(before, state.rails.known);
     if (!rig && late) {
       rig = before;
-      rig->rails_alone = true;
+      rig->only_rails = true;
     }
   }
   if (late) rig->device_errors = stream.sensor_errors(state);
   return rig;
 }
 
-double distance_of_rigs(const RigCalibration& before, const RigCalibration& now) {
+double calibration_distance(const RigCalibration& before, const RigCalibration& now) {
   const RigConstants::Vector apart = now.constants.vector() - before.constants.vector();
-  const RigConstants::Matrix spread = kTrust * before.covariance + now.covariance;
+  const RigConstants::Matrix spread = kNextRunInflation * before.covariance + now.covariance;
   const auto of = [&]<int kFirst, int kCount>() {
     const Eigen::Matrix<double, kCount, 1> part = apart.segment<kCount>(kFirst);
     const Eigen::Matrix<double, kCount, kCount> block = spread.block<kCount, kCount>(kFirst, kFirst);

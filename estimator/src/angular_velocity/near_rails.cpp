@@ -11,10 +11,11 @@ namespace tumble {
 namespace {
 
 // For a reading close to a saturation level, the test uses the steps to `kReach` neighbouring readings on each side.
-// `kRoundShare` is the fraction of the saturation level by which a gyro's filter can lower the edges of a plateau. On
-// one hand-held wand, the readings were up to 2 % below the saturation level while the rate exceeded the level.
+// `kRoundedPeakRatio` is the fraction of the saturation level by which a gyro's filter can lower the edges of a
+// plateau. On one hand-held wand, the readings were up to 2 % below the saturation level while the rate exceeded the
+// level.
 constexpr std::size_t kReach = 2;
-constexpr double kRoundShare = 0.03;
+constexpr double kRoundedPeakRatio = 0.03;
 
 // readings without repetitions, in time order
 using Rates = std::span<const Eigen::Vector3d>;
@@ -28,7 +29,7 @@ double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::In
 }
 
 // Returns the axes that may be partly saturated, as a bit mask: rails.md (R76).
-std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) {
+std::uint8_t axes_near_rails(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -37,7 +38,7 @@ std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) 
     const int sign = reading[axis] < 0.0 ? -1 : 1;
     if (!rail || !rail->seen(sign)) continue;
     const double missing = rail->margin_rad_s(reading, sign);
-    const std::size_t reach = missing < kRoundShare * rail->distance_rad_s ? kReach : 1;
+    const std::size_t reach = missing < kRoundedPeakRatio * rail->distance_rad_s ? kReach : 1;
     if (missing < largest_step(readings, at, reach, axis)) out = static_cast<std::uint8_t>(out | 1u << j);
   }
   return out;
@@ -45,18 +46,18 @@ std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) 
 
 }  // namespace
 
-std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
-                            const RailPlanes& planes) {
+std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSample& now, const ImuSample* after,
+                                         const RailPlanes& planes) {
   std::array<Eigen::Vector3d, 3> readings;
   std::size_t count = 0, at = 0;
   if (before != nullptr) readings[count++] = before->angular_velocity_rad_s;
   at = count;
   readings[count++] = now.angular_velocity_rad_s;
   if (after != nullptr) readings[count++] = after->angular_velocity_rad_s;
-  return may_meet(Rates(readings.data(), count), at, planes);
+  return axes_near_rails(Rates(readings.data(), count), at, planes);
 }
 
-std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes) {
+std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const RailPlanes& planes) {
   std::vector<std::uint8_t> out(samples.size(), 0);
   if (!planes.any()) return out;
   std::vector<Eigen::Vector3d> readings;
@@ -66,7 +67,7 @@ std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, con
     if (readings.empty() || readings.back() != reading) readings.push_back(reading);
     of_sample[k] = readings.size() - 1;
   }
-  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = may_meet(readings, of_sample[k], planes);
+  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = axes_near_rails(readings, of_sample[k], planes);
   return out;
 }
 

@@ -16,10 +16,10 @@ namespace tumble {
 /// saturation level, the largest step within two readings replaces the step to a neighbour, see rails.md (R76). Sides
 /// without an observed saturation level are excluded, so that all bits are zero without clipping. Repeated readings
 /// count once.
-std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
+std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const RailPlanes& planes);
 
 /// Checks one reading of a stream, from the steps to its neighbours (null at the ends). Cost: O(1).
-std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
-                            const RailPlanes& planes);
+std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSample& now, const ImuSample* after,
+                                         const RailPlanes& planes);
 
 }  // namespace tumble

@@ -10,16 +10,16 @@ namespace tumble {
 
 namespace {
 
-// `kUnseenTilt` is the maximum tilt between the saturation planes of two elements, in addition to kNearRailRatio.
-// `kUnseenOfStep` is the saturation deficit of a few samples at a saturation level, as a fraction of the step to the
-// neighbouring reading.
-constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
+// `kMaxPlaneTilt` is the maximum tilt between the saturation planes of two elements, in addition to kNearRailRatio.
+// `kDeficitStepRatio` is the saturation deficit of a few samples at a saturation level, as a fraction of the step to
+// the neighbouring reading.
+constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
-// A reading is at the top of a segment if it is within the fraction `kTopShare` of the segment's largest reading. A
-// tilt of kUnseenTilt changes a reading by this fraction if the rate on the other axes is a sixth of the saturation
-// level. `kElementsApart` is the maximum difference between the saturation levels of two elements, in standard
+// A reading is at the top of a segment if it is within the fraction `kTopRatio` of the segment's largest reading. A
+// tilt of kMaxPlaneTilt changes a reading by this fraction if the rate on the other axes is a sixth of the saturation
+// level. `kMaxElementSigmas` is the maximum difference between the saturation levels of two elements, in standard
 // deviations.
-constexpr double kTopShare = 0.01, kElementsApart = 3.0;
+constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
 
 // Returns the lowest known saturation level. If no level is known, returns 0.
 double lowest_rail(const RailPlanes& planes) {
@@ -32,14 +32,14 @@ double lowest_rail(const RailPlanes& planes) {
 
 // Returns how far a motion may rise above a flat maximum of `count` readings. The result is the height at which
 // straight lines with the slopes before and after the maximum meet: rails.md (R74).
-double hidden_rise(double count, double entered, double left) {
+double rise_above_plateau(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
 // Returns the rate on the axes other than `axis`. At a saturation level, the reading changes by the tilt of the
 // saturation plane times the rate on the other axes.
-double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
+double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
 
@@ -48,14 +48,15 @@ double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
 // Stores the smallest saturation level that the readings allow: rails.md (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
-    double& least = rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];
-    least = std::max(least, std::abs(rate_rad_s[j]) - kUnseenTilt * beside_of(rate_rad_s, j));
+    double& least = min_levels_rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];
+    least = std::max(least, std::abs(rate_rad_s[j]) - kMaxPlaneTilt * other_axes_rate(rate_rad_s, j));
   }
 }
 
-bool MinSaturationLevels::rules_out(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const {
-  const double least = rad_s_[rate_rad_s[axis] < 0.0 ? 0 : 1][axis];
-  return std::abs(rate_rad_s[axis]) + kUnseenTilt * beside_of(rate_rad_s, axis) < (1.0 - kNearRailRatio) * least;
+bool MinSaturationLevels::is_below_min_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const {
+  const double least = min_levels_rad_s_[rate_rad_s[axis] < 0.0 ? 0 : 1][axis];
+  return std::abs(rate_rad_s[axis]) + kMaxPlaneTilt * other_axes_rate(rate_rad_s, axis) <
+         (1.0 - kNearRailRatio) * least;
 }
 
 void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
@@ -69,22 +70,22 @@ void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLe
     const int sign = reading[j] < 0.0 ? -1 : 1;
     const unsigned unusable = now.clipping.gyro | now.clipping.unusable_gyro | now.subsample_saturated;
     if ((own && own->seen(sign)) || (unusable >> j & 1u) != 0) continue;
-    const double beside = beside_of(reading, j);
-    if (std::abs(reading[j]) < (1.0 - kNearRailRatio) * rail - kUnseenTilt * beside) continue;
-    if (least.rules_out(reading, j)) continue;
+    const double beside = other_axes_rate(reading, j);
+    if (std::abs(reading[j]) < (1.0 - kNearRailRatio) * rail - kMaxPlaneTilt * beside) continue;
+    if (least.is_below_min_level(reading, j)) continue;
     double step = 0.0;
     for (const ImuSample* neighbour : {before, after}) {
       if (neighbour == nullptr) continue;
       step = std::max(step, std::abs(reading[j] - neighbour->angular_velocity_rad_s[j]));
     }
     now.isolated_high_axes = static_cast<std::uint8_t>(now.isolated_high_axes | 1u << j);
-    now.expected_deficit_sigma_rad_s[j] = std::hypot(noise_rad_s, kUnseenOfStep * step);
+    now.expected_deficit_sigma_rad_s[j] = std::hypot(noise_rad_s, kDeficitStepRatio * step);
   }
 }
 
-void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_share,
+void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_sigma_ratio,
                              double noise_rad_s, std::span<RateObservation> observations) {
-  const double from = (1.0 - kElementsApart * offset_share) * lowest_rail(planes);
+  const double from = (1.0 - kMaxElementSigmas * offset_sigma_ratio) * lowest_rail(planes);
   const bool flags = std::any_of(observations.begin(), observations.end(),
                                  [](const RateObservation& o) { return o.sample.device_clip_flags != 0; });
   if (!(from > 0.0) || flags) return;
@@ -102,14 +103,14 @@ void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels
         }
         std::size_t first = k, last = k;
         double top = value(k);
-        while (last + 1 < count && value(last + 1) >= (1.0 - kTopShare) * top) top = std::max(top, value(++last));
-        while (value(first) < (1.0 - kTopShare) * top) ++first;
+        while (last + 1 < count && value(last + 1) >= (1.0 - kTopRatio) * top) top = std::max(top, value(++last));
+        while (value(first) < (1.0 - kTopRatio) * top) ++first;
         k = last + 1;
         if (first == 0 || last + 1 == count || first == last) continue;
         const double rise =
-            hidden_rise(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
+            rise_above_plateau(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
         if (!(rise > 0.0)) continue;  // not a maximum
-        if (least.rules_out(observations[first].sample.angular_velocity_rad_s, axis)) continue;
+        if (least.is_below_min_level(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {
           RateObservation& o = observations[i];
           if (((o.clipping.gyro | o.clipping.unusable_gyro) >> j & 1u) != 0) continue;
@@ -117,7 +118,7 @@ void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels
               (o.isolated_high_axes >> j & 1u) != 0 ? o.expected_deficit_sigma_rad_s[axis] : noise_rad_s;
           o.isolated_high_axes = static_cast<std::uint8_t>(o.isolated_high_axes & ~(1u << j));
           o.suspect = static_cast<std::uint8_t>(o.suspect | 1u << j);
-          o.expected_deficit_sigma_rad_s[axis] = std::hypot(sigma, kUnseenOfStep * rise);
+          o.expected_deficit_sigma_rad_s[axis] = std::hypot(sigma, kDeficitStepRatio * rise);
         }
       }
     }

@@ -18,11 +18,11 @@ void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLe
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
 /// Marks whole segments of readings near a maximum, which may hide a peak between the slopes before and after the
-/// segment. Cost: O(N). `offset_share` is the difference between sensing elements as a fraction of the saturation level
-/// (RailPlaneFinder::Params). The function has no effect if the device flags clipping or no saturation level is known.
-/// The function also has no effect if the sensing element has read far higher values. The function sets
+/// segment. Cost: O(N). `offset_sigma_ratio` is the difference between sensing elements as a fraction of the saturation
+/// level (RailPlaneFinder::Params). The function has no effect if the device flags clipping or no saturation level is
+/// known. The function also has no effect if the sensing element has read far higher values. The function sets
 /// RateObservation::suspect.
-void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_share,
+void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_sigma_ratio,
                              double noise_rad_s, std::span<RateObservation> observations);
 
 }  // namespace tumble

@@ -24,7 +24,7 @@ RailDetector::RailDetector(const Params& params) : params_(params) {
   if (params.stated_gyro_rad_s) require_within("stated_gyro_rad_s", *params.stated_gyro_rad_s, 1e-6, 1000.0);
   if (params.stated_accel_m_s2) require_within("stated_accel_m_s2", *params.stated_accel_m_s2, 1e-6, 1e5);
   require_valid_fields(params);
-  require_within("leave_share", params.leave_share, params.enter_share, 0.5);
+  require_within("clip_leave_ratio", params.clip_leave_ratio, params.clip_enter_ratio, 0.5);
 }
 
 std::optional<double> RailDetector::stated(int c) const {
@@ -35,7 +35,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
   for (int c = 0; c < 6; ++c) {
     Channel& channel = state.channels[static_cast<std::size_t>(c)];
     const double value = reading(sample, c), magnitude = std::abs(value);
-    const double spread = params_.expert.plateau.spread_share * magnitude;
+    const double spread = params_.expert.plateau.plateau_spread_ratio * magnitude;
     const double change = std::abs(value - channel.before);
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
@@ -45,7 +45,8 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
     }
     channel.peak = std::max(channel.peak, magnitude);
     // a larger reading shows that the plateau is not a saturation level
-    if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.disagreement_share)) channel.rail = 0.0;
+    if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.range_contradiction_ratio))
+      channel.rail = 0.0;
     if (!continues) {
       channel.entry = channel.run_length > 0 ? change : 0.0;
       channel.run_first = value;
@@ -58,19 +59,19 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
 
 bool RailDetector::plateau(int c, const Channel& channel, double jump) const {
   const double magnitude = std::abs(channel.run_first);
-  if (magnitude < channel.peak * (1.0 - params_.disagreement_share)) return false;
+  if (magnitude < channel.peak * (1.0 - params_.range_contradiction_ratio)) return false;
   if (channel.run_length < params_.expert.plateau.samples) return false;
-  if (c >= 3) return magnitude >= params_.expert.plateau.accel_min_m_s2;
-  if (magnitude >= params_.expert.plateau.gyro_low_rad_s) return true;
-  return magnitude >= params_.expert.plateau.gyro_min_rad_s &&
+  if (c >= 3) return magnitude >= params_.expert.plateau.accel_plateau_min_m_s2;
+  if (magnitude >= params_.expert.plateau.low_gyro_plateau_rad_s) return true;
+  return magnitude >= params_.expert.plateau.gyro_plateau_min_rad_s &&
          channel.run_length >= 2 * params_.expert.plateau.samples &&
-         jump > params_.expert.plateau.jump_digits * channel.digit;
+         jump > params_.expert.plateau.jump_min_digits * channel.digit;
 }
 
 std::optional<double> RailDetector::rail(const State& state, int c) const {
   const Channel& channel = state.channels[static_cast<std::size_t>(c)];
   if (channel.rail > 0.0) return channel.rail;
-  const double below = channel.peak / (1.0 + params_.disagreement_share);
+  const double below = channel.peak / (1.0 + params_.range_contradiction_ratio);
   double sibling = 0.0;
   for (int i = c / 3 * 3; i < c / 3 * 3 + 3; ++i) {
     sibling = std::max(sibling, state.channels[static_cast<std::size_t>(i)].rail);
@@ -85,8 +86,8 @@ bool RailDetector::disagrees(const State& state, int c) const {
   const std::optional<double> given = stated(c);
   if (!given) return false;
   const Channel& channel = state.channels[static_cast<std::size_t>(c)];
-  if (channel.peak > *given * (1.0 + params_.disagreement_share)) return true;
-  return channel.rail > 0.0 && channel.rail < *given * (1.0 - params_.disagreement_share);
+  if (channel.peak > *given * (1.0 + params_.range_contradiction_ratio)) return true;
+  return channel.rail > 0.0 && channel.rail < *given * (1.0 - params_.range_contradiction_ratio);
 }
 
 Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
@@ -97,7 +98,7 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
     bool clipped = (sample.device_clip_flags >> c & 1u) != 0;
     bool flipped = false;
     if (const std::optional<double> level = rail(state, c)) {
-      const double share = channel.clipped ? params_.leave_share : params_.enter_share;
+      const double share = channel.clipped ? params_.clip_leave_ratio : params_.clip_enter_ratio;
       clipped = clipped || std::abs(value) >= *level * (1.0 - share);
       // A change from one saturation level to the opposite level within one sample is a numeric overflow, not a motion.
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
@@ -127,7 +128,7 @@ void RailDetector::add_rising_edge(const ImuSample& sample, const ImuSample& nex
     const std::optional<double> level = rail(state, c);
     if (!level) continue;
     const double value = reading(sample, c);
-    const bool near = std::abs(value) >= *level * (1.0 - params_.leave_share) && value * reading(next, c) > 0.0;
+    const bool near = std::abs(value) >= *level * (1.0 - params_.clip_leave_ratio) && value * reading(next, c) > 0.0;
     if (near) set_bit(c < 3 ? clipping.gyro : clipping.accel, c % 3);
   }
 }

@@ -18,32 +18,32 @@ using Eigen::Vector3d;
 
 // Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood
 // ratio of long segments.
-constexpr double kConstantShare = 0.05;
+constexpr double kConstantRateFraction = 0.05;
 // Minimum ratio of `bend` to `flat` in SegmentShape. If `bend / flat` is smaller, a flat segment does not indicate
 // saturation.
-constexpr double kBend = 3.0;
+constexpr double kBendRatioMin = 3.0;
 // Range of possible constant rates, as a fraction of the largest reading of the axis.
-constexpr double kLevelShare = 0.2;
+constexpr double kLevelRangeFraction = 0.2;
 // The noise estimate uses the residuals of a parabola in windows of kNoiseWindow readings. `kNoiseQuantile` is the
 // quantile of the windows that determines the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
 // Maximum log-likelihood of a kink at the end of a segment, if the other axes move smoothly at this time.
-constexpr double kKinkAlone = 2.5;
+constexpr double kMaxKinkLogLikelihood = 2.5;
 // Minimum change of the other axes around the end of a segment, in standard deviations, for the test of a kink.
-constexpr double kMoving = 10.0;
-// If a segment scatters less than noise with a log-likelihood above kThinAlone, the shape of the segment's ends does
-// not matter.
-constexpr double kThinAlone = 8.0;
+constexpr double kMotionSigmasMin = 10.0;
+// If a segment scatters less than noise with a log-likelihood above kThinLogLikelihoodMin, the shape of the segment's
+// ends does not matter.
+constexpr double kThinLogLikelihoodMin = 8.0;
 // Degrees of freedom that the scatter of a segment loses: two to the fitted straight line and two to the partly
 // saturated ends.
-constexpr std::size_t kThinTaken = 4;
-// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance for
-// readings at a saturation level is at most the fraction kAtRailShareMax of the level.
-constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// `kBeyond` is the penalty on the log odds of a saturation plane for each reading beyond the plane. `kStray` is the
-// fraction of readings that may be beyond the plane without a penalty.
-constexpr double kBeyond = 5.0, kStray = 0.02;
+constexpr std::size_t kThinLostFreedom = 4;
+// A reading within kAtRailSigmas standard deviations of a saturation plane is at the saturation level. The tolerance
+// for readings at a saturation level is at most the fraction kAtRailRatioMax of the level.
+constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
+// `kBeyondPenalty` is the penalty on the log odds of a saturation plane for each reading beyond the plane.
+// `kOutlierFraction` is the fraction of readings that may be beyond the plane without a penalty.
+constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
 
 // Returns the noise of a reading, from the root mean square of third differences: rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
@@ -73,8 +73,8 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
 // Returns a log-likelihood ratio that is positive if the readings of a segment scatter less than noise about a straight
 // line: rails.md (R65). Readings of a rate contain sensor noise. Readings at a saturation level contain no noise if the
 // device clips after the noise is added. If quantisation hides the noise, the log-likelihood ratio is zero.
-double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
-  if (s.size() <= kThinTaken) return 0.0;
+double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
+  if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
   const double middle = 0.5 * static_cast<double>(count - 1);
   double mean = 0.0, slope = 0.0, moment = 0.0, squares = 0.0;
@@ -89,7 +89,8 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
     const double line = mean + slope * (static_cast<double>(i) - middle);
     squares += std::pow(facet.row.dot(readings.rates[first + i]) - line, 2);
   }
-  const double free = static_cast<double>(s.size() - kThinTaken), digit = readings.digit[facet.axis] / std::sqrt(12.0);
+  const double free = static_cast<double>(s.size() - kThinLostFreedom),
+               digit = readings.digit[facet.axis] / std::sqrt(12.0);
   const double least = std::max(digit, kEqualReadingsRatio * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
@@ -101,7 +102,7 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
 // readings.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
-  bool bends() const { return bend >= kBend * flat; }
+  bool bends() const { return bend >= kBendRatioMin * flat; }
 };
 
 // Computes the shape of a segment. The result is empty for a single reading, and for a segment close to either end of
@@ -136,9 +137,9 @@ double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, c
   const double own = std::abs(facet.row.dot(bent));
   Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
   beside[facet.axis] = moving[facet.axis] = 0.0;
-  if (moving.norm() < kMoving * noise) return 0.0;
+  if (moving.norm() < kMotionSigmasMin * noise) return 0.0;
   const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
-  return std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
+  return std::clamp(-std::log(5.0 * ratio), -0.5, kMaxKinkLogLikelihood);
 }
 
 Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
@@ -186,7 +187,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet) {
   const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
-  const double of_level = std::log(kLevelShare * facet.level / thickness);
+  const double of_level = std::log(kLevelRangeFraction * facet.level / thickness);
   double odds = 0.0;
   facet.segments = 0;
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
@@ -196,15 +197,15 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
     // the readings of a motion scatter at least by the gyro's noise
-    const double thin = thinness(readings, facet, s);
-    if (!shape->bends() && thin < kThinAlone) continue;
+    const double thin = thin_log_likelihood(readings, facet, s);
+    if (!shape->bends() && thin < kThinLogLikelihoodMin) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
     // The log odds increase with the flatness of a segment (R62). The log odds also increase if segments have similar
     // mean readings (R63): rails.md.
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
-    odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
+    odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
@@ -212,11 +213,12 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
-  odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
+  odds -= kBeyondPenalty *
+          std::max(0.0, static_cast<double>(beyond) - kOutlierFraction * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
   // A reading counts as saturated if its distance from the saturation level is within the noise. The reading also
   // counts as saturated if the distance is within the error of the plane.
-  facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
+  facet.tolerance = std::max(facet.tolerance, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.level));
   // The Occam factor is the ratio of prior to posterior volume: rails.md (R66). The factor penalises the free choice of
   // saturation level and cross-axis sensitivities.
   const Eigen::Matrix3d posterior_covariance = H.inverse();

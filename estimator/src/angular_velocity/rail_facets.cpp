@@ -17,8 +17,8 @@ using Workspace = RailPlaneFinder::Workspace;
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
 // `kSlabDeviations` is the half thickness of a slab around a saturation plane, in standard deviations of the readings.
-// The half thickness of a slab is between the fractions kSlabShareMin and kSlabShareMax of the saturation level.
-constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
+// The half thickness of a slab is between the fractions kSlabRatioMin and kSlabRatioMax of the saturation level.
+constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
 // Collects the readings within `slab` of the largest value, for any cross-axis sensitivity up to `steepest`. Returns
 // the smallest value of the collected readings.
@@ -93,7 +93,7 @@ std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const
   if (peak < 0.5 * params.distance_min_rad_s) return std::nullopt;
   const double steepest = slope_range + prior.slopes.lpNorm<Eigen::Infinity>() + kGridStep;
   Extreme out{axis, sign, std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.digit[axis]}), steepest};
-  out.near_from = candidates(readings, axis, sign, steepest, 2.0 * out.slab, workspace.near);
+  out.near_min = candidates(readings, axis, sign, steepest, 2.0 * out.slab, workspace.near);
   return out;
 }
 
@@ -132,7 +132,7 @@ Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const F
   const int axis = extreme.axis;
   Side side{axis, extreme.sign, {}, {}};
   side.gate.steepest = extreme.steepest;
-  side.gate.near_from = extreme.near_from;
+  side.gate.near_min = extreme.near_min;
   RailFacet& facet = side.facet;
   facet.axis = axis;
   facet.sign = extreme.sign;
@@ -146,9 +146,9 @@ Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const F
   facet.tolerance = extreme.slab;
   for (int i = 0; i < kRefinements && !workspace.inliers.empty(); ++i) {
     fit(readings, prior, deviation, facet, workspace);
-    floor = std::max(kSlabShareMin * facet.level, readings.digit[axis]);
+    floor = std::max(kSlabRatioMin * facet.level, readings.digit[axis]);
     deviation = std::max(facet.deviation, 0.25 * floor);
-    facet.tolerance = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabShareMax * facet.level));
+    facet.tolerance = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabRatioMax * facet.level));
     collect(readings, facet.level - facet.tolerance, side, workspace);
   }
   side.samples = static_cast<int>(workspace.inliers.size());

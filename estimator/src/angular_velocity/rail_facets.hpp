@@ -16,7 +16,7 @@ namespace tumble::rails {
 /// sensitivities up to `steepest`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
-  double from = 0.0, steepest = 0.0, near_from = 0.0;
+  double from = 0.0, steepest = 0.0, near_min = 0.0;
 };
 
 /// State of the search for one sign of one sensing element.
@@ -46,7 +46,7 @@ inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double
 struct Extreme {
   int axis = 0, sign = 1;
   double slab = 0.0;
-  double steepest = 0.0, near_from = 0.0;
+  double steepest = 0.0, near_min = 0.0;
 };
 
 /// Finds the readings close to the extreme, and stores their indices in the workspace. Cost: O(N). Returns nothing if

@@ -29,24 +29,26 @@ using rails::Side;
 
 // Initial standard deviations of the robust fit, as fractions of the slab thickness. The small initial value suits a
 // thin plane with a few readings below the plane. The large initial value suits a thick plane.
-constexpr double kStarts[] = {0.5, 0.02};
+constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 // Usual relative difference between the saturation levels of one device's sensing elements. If a reading of another
 // axis exceeds a saturation level by a larger fraction, the log odds of the level decrease.
-constexpr double kSiblingShare = 0.04;
-// The log odds of a saturation level change by `kNearSibling` near the level of another sensing element. The log odds
-// change by `kNearStated` near a stated range, and by `kOtherSignAgrees` near the level of the opposite sign. For an
-// impossible level, the log odds change by `kImpossible`.
-constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// `kNearKnown` increases the log odds of a saturation level near the level of an earlier run. `kKnownShare` is the
-// standard deviation of the difference between the levels of two runs, as a fraction of the level. Far from the earlier
-// level, the log odds change by `kFarFromKnown`, since the device may have been replaced.
-constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
+constexpr double kElementLevelRatio = 0.04;
+// The log odds of a saturation level change by `kNearElementLogOdds` near the level of another sensing element. The log
+// odds change by `kNearStatedLogOdds` near a stated range, and by `kOppositeSignLogOdds` near the level of the opposite
+// sign. For an impossible level, the log odds change by `kImpossibleLogOdds`.
+constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
+                 kImpossibleLogOdds = -100.0;
+// `kNearKnownLogOdds` increases the log odds of a saturation level near the level of an earlier run.
+// `kKnownLevelSigmaRatio` is the standard deviation of the difference between the levels of two runs, as a fraction of
+// the level. Far from the earlier level, the log odds change by `kFarFromKnownLogOdds`, since the device may have been
+// replaced.
+constexpr double kNearKnownLogOdds = 6.0, kKnownLevelSigmaRatio = 0.003, kFarFromKnownLogOdds = -3.0;
 // Standard deviation of the change of a cross-axis sensitivity between two runs.
 constexpr double kKnownSlopeSigma = 2e-3;
 
 double log_normal_ratio(double value, double sigma) {
   const double z = value / sigma;
-  return std::max(kImpossible, -0.5 * z * z);
+  return std::max(kImpossibleLogOdds, -0.5 * z * z);
 }
 
 // Returns the prior log odds of a saturation level: rails.md (R67).
@@ -54,25 +56,26 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
                       const Side& side) {
   const double level = side.facet.level;
   double odds = params.log_odds_before;
-  if (level < params.distance_min_rad_s) return kImpossible;
+  if (level < params.distance_min_rad_s) return kImpossibleLogOdds;
   for (int other = 0; other < 3; ++other) {
     const auto& rail = known.element[static_cast<std::size_t>(other)];
     if (rail && other == side.axis) {
-      odds += kOtherSignAgrees + log_normal_ratio(level - rail->distance_rad_s, params.offset_share * level);
+      odds += kOppositeSignLogOdds + log_normal_ratio(level - rail->distance_rad_s, params.offset_sigma_ratio * level);
     } else if (rail) {
-      odds += kNearSibling + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.offset_share * level);
+      odds +=
+          kNearElementLogOdds + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.offset_sigma_ratio * level);
     }
     if (other == side.axis) continue;
-    const double beyond = readings.peak[other] / level - 1.0 - kSiblingShare;
-    if (beyond > 0.0) odds += log_normal_ratio(beyond, params.offset_share);
+    const double beyond = readings.peak[other] / level - 1.0 - kElementLevelRatio;
+    if (beyond > 0.0) odds += log_normal_ratio(beyond, params.offset_sigma_ratio);
   }
   if (const auto& rail = params.known.element[static_cast<std::size_t>(side.axis)]) {
     const double apart = level - rail->distance_rad_s - side.sign * rail->offset_rad_s;
-    odds += std::max(kFarFromKnown, kNearKnown + log_normal_ratio(apart, kKnownShare * level));
+    odds += std::max(kFarFromKnownLogOdds, kNearKnownLogOdds + log_normal_ratio(apart, kKnownLevelSigmaRatio * level));
   }
   if (params.stated_rad_s) {
     const double ratio = level / *params.stated_rad_s;
-    odds += ratio < kStatedRailMin ? kImpossible : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
+    odds += ratio < kStatedRailMin ? kImpossibleLogOdds : ratio < 1.05 && ratio > 0.95 ? kNearStatedLogOdds : 0.0;
   }
   return odds;
 }
@@ -85,7 +88,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
   const int axis = (plus != nullptr ? plus : minus)->axis;
   const double level = (plus != nullptr ? plus : minus)->facet.level;
   const double slope_information = 1.0 / (params.slope_sigma * params.slope_sigma);
-  H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.offset_share * level, 2);
+  H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.offset_sigma_ratio * level, 2);
   RailPlane out;
   double squares = 0.0, weights = 0.0;
   for (const Side* side : {minus, plus}) {
@@ -94,7 +97,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     const Gate& gate = side->gate;
     for (const Vector3d& y : readings.rates) {
       if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
-      if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_from)) continue;
+      if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_min)) continue;
       // linear model of the saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59)
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
@@ -141,7 +144,7 @@ struct SideSearch {
     if (!extreme) return side;
     const Vector2d searched = rails::search_slopes(readings, *extreme, range, prior, workspace);
     for (const Vector2d& slopes : {searched, prior.slopes}) {
-      for (const double start : kStarts) {
+      for (const double start : kInitialSigmaRatios) {
         Side tried = rails::fit_facet(readings, *extreme, prior, slopes, start * extreme->slab, workspace);
         if (tried.samples < params.samples_min) continue;
         tried.log_odds = level_log_odds(params, readings, known, tried) +
@@ -155,7 +158,7 @@ struct SideSearch {
   // Searches the saturation plane of one sign of a sensing element. The search starts near the element's sensing
   // direction if the direction is known. If the direction is unknown, the search starts near zero cross-axis
   // sensitivities or near the sensitivities of an earlier run.
-  Side look(int axis, int sign, const RailPlanes& known) const {
+  Side search_side(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
       const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
@@ -179,7 +182,7 @@ struct SideSearch {
   // contains a plane of sign `i`. `kept` states whether the previous search accepted the plane of sign `i`.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
-    const Side side = look(axis, sign, found);
+    const Side side = search_side(axis, sign, found);
     if (side.log_odds >= (kept ? params.log_odds_keep : params.log_odds_min)) {
       pair[i] = side;
       return true;
@@ -191,7 +194,7 @@ struct SideSearch {
     alone[i] = side;
     RailPlanes supposed = found;
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
-    const Side other = look(axis, -sign, supposed);
+    const Side other = search_side(axis, -sign, supposed);
     // the prior odds of the saturation level count once for both signs: rails.md (R68)
     if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
     pair[i] = side;

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 // A reading contradicts a saturation plane if the reading exceeds the plane by kBeyondTolerance times the tolerance.
 constexpr double kBeyondTolerance = 4.0;
-constexpr int kContradicting = 2;
+constexpr int kMinContradictions = 2;
 // Maximum relative difference between saturation levels of one device in two runs.
 constexpr double kSameShare = 0.003;
 
@@ -45,7 +45,7 @@ bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const 
       beyond += seen(sign) && margin_rad_s(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
     }
   }
-  return beyond >= kContradicting;
+  return beyond >= kMinContradictions;
 }
 
 SensingDirections sensing_directions(const RailPlanes& planes, double unknown_sigma) {

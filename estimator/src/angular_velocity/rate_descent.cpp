@@ -22,8 +22,9 @@ constexpr double kFlightShareExpected = 0.5;
 constexpr double kStepDeviations = 0.1;
 
 // Computes the flight weight and contact force of each sample: rate_smoother.md (R16) to (R19).
-void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
-               const RigConstants::Matrix& rig_covariance, double threshold_factor, std::span<RateEstimate> estimates) {
+void compute_flight_weights(const RateModel& model, std::span<const RateObservation> observations,
+                            const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
+                            double threshold_factor, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < estimates.size(); ++k) {
     double after = std::numeric_limits<double>::max();
@@ -40,8 +41,9 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
 }
 
 // Runs Gauss-Newton from the initial values. Returns false if a system is not positive definite.
-bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-             double threshold_factor, RateSolution& solution, RateReport& health) {
+bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model,
+                      std::span<const RateObservation> observations, double threshold_factor, RateSolution& solution,
+                      RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
@@ -50,7 +52,7 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   health.iterations = 0;
   health.converged = false;
   while (health.iterations < params.expert.descent.iterations_max) {
-    weigh_all(model, observations, solution.rig, solution.rig_covariance, threshold_factor, estimates);
+    compute_flight_weights(model, observations, solution.rig, solution.rig_covariance, threshold_factor, estimates);
     if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
     solution.rig_covariance = solution.iteration.rig_covariance();
     health.last_step_rad_s =
@@ -59,7 +61,7 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 
     const bool converged =
         threshold_factor == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
-                                    solution.iteration.decrement() < kStepDeviations * kStepDeviations);
+                                    solution.iteration.newton_decrement() < kStepDeviations * kStepDeviations);
     if (soft > 0) {
       solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
         model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance,
@@ -120,7 +122,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
 }
 
 // Computes g' H^-1 g, block by block: rate_smoother.md (R30). After elimination, the blocks contain L^-1 g.
-double RateIteration::decrement() const {
+double RateIteration::newton_decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
   return sum;
@@ -146,9 +148,10 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
 
 // Computes the derivatives of the solution by the sensor errors, and the information about the sensor errors:
 // rate_smoother.md (R37), (R38), (R39).
-RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
-                                                    const RigConstants& rig) const {
-  Moved out;
+RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const RateModel& model,
+                                                                       std::span<const RateEstimate> estimates,
+                                                                       const RigConstants& rig) const {
+  SensorErrorDerivatives out;
   out.of_sample.assign(blocks_.size(), arrow::ErrorMatrix::Zero());
   arrow::BorderErrors border = arrow::BorderErrors::Zero();
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -173,15 +176,16 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
 
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health) {
-  if (!descend(params, model, observations, params.expert.descent.widen_first, solution, health)) return false;
+  if (!run_gauss_newton(params, model, observations, params.expert.descent.initial_threshold_factor, solution, health))
+    return false;
   double share = 1.0;
   double best = explained(observations, solution.estimates, share);
   for (const double factor : kRestartThresholds) {
     if (share >= kFlightShareExpected) break;
     RateSolution other{{}, {}, {}, RateIteration(observations)};
     RateReport other_health = health;
-    const double threshold_factor = std::max(1.0, factor * params.expert.descent.widen_first);
-    if (!descend(params, model, observations, threshold_factor, other, other_health)) continue;
+    const double threshold_factor = std::max(1.0, factor * params.expert.descent.initial_threshold_factor);
+    if (!run_gauss_newton(params, model, observations, threshold_factor, other, other_health)) continue;
     double other_share = 0.0;
     const double found = explained(observations, other.estimates, other_share);
     ++health.restarts;

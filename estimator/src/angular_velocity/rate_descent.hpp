@@ -30,20 +30,21 @@ class RateIteration {
     }
   }
 
-  /// Moved contains the derivative of all unknowns by the sensor errors. Moved also contains the information of the
-  /// readings about the sensor errors, after all unknowns are optimised. The derivatives refer to the last
-  /// factorisation, with its `estimates` and `rig`, before apply().
-  struct Moved {
+  /// SensorErrorDerivatives contains the derivative of all unknowns by the sensor errors. SensorErrorDerivatives also
+  /// contains the information of the readings about the sensor errors, after all unknowns are optimised. The
+  /// derivatives refer to the last factorisation, with its `estimates` and `rig`, before apply().
+  struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
     SensorErrorEvidence evidence;
   };
-  Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
+  SensorErrorDerivatives error_derivatives(const RateModel& model, std::span<const RateEstimate> estimates,
+                                           const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
   /// Returns twice the predicted decrease of the cost, for the last factorisation. The result is also the square of the
   /// largest change of any combination of unknowns, in standard deviations.
-  double decrement() const;
+  double newton_decrement() const;
 
  private:
   std::span<const RateObservation> observations_;

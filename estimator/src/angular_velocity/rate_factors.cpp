@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 namespace {
 
 // Returns the products S_i v with the matrices S_i of RigConstants::inertia_basis, as columns. Explicit formulas reduce
-// the cost, because basis_times() runs for each sample.
-Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
+// the cost, because inertia_basis_times() runs for each sample.
+Eigen::Matrix<double, 3, 5> inertia_basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
   out << kHalf * v[0], kSixth * v[0], kHalf * v[1], kHalf * v[2], 0.0,  //
@@ -45,24 +45,24 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
 
 // Derivatives of the angular jerk. The derivatives are separate from the jerk, because most calls need only the jerk.
 struct JerkDerivatives {
-  Matrix3d by_rate, by_acceleration;
-  Eigen::Matrix<double, 3, 5> by_inertia;
+  Matrix3d by_rate, jacobian_acceleration;
+  Eigen::Matrix<double, 3, 5> jacobian_inertia;
 };
 
 JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   JerkDerivatives out;
   out.by_rate = -jerk.J_inv * (so3::hat(alpha) * jerk.J - so3::hat(jerk.Ja));
-  out.by_acceleration = -jerk.J_inv * (so3::hat(w) * jerk.J - so3::hat(jerk.Jw));
-  Eigen::Matrix<double, 3, 5> moved = basis_times(jerk.value);
-  moved.noalias() += so3::hat(alpha).lazyProduct(basis_times(w));
-  moved.noalias() += so3::hat(w).lazyProduct(basis_times(alpha));
-  out.by_inertia = -jerk.J_inv.lazyProduct(moved);
+  out.jacobian_acceleration = -jerk.J_inv * (so3::hat(w) * jerk.J - so3::hat(jerk.Jw));
+  Eigen::Matrix<double, 3, 5> moved = inertia_basis_times(jerk.value);
+  moved.noalias() += so3::hat(alpha).lazyProduct(inertia_basis_times(w));
+  moved.noalias() += so3::hat(w).lazyProduct(inertia_basis_times(alpha));
+  out.jacobian_inertia = -jerk.J_inv.lazyProduct(moved);
   return out;
 }
 
 // Propagates the knot back in time by `delay_s`, with Euler's equation without torque: rate_smoother.md (R12).
-RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
+RateKnot knot_before(double delay_s, const RateKnot& knot, const Jerk& jerk) {
   const double half = 0.5 * delay_s * delay_s;
   return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
           knot.acceleration_rad_s2 - delay_s * jerk.value};
@@ -117,15 +117,15 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
   const Jerk jerk = jerk_of(knot, rig);
   const JerkDerivatives derivatives = derivatives_of(jerk, knot);
   const double d = delay_s, half = 0.5 * delay_s * delay_s;
-  const RateFactor at = flight_factor(earlier_by(d, knot, jerk), rig, reading_m_s2);
-  const Matrix3d by_rate = at.jacobian_knot.leftCols<3>(), by_acceleration = at.jacobian_knot.rightCols<3>();
+  const RateFactor at = flight_factor(knot_before(d, knot, jerk), rig, reading_m_s2);
+  const Matrix3d by_rate = at.jacobian_knot.leftCols<3>(), jacobian_acceleration = at.jacobian_knot.rightCols<3>();
   RateFactor f = at;
-  f.jacobian_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_rate;
-  f.jacobian_knot.rightCols<3>() =
-      by_acceleration - d * by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_acceleration;
-  f.jacobian_calibration.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * derivatives.by_inertia;
+  f.jacobian_knot.leftCols<3>() = by_rate + (half * by_rate - d * jacobian_acceleration) * derivatives.by_rate;
+  f.jacobian_knot.rightCols<3>() = jacobian_acceleration - d * by_rate +
+                                   (half * by_rate - d * jacobian_acceleration) * derivatives.jacobian_acceleration;
+  f.jacobian_calibration.middleCols<5>(9) = (half * by_rate - d * jacobian_acceleration) * derivatives.jacobian_inertia;
   if (jacobian_delay != nullptr) {
-    *jacobian_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - by_acceleration * jerk.value;
+    *jacobian_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - jacobian_acceleration * jerk.value;
   }
   return f;
 }
@@ -133,7 +133,7 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
 // Flight residual of a delayed accelerometer, with the derivatives by the calibration only: rate_smoother.md (R12).
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Vector3d& reading_m_s2, double delay_s) {
-  RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
+  RateFactor f = flight_factor(knot_before(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
   f.jacobian_knot.setZero();
   return f;
 }
@@ -156,8 +156,8 @@ RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   f.residual = J * alpha + w.cross(momentum);
   f.jacobian_knot << so3::hat(w) * J - so3::hat(momentum), J;
   f.jacobian_calibration.setZero();
-  f.jacobian_calibration.middleCols<5>(9) = basis_times(alpha);
-  f.jacobian_calibration.middleCols<5>(9).noalias() += so3::hat(w).lazyProduct(basis_times(w));
+  f.jacobian_calibration.middleCols<5>(9) = inertia_basis_times(alpha);
+  f.jacobian_calibration.middleCols<5>(9).noalias() += so3::hat(w).lazyProduct(inertia_basis_times(w));
   return f;
 }
 

@@ -228,7 +228,8 @@ RateModel::ForceFactor RateModel::force_factor(const RateObservation& observatio
 
 void RateModel::add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                          arrow::Block& block, arrow::Corner& corner) const {
-  const RateFactor gyro = gyro_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+  const RateFactor gyro =
+      gyro_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   const double age = observation.gyro_age_s / time_scale_s_;
   for (int j = 0; j < 3; ++j) {
     const double information = gyro_information(observation, estimate, j), pull = information * gyro.residual[j];
@@ -291,7 +292,7 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
   const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
   const double across = share_ / (flight + lever * lever);
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
-  const double twist = params_.expert.contact.twist_share * lever;
+  const double twist = params_.expert.contact.twist_ratio * lever;
   const Vector3d n = estimate.contact_force_m_s2 / force;
   return across * Eigen::Matrix3d::Identity() + (share_ / (flight + twist * twist) - across) * n * n.transpose();
 }

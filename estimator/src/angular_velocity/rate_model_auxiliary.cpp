@@ -20,26 +20,27 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
 
 // Returns whether an axis of an auxiliary IMU depends only on unclipped components of the primary IMU's specific force.
 // The saturation deficit of element i acts along column i of the inverse of the sensing directions.
-bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
-  constexpr double kSlight = 0.02;
+bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
+  constexpr double kNegligibleCoupling = 0.02;
   if (observation.clipping.accel == 0) return true;
   const bool tilted = observation.accel_rows.tilted();
   const Eigen::RowVector3d sees = tilted ? Eigen::RowVector3d(axis * observation.accel_rows.rows.inverse()) : axis;
   for (int i = 0; i < 3; ++i) {
-    if ((observation.clipping.accel >> i & 1u) != 0 && std::abs(sees[i]) > kSlight) return false;
+    if ((observation.clipping.accel >> i & 1u) != 0 && std::abs(sees[i]) > kNegligibleCoupling) return false;
   }
   return true;
 }
 
 // Returns the matrix that converts the primary IMU's specific force to the axes or sensing elements of an auxiliary
 // IMU.
-Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const SensingDirections& elements, bool is_element_clipped) {
+Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDirections& elements,
+                                  bool is_element_clipped) {
   return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
 // Returns the standard deviation of an unsaturated element's reading that is due to the element's uncertain sensing
 // direction. `most` is the maximum saturation deficit of the other elements.
-double unknown_row(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
+double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }
 
@@ -55,26 +56,28 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
-    const double misplaced =
+    const double position_error_sigma_m_s2 =
         mount.position_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
-    const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_along_elements);
-    const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_along_elements);
+    const Eigen::Matrix3d gyro = axes_of_auxiliary(R_CI, mount.gyro_elements, reading.rate_along_elements);
+    const Eigen::Matrix3d accel = axes_of_auxiliary(R_CI, mount.accel_elements, reading.force_along_elements);
     for (int j = 0; j < 3; ++j) {
       if (std::isfinite(reading.rate_rad_s[j])) {
         AuxiliaryRow row = AuxiliaryRow::Zero();
         row.head<3>() = gyro.row(j);
-        const double unknown =
-            unknown_row(mount.gyro_elements, reading.rate_along_elements, j, estimate.knot.rate_rad_s.norm());
+        const double unknown = sensing_direction_sigma(mount.gyro_elements, reading.rate_along_elements, j,
+                                                       estimate.knot.rate_rad_s.norm());
         add_row(row, gyro.row(j).dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j],
                 std::hypot(reading.rate_sigma_rad_s[j], unknown), block);
       }
       const Eigen::RowVector3d axis = accel.row(j);
-      if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation)) continue;
+      if (!std::isfinite(reading.force_m_s2[j]) || !depends_on_unclipped_axes(axis, observation)) continue;
       AuxiliaryRow row = axis * rotation.jacobian_knot;
       row.tail<3>() /= time_scale_s_;
-      const double unknown = unknown_row(mount.accel_elements, reading.force_along_elements, j, force.norm());
+      const double unknown =
+          sensing_direction_sigma(mount.accel_elements, reading.force_along_elements, j, force.norm());
       const double lasting =
-          std::sqrt((misplaced * misplaced + unknown * unknown) / share_ + accel_variance_of_sum(observation));
+          std::sqrt((position_error_sigma_m_s2 * position_error_sigma_m_s2 + unknown * unknown) / share_ +
+                    accel_variance_of_sum(observation));
       const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);
       add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
     }

@@ -19,10 +19,10 @@ using Eigen::Vector3d;
 // initial precision of the lower bound that a clipped reading provides, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
-// Search for flight between two impacts: number of Newton steps and longest step [rad/s]. `kGentleShare` is the maximum
-// remaining force, as a fraction of the reading.
-constexpr int kSeekIterations = 6;
-constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
+// Search for flight between two impacts: number of Newton steps and longest step [rad/s]. `kFlightForceRatioMax` is the
+// maximum remaining force, as a fraction of the reading.
+constexpr int kFlightSearchSteps = 6;
+constexpr double kFlightSearchStepMax = 3.0, kFlightForceRatioMax = 0.25;
 
 }  // namespace
 
@@ -31,19 +31,19 @@ void RateModel::search_flight(const RateObservation& observation, const RigConst
   const int unmeasured_axes = observation.unmeasured_axes();
   if (unmeasured_axes == 0 || observation.clipping.accel != 0) return;
   const Vector3d reading = corrected_rate(observation, estimate);
-  RateEstimate flown = estimate;
+  RateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
   // the saturation deficit of one sensing element changes the readings of all axes, by a column of M^-1: rails.md (R51)
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
-  const Eigen::Matrix3d hides = rows.inverse();
+  const Eigen::Matrix3d deficit_directions = rows.inverse();
   RateFactor flight;
-  for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {
-    Vector3d& w = flown.knot.rate_rad_s;
-    flown.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
-    flight = this->flight(observation, flown.knot, rig);
-    if (iteration == kSeekIterations) break;
-    const Eigen::Matrix3d by_hidden = flight.jacobian_knot.leftCols<3>() * hides;
+  for (int iteration = 0; iteration <= kFlightSearchSteps; ++iteration) {
+    Vector3d& w = flight_estimate.knot.rate_rad_s;
+    flight_estimate.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
+    flight = this->flight(observation, flight_estimate.knot, rig);
+    if (iteration == kFlightSearchSteps) break;
+    const Eigen::Matrix3d by_hidden = flight.jacobian_knot.leftCols<3>() * deficit_directions;
     Eigen::Matrix3d H = 1e-9 * Eigen::Matrix3d::Identity();
     Vector3d g = Vector3d::Zero();
     for (int j = 0; j < 3; ++j) {
@@ -53,24 +53,26 @@ void RateModel::search_flight(const RateObservation& observation, const RigConst
         if ((unmeasured_axes >> i & 1) != 0) H(i, j) += by_hidden.col(i).dot(by_hidden.col(j));
       }
     }
-    w += hides * H.llt().solve(g).cwiseMax(-kSeekStep).cwiseMin(kSeekStep);
+    w += deficit_directions * H.llt().solve(g).cwiseMax(-kFlightSearchStepMax).cwiseMin(kFlightSearchStepMax);
     for (int j = 0; j < 3; ++j) {
       if ((unmeasured_axes & observation.clipping.gyro & 1 << j) == 0) continue;
       const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
       const double along = rows.row(j).dot(w), held = rows.row(j).dot(reading);
-      w += (side * std::clamp(side * along, std::abs(held), std::max(high, std::abs(held))) - along) * hides.col(j);
+      w += (side * std::clamp(side * along, std::abs(held), std::max(high, std::abs(held))) - along) *
+           deficit_directions.col(j);
     }
   }
-  const double gentle = kGentleShare * observation.sample.specific_force_m_s2.norm();
+  const double gentle = kFlightForceRatioMax * observation.sample.specific_force_m_s2.norm();
   if (flight.residual.norm() > std::min(gentle, 0.5 * estimate.contact_force_m_s2.norm())) return;
-  estimate.knot = flown.knot;
+  estimate.knot = flight_estimate.knot;
   estimate.contact_force_m_s2 = -flight.residual;
 }
 
 void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
                              RateEstimate& estimate) const {
   estimate.soft_bounds = true;
-  const RateFactor off = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+  const RateFactor off =
+      element_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double guess = off.residual[j];
@@ -84,7 +86,8 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
                               const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
                               double damping, RateEstimate& estimate) const {
   if ((observation.unmeasured_axes() & observation.clipping.gyro) == 0) return;
-  const RateFactor off = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+  const RateFactor off =
+      element_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;

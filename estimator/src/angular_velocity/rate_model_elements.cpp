@@ -54,7 +54,8 @@ void add_row(const RateFactor& gyro, int j, double age, double information, doub
 
 void RateModel::add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                              arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
-  const RateFactor gyro = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+  const RateFactor gyro =
+      element_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.unusable_gyro >> j & 1u) != 0) continue;
     double information = gyro_information(observation, estimate, j);

@@ -30,7 +30,7 @@ void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& f
 }
 
 // Returns the rate and acceleration at the time of the gyro's reading: rate_smoother.md (R7).
-RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
+RateKnot RateModel::knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
 }
@@ -81,8 +81,8 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   const bool is_element_clipped = observation.is_element_clipped();
   if (rig_spread && is_element_clipped) return;
   const Vector3d reading = corrected_rate(observation, estimate);
-  const RateFactor gyro = is_element_clipped ? element_factor(at_reading(observation, estimate), rig, reading)
-                                             : gyro_factor(at_reading(observation, estimate), rig, reading);
+  const RateFactor gyro = is_element_clipped ? element_factor(knot_at_reading(observation, estimate), rig, reading)
+                                             : gyro_factor(knot_at_reading(observation, estimate), rig, reading);
   const unsigned lost =
       observation.clipping.unusable_gyro | (observation.clipping.gyro & ~observation.subsample_saturated);
   for (int j = 0; j < 3; ++j) {

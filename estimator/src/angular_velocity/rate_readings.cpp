@@ -59,7 +59,7 @@ void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const Clippi
     inflate_possible_saturation(planes, least, noise_rad_s, before, observations[k], after);
   }
   if (!rails.gyro_clips_after_compensation)
-    inflate_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
+    inflate_motion_plateaus(planes, least, expected.offset_sigma_ratio, noise_rad_s, observations);
 }
 
 void mark_repeated(const std::optional<RepeatedReadings>& gyro, const std::optional<RepeatedReadings>& accel,
@@ -88,7 +88,7 @@ RateReadings read_samples(const RateSmoother::Params& params, const ClippingFind
   RateReadings out{std::vector<RateObservation>(samples.size()), params.model, found.rails.planes_in_use(), {}};
   const double period_s = median_period_s(samples);
   out.known.calibration =
-      with_planes(RateModel(params.model, period_s), out.planes, found.rails.gyro_clips_after_compensation);
+      prior_with_planes(RateModel(params.model, period_s), out.planes, found.rails.gyro_clips_after_compensation);
   const SensingDirections accel_rows = found.rails.rows(Triad::accelerometer, params.model.element_sigma);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     RateObservation& o = out.observations[k];

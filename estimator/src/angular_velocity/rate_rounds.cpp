@@ -27,7 +27,7 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
 }
 
 // Returns the standard deviations of the data sheet, without the larger standard deviations of an uncalibrated device.
-SensorErrorPriors as_stated(SensorErrorPriors sizes) {
+SensorErrorPriors data_sheet_priors(SensorErrorPriors sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
   return sizes;
@@ -46,12 +46,12 @@ bool plausible(const SensorErrors& found, const SensorErrors& given, const Senso
          errors.g_sensitivity_s_m.cwiseAbs().maxCoeff() <= g_sensitivity_s_m;
 }
 
-bool is_conclusive(const TriadDelay& guess) {
+bool has_delay(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
 // Returns whether estimated and corrected sensor errors differ enough to require another optimisation.
-bool far_apart(const SensorErrors& a, const SensorErrors& b) {
+bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
          (a.g_sensitivity_s_m - b.g_sensitivity_s_m).cwiseAbs().maxCoeff() > kGSensitivity_s_m ||
@@ -60,11 +60,11 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
 }
 
 // One device in a thousand exceeds this Mahalanobis distance between three calibration constants and their prior.
-constexpr double kMahalanobisOfDevice = 2.33;
+constexpr double kDeviceMahalanobisMax = 2.33;
 
 // Fixes the calibration at its prior, except for the sensing directions of the gyro. Contact does not affect the
 // sensing directions.
-RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& model) {
+RateModelParams fixed_calibration(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
   out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
@@ -80,18 +80,19 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   RateIteration again(observations);
   if (!again.factorise(model, solution.estimates, solution.rig)) return model.calibration_mahalanobis(solution.rig);
   const arrow::BorderErrors moved =
-      again.moved_by_errors(model, solution.estimates, solution.rig).calibration_by_errors;
+      again.error_derivatives(model, solution.estimates, solution.rig).calibration_by_errors;
   RateModelParams wider = known;
   wider.calibration = RigCalibration{model.prior_constants(), model.prior_covariance()};
   wider.calibration->covariance +=
-      moved * fit_sensor_errors({}, known.expert.error_sizes).known.covariance * moved.transpose();
+      moved * fit_sensor_errors({}, known.expert.error_priors).known.covariance * moved.transpose();
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
 // Runs the optimisation. If the result mistakes contact for flight with a wrong calibration, repeats the optimisation
 // with a fixed calibration.
-Status descend_at_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
-                        std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
+Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
+                             std::span<const RateObservation> observations, bool struck, RateFit& fit,
+                             RateReport& health) {
   fit.model = RateModel(known, period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -100,13 +101,13 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
   if (health.calibration_at_prior && struck) {
     health.calibration_mahalanobis = mahalanobis_of(known, fit.model, period_s, observations, fit.solution);
     health.calibration_at_prior =
-        health.calibration_mahalanobis > std::max(params.calibration_mahalanobis_max, kMahalanobisOfDevice);
+        health.calibration_mahalanobis > std::max(params.calibration_mahalanobis_max, kDeviceMahalanobisMax);
   }
   health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
   if (!health.calibration_at_prior) return {};
   const double mahalanobis = health.calibration_mahalanobis;
   health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
-  fit.model = RateModel(fixed_at_prior(known, fit.model), period_s);
+  fit.model = RateModel(fixed_calibration(known, fit.model), period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
@@ -119,9 +120,9 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
   return {};
 }
 
-// If the guessed delay differs from the assumed delay by more than kGuessFar standard deviations, the guess becomes the
-// initial value.
-constexpr double kGuessFar = 2.0;
+// If the guessed delay differs from the assumed delay by more than kGuessSigmasMax standard deviations, the guess
+// becomes the initial value.
+constexpr double kGuessSigmasMax = 2.0;
 
 // Adds the delay estimated from impacts to the information about the sensor errors, rate_smoother.md (R38). The flight
 // model does not use impacts.
@@ -132,22 +133,23 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.linearisation_point.accel_delay_s);
 }
 
-// If the odds of a device that matches its data sheet are below kPlainOdds, the readings clearly contradict the data
-// sheet. Above kPlainOdds, the mixture of a matching and an uncalibrated device accounts for the uncertainty.
-constexpr double kPlainOdds = 0.05;
+// If the odds of a device that matches its data sheet are below kContradictionOdds, the readings clearly contradict the
+// data sheet. Above kContradictionOdds, the mixture of a matching and an uncalibrated device accounts for the
+// uncertainty.
+constexpr double kContradictionOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
 // contradicts its data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
 // from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
-bool off_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
+bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
   const double of_scale = odds(device.data_sheet_probability) / odds(before.data_sheet_probability);
-  return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kPlainOdds;
+  return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kContradictionOdds;
 }
 
 // Returns the standard deviations of the sensor errors of a device without a data sheet.
-SensorErrorPriors unstated(SensorErrorPriors sizes) {
+SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
   sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
   sizes.g_sensitivity_s_m = std::max(sizes.g_sensitivity_s_m, sizes.g_sensitivity_uncalibrated_s_m);
@@ -184,23 +186,23 @@ struct Rounds {
   std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
   SensorErrorPriors sizes = {};      ///< stated sizes, except for the sampling of asynchronous triads
 
-  const SensorErrorPriors& stated() const { return known.expert.error_sizes; }
-  bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
+  const SensorErrorPriors& stated() const { return known.expert.error_priors; }
+  bool is_delay_unknown() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
   /// Returns whether the body has impacts and flight. A body with impacts and flight is not hand-held, so sensor errors
   /// may change the calibration of the rig.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
-Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
-                 std::span<const Clipping> clippings, std::span<const RateObservation> observations,
-                 const RateReport& health) {
+Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
+                   std::span<const Clipping> clippings, std::span<const RateObservation> observations,
+                   const RateReport& health) {
   Rounds out{params, known, samples, clippings, median_period_s(samples)};
   out.estimated = params.expert.error_rounds_max > 1;
   out.triads_asynchronous = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
   out.sizes = out.stated();
   if (out.triads_asynchronous) out.sizes.delay_s = std::max(out.sizes.delay_s, out.sizes.delay_uncalibrated_s);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
-  if (out.delay_open()) out.guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
+  if (out.is_delay_unknown()) out.guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
   out.age_s.resize(samples.size());
   for (std::size_t k = 0; k < out.age_s.size(); ++k) out.age_s[k] = observations[k].accel_age_s;
   return out;
@@ -216,34 +218,34 @@ struct Start {
 Start start_from(const SensorErrors& assumed, const Rounds& rounds) {
   const TriadDelay& guess = rounds.guess;
   Start out{assumed, assumed.accel_delay_s};
-  if (!is_conclusive(guess)) return out;
-  if (std::abs(guess.delay_s - assumed.accel_delay_s) > kGuessFar * guess.sigma_s)
+  if (!has_delay(guess)) return out;
+  if (std::abs(guess.delay_s - assumed.accel_delay_s) > kGuessSigmasMax * guess.sigma_s)
     out.errors.accel_delay_s = guess.delay_s;
   out.other_delay_s = out.errors.accel_delay_s == guess.delay_s ? rounds.known.errors.accel_delay_s : guess.delay_s;
   return out;
 }
 
-Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::span<RateObservation> observations,
-                         RateFit& fit, RateReport& health) {
+Status optimise_corrected(const Rounds& rounds, const SensorErrors& errors, std::span<RateObservation> observations,
+                          RateFit& fit, RateReport& health) {
   const double shift = std::round(errors.accel_delay_s / rounds.period_s);
   shift_force(rounds.samples, rounds.clippings, static_cast<std::ptrdiff_t>(shift), rounds.age_s, observations);
   RateModelParams corrected = rounds.known;
   corrected.errors = errors;
   corrected.errors.accel_delay_s -= shift * rounds.period_s;
-  return descend_at_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
+  return optimise_or_fix_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
 // Computes the information about the sensor errors, relative to the corrected errors: fit.moved.
-Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
+Status collect_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
-  fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
+  fit.moved = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
     // If the optimisation has not converged, the remaining gradient must not count as information about sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }
-    fit.moved.evidence = again.moved_by_errors(fit.model, solution.estimates, solution.rig).evidence;
+    fit.moved.evidence = again.error_derivatives(fit.model, solution.estimates, solution.rig).evidence;
   }
   fit.moved.evidence.linearisation_point = errors;
   add_guess(rounds.guess, fit.moved.evidence);
@@ -258,8 +260,8 @@ struct RoundsState {
 };
 
 // Repeats the optimisation until the estimated sensor errors equal the corrected sensor errors.
-Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
-                      RoundsState& rounds_state) {
+Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
+                       RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
   const std::optional<KnownSensorErrors>& learnt = rounds.params.calibrated_errors;
   bool has_calibration = rounds.estimated && learnt.has_value();
@@ -269,7 +271,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   health.error_rounds = 0;
   for (int round = 1;; ++round) {  // counts from the last restart, and the report counts all rounds
     ++health.error_rounds;
-    if (Status status = descend_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
+    if (Status status = optimise_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
       // the earlier run may have used a different device
@@ -286,12 +288,12 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
       round = 0;
       continue;
     }
-    if (Status status = take_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
+    if (Status status = collect_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
     rounds_state.found = fit_about(given, fit.moved.evidence, rounds.sizes, rounds_state.learnt);
     rounds_state.is_plausible = plausible(rounds_state.found.known.errors, given, rounds.stated());
     if (health.calibration_at_prior || !rounds_state.is_plausible || round >= rounds.params.expert.error_rounds_max)
       return {};
-    if (!far_apart(rounds_state.found.known.errors, rounds_state.errors)) return {};
+    if (!differ_significantly(rounds_state.found.known.errors, rounds_state.errors)) return {};
     rounds_state.errors = rounds_state.found.known.errors;
   }
 }
@@ -299,12 +301,12 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
 // If a device clearly contradicts its data sheet, enlarges the covariance of the sensor errors to the covariance of an
 // uncalibrated device. The correction keeps only sensor errors that the readings clearly determine. Returns the
 // standard deviations of the sensor errors that are in use.
-SensorErrorPriors leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
-  const bool open =
-      rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
-                              health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
+SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
+  const bool open = rounds.is_delay_unknown() &&
+                    (contradicts_data_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
+                     health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
   if (!open) return rounds.sizes;
-  const SensorErrorPriors sizes = unstated(rounds.sizes);
+  const SensorErrorPriors sizes = uncalibrated_priors(rounds.sizes);
   health.common_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
   KnownSensorErrors& found = rounds_state.found.known;
   const KnownSensorErrors unknown =
@@ -329,13 +331,13 @@ void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health) {
-  const Rounds rounds = rounds_of(params, known, samples, clippings, observations, health);
+  const Rounds rounds = make_rounds(params, known, samples, clippings, observations, health);
   RoundsState rounds_state;
-  if (Status status = descend_rounds(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
+  if (Status status = optimise_rounds(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
   health.data_sheet_probability = rounds_state.found.data_sheet_probability;
   health.synchronous_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.found.synchronous_probability;
-  const SensorErrorPriors sizes = leave_open(rounds, fit, rounds_state, health);
-  const SensorErrorPriors stated = as_stated(rounds.stated());
+  const SensorErrorPriors sizes = open_priors(rounds, fit, rounds_state, health);
+  const SensorErrorPriors stated = data_sheet_priors(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
     // Without flight, the run contains no information about the device beyond the prior. All sensor errors then remain
     // uncertain.

@@ -14,7 +14,7 @@ struct RateFit {
 
   RateSolution solution;
   RateModel model;
-  RateIteration::Moved moved;
+  RateIteration::SensorErrorDerivatives moved;
 };
 
 /// Repeats the optimisation with readings corrected for the sensor errors of the previous optimisation, and finally

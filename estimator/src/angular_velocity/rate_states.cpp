@@ -15,11 +15,11 @@ namespace {
 using Eigen::Vector3d;
 
 // Maximum common delay of gyro and accelerometer, in standard deviations.
-constexpr double kSharedReach = 2.0;
+constexpr double kCommonDelaySigmas = 2.0;
 
 // Interpolates the readings of a slow gyro at the time of each sample, if the gyro measures all axes.
-std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSample> samples,
-                                                          const RateReadings& readings) {
+std::vector<std::optional<InterpolatedRate>> interpolate_gyro(std::span<const ImuSample> samples,
+                                                              const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
   for (std::size_t k = 0; k < hidden.size(); ++k) {
     const RateObservation& o = readings.observations[k];
@@ -30,8 +30,8 @@ std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSam
 
 // Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
 // rate_smoother.md (R44).
-Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
-                               double rate_max_rad_s) {
+Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
+                                        double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
   const Eigen::Matrix3d out = spread.lazyProduct(rates.transpose());
   const double most = rate_max_rad_s * rate_max_rad_s;
@@ -40,8 +40,8 @@ Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErro
 
 // Returns how fast the rate may change between two samples. If the readings are unsaturated, the result is the change
 // of the estimated rate per time. If a reading may be saturated, the result follows from the contact force.
-double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
-                     std::span<const RateEstimate> estimates, std::size_t k) {
+double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
+                          std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
   if (from.at_rest && to.at_rest) return 0.0;
   if (((from.clipping.gyro | from.possibly_saturated_axes()) | (to.clipping.gyro | to.possibly_saturated_axes())) != 0)
@@ -54,25 +54,25 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
 // Returns the covariance of a rate that is due to an unknown delay of gyro and accelerometer together. The standard
 // deviation is the largest change of the rate within the delay. An impact in the next sample's window may belong to the
 // current sample.
-Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& params,
-                                std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
-                                std::size_t k) {
+Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParams& params,
+                                        std::span<const RateObservation> observations,
+                                        std::span<const RateEstimate> estimates, std::size_t k) {
   if (!(variance_s2 > 0.0)) return Eigen::Matrix3d::Zero();
-  const auto reach_ns = static_cast<TimeNs>(1e9 * kSharedReach * std::sqrt(variance_s2));
+  const auto delay_range_ns = static_cast<TimeNs>(1e9 * kCommonDelaySigmas * std::sqrt(variance_s2));
   const TimeNs now = observations[k].sample.time_ns;
   double change = 0.0;
-  for (std::size_t i = k; i > 0 && now - observations[i].sample.time_ns <= reach_ns; --i)
-    change = std::max(change, change_rad_s2(params, observations, estimates, i - 1));
-  for (std::size_t i = k; i + 1 < estimates.size() && observations[i].sample.time_ns - now < reach_ns; ++i)
-    change = std::max(change, change_rad_s2(params, observations, estimates, i));
+  for (std::size_t i = k; i > 0 && now - observations[i].sample.time_ns <= delay_range_ns; --i)
+    change = std::max(change, rate_change_rad_s2(params, observations, estimates, i - 1));
+  for (std::size_t i = k; i + 1 < estimates.size() && observations[i].sample.time_ns - now < delay_range_ns; ++i)
+    change = std::max(change, rate_change_rad_s2(params, observations, estimates, i));
   const Vector3d& alpha = estimates[k].knot.acceleration_rad_s2;
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
 // Returns the rate at some time after a sample, with its covariance. The rate is a cubic between the two surrounding
 // knots. The covariance is at most the mean of the covariances of both knots.
-RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
-                      std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
+RateState extrapolated_state(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                             std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;
   double left_s = late_s;
   for (; k + 1 < estimates.size(); ++k) {
@@ -100,8 +100,8 @@ std::vector<Eigen::Matrix3d> rate_covariances(const RateSmoother::Params& params
   fit.solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, fit.solution.rig_covariance) +
-        open_of_errors(fit.moved.of_sample[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
-        of_common_delay(shared_s2, readings.known, readings.observations, estimates, k);
+        sensor_error_covariance(fit.moved.of_sample[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
+        common_delay_covariance(shared_s2, readings.known, readings.observations, estimates, k);
     out[k] = fit.model.reported(covariance, readings.observations[k], estimates[k]);
   });
   return out;
@@ -127,15 +127,15 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
   // if saturation planes are axis-aligned, equal readings identify saturation without the planes
   const std::vector<std::uint8_t> near =
-      may_meet_rails(samples, health.clips_after_compensation ? RailPlanes{} : readings.planes);
-  const std::vector<std::optional<InterpolatedRate>> own = read_in_time(samples, readings);
+      possible_partial_saturation(samples, health.clips_after_compensation ? RailPlanes{} : readings.planes);
+  const std::vector<std::optional<InterpolatedRate>> own = interpolate_gyro(samples, readings);
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const RateObservation& o = observations[k];
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
-    state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
+    state = extrapolated_state(observations, solution.estimates, covariances, k, gyro_late_s);
     // In flight, the motion is smoother than the gyro's readings. In other motion, interpolated readings are more
     // accurate than the model of white jerk between samples.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;

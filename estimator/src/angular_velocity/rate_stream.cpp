@@ -19,7 +19,7 @@ int clipped_axes(const RateObservation& o) {
   return o.unmeasured_axes();
 }
 
-FrozenAxes::Params ranges_of(const RailDetector::Params& rails) {
+FrozenAxes::Params frozen_axes_params(const RailDetector::Params& rails) {
   return {.gyro_range_rad_s = rails.stated_gyro_rad_s.value_or(0.0),
           .accel_range_m_s2 = rails.stated_accel_m_s2.value_or(0.0)};
 }
@@ -52,7 +52,7 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-RateModelParams corrected_for(const RateStreamParams& params) {
+RateModelParams model_with_corrections(const RateStreamParams& params) {
   RateModelParams out = params.model;
   if (params.calibrated_errors) out.errors = params.calibrated_errors->errors;
   return out;
@@ -64,17 +64,17 @@ RateStream::RateStream(const Params& params)
     : params_(params),
       rails_({.clipping = {params.rails, params.expert.planes, params.expert.accel_planes}}),
       rest_detector_(params.expert.rests),
-      frozen_(ranges_of(params.rails)),
+      frozen_(frozen_axes_params(params.rails)),
       flight_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
                           .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
-      model_(corrected_for(params), params.period_s),
-      device_(params.model.expert.error_sizes, params.expert.uncalibrated) {
+      model_(model_with_corrections(params), params.period_s),
+      device_(params.model.expert.error_priors, params.expert.uncalibrated) {
   require_valid_fields(params);
   if (params.calibrated_errors) require_known(*params.calibrated_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
-  prior_delay_s_ = corrected_for(params).errors.accel_delay_s;
-  const SensorErrorPriors& sizes = params.model.expert.error_sizes;
+  prior_delay_s_ = model_with_corrections(params).errors.accel_delay_s;
+  const SensorErrorPriors& sizes = params.model.expert.error_priors;
   delay_is_estimated_ =
       !params.calibrated_errors && sizes.delay_uncalibrated_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
   samples_per_step_ =
@@ -291,10 +291,11 @@ void RateStream::compute_flight_weight(State& state) const {
       after = model_.jump(knot.estimate.knot, next.estimate.knot, seconds_between(knot, next));
     }
     const bool clipped = clipped_axes(knot.observation) != 0;
-    const double threshold_factor = clipped ? std::max(1.0, std::ldexp(params_.expert.widen_first, -knot.age)) : 1.0;
+    const double threshold_factor =
+        clipped ? std::max(1.0, std::ldexp(params_.expert.initial_threshold_factor, -knot.age)) : 1.0;
     model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, threshold_factor,
                                  std::min(before, after), knot.estimate);
-    const bool soften = knot.age >= params_.expert.bound_age && knot.estimate.flight_weight < 0.5;
+    const bool soften = knot.age >= params_.expert.bound_hard_steps && knot.estimate.flight_weight < 0.5;
     if (soften && !knot.estimate.soft_bounds) {
       model_.search_flight(knot.observation, state.rig, knot.estimate);
       model_.start_bounds(knot.observation, state.rig, knot.estimate);
@@ -326,7 +327,7 @@ bool RateStream::step(State& state) const {
   arrow::BorderMatrix rig_covariance;
   if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
-  consider_errors(rig_step, state);
+  add_sensor_error_covariance(rig_step, state);
   state.rig.add(rig_step);
   const arrow::BorderMatrix rig_spread = inflated(state);
   arrow::StateVector x;

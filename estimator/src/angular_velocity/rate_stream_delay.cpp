@@ -14,20 +14,20 @@ namespace {
 constexpr int kBeside = ImpactSums::kDelayMax_samples;
 // Time constant of the impact statistics, as a number of intervals between readings.
 constexpr double kMemory = 2000.0;
-// `kUpdateEvery_ns` is the time between two estimates of the delay. `kMoved_s` is the minimum change of the delay that
-// the stream applies.
-constexpr TimeNs kUpdateEvery_ns = 50'000'000;
-constexpr double kMoved_s = 3e-4;
-// If the odds of synchronous triads are below `kPlainOdds`, impacts clearly contradict the data sheet. A guessed delay
-// replaces the current delay if their difference exceeds `kGuessFar` standard deviations.
-constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
-// `kIntervalsMin` is the minimum number of intervals. `kGainMin` is the minimum difference between the correlations at
-// the estimated and at the stated delay. The first impacts of a tumble correlate by chance.
-constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
+// `kUpdatePeriod_ns` is the time between two estimates of the delay. `kDelayChangeMin_s` is the minimum change of the
+// delay that the stream applies.
+constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
+constexpr double kDelayChangeMin_s = 3e-4;
+// If the odds of synchronous triads are below `kContradictionOdds`, impacts clearly contradict the data sheet. A
+// guessed delay replaces the current delay if their difference exceeds `kGuessSigmasMax` standard deviations.
+constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
+// `kIntervalsMin` is the minimum number of intervals. `kCorrelationGainMin` is the minimum difference between the
+// correlations at the estimated and at the stated delay. The first impacts of a tumble correlate by chance.
+constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
 // Maximum delay, in standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
 
-double seconds_from(const RateStream::Knot& a, const RateStream::Knot& b) {
+double seconds_to(const RateStream::Knot& a, const RateStream::Knot& b) {
   return seconds(b.observation.sample.time_ns - a.observation.sample.time_ns);
 }
 
@@ -38,12 +38,12 @@ bool repeats_readings(const RateStream::State& state) {
 
 // Integral of the norm of the specific force around a sample of the window. Between readings, the norm is linear.
 // Before the first and after the last reading, the norm is constant.
-class ForceAbout {
+class ForceNormIntegral {
  public:
-  ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
+  ForceNormIntegral(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
     for (std::size_t i = 0; i < kReadings; ++i) {
       const RateStream::Knot& knot = window[first + i];
-      time_s_[i] = seconds_from(window[middle], knot);
+      time_s_[i] = seconds_to(window[middle], knot);
       norm_[i] = knot.read.force_m_s2.norm();
       if (i > 0) sum_[i] = sum_[i - 1] + 0.5 * (norm_[i] + norm_[i - 1]) * (time_s_[i] - time_s_[i - 1]);
     }
@@ -82,7 +82,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.sample.device_clip_flags =
       static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.read.device_clip_flags);
   knot.by_axis_aligned_rails.accel = source.read.clipped;
-  o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_from(knot, source);
+  o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
 }
 
 // Updates samples whose force the newest sample replaces by a force that is closer in time.
@@ -98,15 +98,15 @@ std::size_t RateStream::pair_newest(State& state) const {
 // Adds the interval between two consecutive readings to the impact statistics: rate_stream.md (R104). The interval is
 // old enough that its clipping, and forces up to the maximum delay, are known.
 void RateStream::accumulate_impacts(State& state) const {
-  if (!delay_is_estimated_ || state.window.size() < ForceAbout::kReadings) return;
-  const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
+  if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
+  const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
   const Knot &a = state.window[after - 1], &b = state.window[after];
   const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
                         &end = b.observation.sample.angular_velocity_rad_s;
   if (a.observation.is_element_clipped() || b.observation.is_element_clipped() || !ImpactSums::counts(begin, end))
     return;
-  const ForceAbout force(state.window, after, first);
-  const double span_s = seconds_from(a, b), step_s = params_.period_s / ImpactSums::kDelaysPerSample;
+  const ForceNormIntegral force(state.window, after, first);
+  const double span_s = seconds_to(a, b), step_s = params_.period_s / ImpactSums::kDelaysPerSample;
   ImpactSums::DelayGrid mean;
   std::size_t from = 0, to = 0;
   for (int i = 0; i < ImpactSums::kDelayCount; ++i) {
@@ -130,23 +130,24 @@ TriadDelay RateStream::guessed_delay(const State& state) const {
 void RateStream::update_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
+  if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdatePeriod_ns)) return;
   delay.updated_ns = now_ns;
   if (delay.found && repeats_readings(state)) return apply_delay(prior_delay_s_, false, state);
   const auto correlates = [&](double at_s) { return delay.impacts.correlation_at(at_s, params_.period_s); };
-  if (delay.found && correlates(prior_delay_s_) - correlates(delay.applied_delay_s) > kGainMin)
+  if (delay.found && correlates(prior_delay_s_) - correlates(delay.applied_delay_s) > kCorrelationGainMin)
     return apply_delay(prior_delay_s_, false, state);
   if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
     const bool gains =
-        correlates(guess.delay_s) - correlates(prior_delay_s_) > kGainMin &&
-        std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_sizes.delay_uncalibrated_s;
-    const bool plain = gains && device_.data_sheet_odds(guess.delay_s - prior_delay_s_, guess.sigma_s) < kPlainOdds;
-    const bool far = std::abs(guess.delay_s - delay.applied_delay_s) > kGuessFar * guess.sigma_s;
+        correlates(guess.delay_s) - correlates(prior_delay_s_) > kCorrelationGainMin &&
+        std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_priors.delay_uncalibrated_s;
+    const bool plain =
+        gains && device_.data_sheet_odds(guess.delay_s - prior_delay_s_, guess.sigma_s) < kContradictionOdds;
+    const bool far = std::abs(guess.delay_s - delay.applied_delay_s) > kGuessSigmasMax * guess.sigma_s;
     delay.guess = guess;
     if (plain && (!delay.found || far)) return apply_delay(guess.delay_s, true, state);
     if (!plain && delay.found) return apply_delay(prior_delay_s_, false, state);
   }
-  if (delay.found && std::abs(delay.estimated_s - delay.applied_delay_s) > kMoved_s) refine_delay(state);
+  if (delay.found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
 // Applies a different delay. The window restarts, and the calibration estimated with the previous delay is discarded.

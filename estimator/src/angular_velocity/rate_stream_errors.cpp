@@ -14,7 +14,7 @@ using Eigen::Matrix3d;
 
 // Time between two estimates of the sensor errors. Each estimate of the sensor errors solves a system of 29 unknowns,
 // which costs more than a step of the stream.
-constexpr TimeNs kUpdateEvery_ns = 50'000'000;
+constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
 // Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
 // rate_smoother.md (R44).
@@ -71,7 +71,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
 
 // Computes the derivatives by the sensor errors: rate_stream.md (R101). Before the call, the blocks of the window must
 // be eliminated. Since the elimination, the estimates of the window and the calibration must not have changed.
-void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
+void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
   if (std::none_of(state.window.begin(), state.window.end(), moves)) {
@@ -97,7 +97,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
                                               calibration_by_errors);
 
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (params_.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdateEvery_ns)) return;
+  if (params_.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdatePeriod_ns)) return;
   device.updated_ns = now_ns;
   window_evidence.information.noalias() -= border.transpose().lazyProduct(calibration_by_errors);
   window_evidence.gradient.noalias() += border.transpose().lazyProduct(rig_step);

@@ -16,23 +16,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-// `kOpen` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted saturation level
-// needs at least `kPossibleMin` readings within kNearRailRatio of the axis' largest reading. A rounded maximum of n
-// readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height. If saturation cuts
-// off a motion, the extrapolated height exceeds `kKink` times the measured height. The extrapolated height also exceeds
-// `kPossibleNoise` standard deviations of the noise.
-constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
-constexpr std::ptrdiff_t kPossibleMin = 3;
+// `kSlopeSigmasMax` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted
+// saturation level needs at least `kPlateauReadingsMin` readings within kNearRailRatio of the axis' largest reading. A
+// rounded maximum of n readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height.
+// If saturation cuts off a motion, the extrapolated height exceeds `kHeightRatioMin` times the measured height. The
+// extrapolated height also exceeds `kHeightNoiseSigmas` standard deviations of the noise.
+constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
+constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
 // Maximum relative difference between the saturation levels of two sensing elements. On the wand of RepoIMU, the
 // difference is 3 %.
-constexpr double kApart = 0.05;
+constexpr double kLevelDifferenceMax = 0.05;
 
 // Returns whether the largest reading of a sensing element may be its saturation level. The criterion is the distance
 // to the saturation levels of the other sensing elements.
-bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
+bool is_near_other_rails(const RailPlanes& planes, double peak_rad_s) {
   return std::all_of(planes.element.begin(), planes.element.end(), [&](const auto& element) {
-    return !element || peak_rad_s >= (1.0 - kApart) * element->distance_rad_s;
+    return !element || peak_rad_s >= (1.0 - kLevelDifferenceMax) * element->distance_rad_s;
   });
 }
 
@@ -64,7 +64,7 @@ struct Beside {
 
 // Returns the samples with the gyro readings before and after the reading of sample k. All samples that repeat one
 // reading have equal results.
-Beside readings_beside(std::size_t k, const RateStream::State& state) {
+Beside neighbour_readings(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
   Beside out;
@@ -100,7 +100,7 @@ void RateStream::classify_from(std::size_t changed, State& state) const {
   for (std::size_t k = first; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     RateObservation& now = knot.observation;
-    const Beside gyro = readings_beside(k, state);
+    const Beside gyro = neighbour_readings(k, state);
     const ImuSample *const before = gyro.before, *const after = gyro.after;
     const ImuSample* const sample_before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
     const ImuSample* const sample_after =
@@ -111,13 +111,13 @@ void RateStream::classify_from(std::size_t changed, State& state) const {
       rails_.axis_aligned_rails().add_rising_edge(now.sample, *sample_after, state.window[k + 1].by_axis_aligned_rails,
                                                   rails.axis_aligned_rails, by_axis_aligned_rails);
     }
-    now.clipping = clip_by_planes(planes, Triad::gyro, by_axis_aligned_rails, before, now.sample, after);
+    now.clipping = classify_by_planes(planes, Triad::gyro, by_axis_aligned_rails, before, now.sample, after);
     now.clipping =
-        clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
+        classify_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_rows = accel_rows;
     mark_subsample_saturation(planes, rails_.axis_aligned_rails(), rails.axis_aligned_rails, noise, before, now, after);
-    knot.near =
-        rails.gyro_clips_after_compensation ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
+    knot.near = rails.gyro_clips_after_compensation ? std::uint8_t{0}
+                                                    : possible_partial_saturation(before, now.sample, after, planes);
     mark_undetected_clipping(k, state);
     const bool newest = k + 1 == state.window.size();
     if (!newest && (now.unmeasured_axes() & ~read) == 0) continue;
@@ -140,10 +140,10 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   if (plane && plane->seen(sign)) {
     const Eigen::Vector4d by(y[(axis + 1) % 3], y[(axis + 2) % 3], -sign, -1.0);
     const double open = std::sqrt(std::max(0.0, by.dot(plane->covariance * by)));
-    return plane->margin_rad_s(y, sign) <= plane->tolerance_rad_s + kOpen * open;
+    return plane->margin_rad_s(y, sign) <= plane->tolerance_rad_s + kSlopeSigmasMax * open;
   }
   const double extreme = std::abs(state.extremes[sign > 0 ? 1 : 0][axis]);
-  const bool high = extreme >= params_.expert.planes.distance_min_rad_s && may_be_rail(planes, extreme);
+  const bool high = extreme >= params_.expert.planes.distance_min_rad_s && is_near_other_rails(planes, extreme);
   return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
@@ -152,7 +152,7 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.isolated_high_axes = 0;
   if (state.rails.known.gyro_clips_after_compensation) return;
-  const auto [before, after] = readings_beside(k, state);
+  const auto [before, after] = neighbour_readings(k, state);
   inflate_possible_saturation(state.rails.known.planes_in_use(), state.min_levels, model_.gyro_sigma_rad_s(), before,
                               now, after);
 }
@@ -182,7 +182,7 @@ void RateStream::mark_possible_saturation(State& state) const {
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
                                           [](const Knot& knot) { return !knot.repeats; });
-      if (goes_on || readings >= kPossibleMin) mark_suspect_run(j, k, end - 1, state);
+      if (goes_on || readings >= kPlateauReadingsMin) mark_suspect_run(j, k, end - 1, state);
       k = std::max(end, k + 1);
     }
   }
@@ -220,7 +220,7 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   const double samples = static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.entry_samples[axis]);
   const double cut = 0.25 * samples * slope;
   const double noise = model_.gyro_sigma_rad_s();
-  if (cut < kKink * (highest - lowest) || cut < kPossibleNoise * noise) return;
+  if (cut < kHeightRatioMin * (highest - lowest) || cut < kHeightNoiseSigmas * noise) return;
   for (std::size_t k = first; k <= last; ++k) {
     RateObservation& observation = state.window[k].observation;
     if (((observation.clipping.gyro | observation.clipping.unusable_gyro) & bit) != 0) continue;

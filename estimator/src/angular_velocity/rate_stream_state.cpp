@@ -8,8 +8,8 @@
 namespace tumble {
 
 Status RateStream::health(const State& state) const {
-  const Status of_axes = frozen_.verdict(state.frozen);
-  return of_axes.ok() ? flight_sign_check_.current_verdict(state.sense) : of_axes;
+  const Status axes_status = frozen_.verdict(state.frozen);
+  return axes_status.ok() ? flight_sign_check_.current_verdict(state.sense) : axes_status;
 }
 
 Status RateStream::check_state(const State& state) const {

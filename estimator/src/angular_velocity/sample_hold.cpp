@@ -14,12 +14,12 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// The search tests kPeriods periods with kPhases phases each. The periods cover the fraction kPeriodShare around the
-// mean period. A finer search of kFine steps follows around the best clock.
-constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
-constexpr double kPeriodShare = 0.03;
+// The search tests kPeriods periods with kPhases phases each. The periods cover the fraction kPeriodRangeRatio around
+// the mean period. A finer search of kFineSteps steps follows around the best clock.
+constexpr int kPeriods = 100, kPhases = 24, kFineSteps = 10;
+constexpr double kPeriodRangeRatio = 0.03;
 // Averaging window of an accelerometer as a fraction of its period. The true fraction is between 0 and 1.
-constexpr double kForceWindow = 0.5;
+constexpr double kAccelWindowRatio = 0.5;
 
 struct Clock {
   double period = 1.0, phase = 0.0;
@@ -28,8 +28,8 @@ struct Clock {
 };
 
 // Returns the number of samples that contradict a clock. Counting stops at `most` + 1.
-std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
-                      std::size_t most) {
+std::size_t count_misses(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
+                         std::size_t most) {
   std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
@@ -44,7 +44,7 @@ std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, c
 }
 
 // Longest run of adjacent phases, on the circle of phases, for which a period explains the most samples.
-struct Phases {
+struct PhaseRun {
   std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
@@ -52,15 +52,15 @@ struct Phases {
 
 // Finds the best phases of a period. The search stops early if the period leaves more than `most` samples unexplained.
 // Most periods stop the search early.
-Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
-                   std::size_t most) {
+PhaseRun best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
+                     std::size_t most) {
   // a change of the period does not change the phase at the middle of the motion
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
   std::array<std::size_t, kPhases> misses;
-  Phases out{most + 1};
+  PhaseRun out{most + 1};
   for (std::size_t p = 0; p < kPhases; ++p) {
     const Clock clock{period, middle + period * static_cast<double>(p) / kPhases};
-    misses[p] = misses_of(clock, moving, repeats, std::min(most, out.misses));
+    misses[p] = count_misses(clock, moving, repeats, std::min(most, out.misses));
     out.misses = std::min(out.misses, misses[p]);
   }
   // two turns around the circle of phases also find a run that crosses phase 0
@@ -78,11 +78,11 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
 // period and phase. In the middle of the area of best clocks, the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
-  Phases best{moving.size()};
+  PhaseRun best{moving.size()};
   int begin = 0, end = 0;
   const auto period = [&](double i) { return first.period * (1.0 + reach * i / periods); };
   for (int i = -periods; i <= periods; ++i) {
-    const Phases tried = best_phases(period(i), moving, repeats, best.misses);
+    const PhaseRun tried = best_phases(period(i), moving, repeats, best.misses);
     const bool same = tried.misses == best.misses && tried.count == best.count;
     if (same) end = i;
     if (same || tried.misses > best.misses) continue;
@@ -91,7 +91,7 @@ Clock best_clock(const Clock& first, double reach, int periods, std::span<const 
     begin = end = i;
   }
   const double middle = period(0.5 * (begin + end));
-  const Phases at = best_phases(middle, moving, repeats, moving.size());
+  const PhaseRun at = best_phases(middle, moving, repeats, moving.size());
   found = static_cast<double>(moving.size() - at.misses) / static_cast<double>(moving.size());
   return {middle, at.first + 0.5 * middle * (at.count - 1) / kPhases};
 }
@@ -115,15 +115,15 @@ std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples
   const auto count = static_cast<double>(moving.size());
   if (moving.size() < kMovingMin || static_cast<double>(repeated) < kRepeatsMin * count) return std::nullopt;
   Clock clock{1.0 / (1.0 - std::min(0.95, static_cast<double>(repeated) / count)), 0.0};
-  clock = best_clock(clock, kPeriodShare, kPeriods, moving, out.repeats, out.agreement);
-  clock = best_clock(clock, 2.0 * kPeriodShare / kPeriods, kFine, moving, out.repeats, out.agreement);
+  clock = best_clock(clock, kPeriodRangeRatio, kPeriods, moving, out.repeats, out.agreement);
+  clock = best_clock(clock, 2.0 * kPeriodRangeRatio / kPeriods, kFineSteps, moving, out.repeats, out.agreement);
   const double sample_s = median_period_s(samples);
   out.period_s = clock.period * sample_s;
   if (!out.steady()) return out;
   for (std::size_t k = 0; k < samples.size(); ++k) out.age_s[k] = clock.age(static_cast<double>(k)) * sample_s;
   if (clock.period > sample_hold::kSlowest) return out;
-  const double window_share = triad == Triad::gyro ? 1.0 : kForceWindow;
-  out.window_lag_s = 0.5 * std::max(0.0, window_share * out.period_s - sample_s);
+  const double window_ratio = triad == Triad::gyro ? 1.0 : kAccelWindowRatio;
+  out.window_lag_s = 0.5 * std::max(0.0, window_ratio * out.period_s - sample_s);
   return out;
 }
 

@@ -26,7 +26,7 @@ struct RepeatedReadings {
 
   bool steady() const { return agreement >= sample_hold::kAgreementMin; }
   /// Returns how long before the sample's window the reading describes the motion.
-  double behind_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
+  double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
 /// Detects repeated readings in a recording. Cost: O(N) for each of about 5000 clocks, on at most 1000 samples. Returns

@@ -15,20 +15,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading above the fraction `kNearShare` of an axis' largest reading may be saturated. `StreamingClippingFinder`
-// stores readings above the fraction `kKeepShare` of the largest reading. `StreamingClippingFinder` also stores
-// `kBeside` neighbours of a segment.
-constexpr double kNearShare = 0.9, kKeepShare = 0.85;
+// A reading above the fraction `kNearExtremeRatio` of an axis' largest reading may be saturated.
+// `StreamingClippingFinder` stores readings above the fraction `kStoreRatio` of the largest reading.
+// `StreamingClippingFinder` also stores `kBeside` neighbours of a segment.
+constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
 // `StreamingClippingFinder` always stores the first and the latest readings of a run. The first readings determine the
 // gyro's noise.
-constexpr std::size_t kLatest = 48;
+constexpr std::size_t kLatestReadings = 48;
 // StreamingClippingFinder searches again when the number of readings near the extremes has grown by the fraction 1 /
-// kMore, and by at least two readings.
-constexpr std::size_t kMore = 8;
-// A reading below the fraction kLowShare of the lowest possible saturation level is not near a saturation level. The
-// larger fraction for an accelerometer excludes gravity.
-constexpr double kLowShare[] = {0.5, 0.9};
+// kSearchGrowthDivisor, and by at least two readings.
+constexpr std::size_t kSearchGrowthDivisor = 8;
+// A reading below the fraction kLowReadingRatios of the lowest possible saturation level is not near a saturation
+// level. The larger fraction for an accelerometer excludes gravity.
+constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,
                                               const RailDetector::State& state) {
@@ -58,7 +58,7 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   const std::size_t i = index_of(triad);
   for (int j = 0; j < 3; ++j) {
     const double magnitude = std::abs(reading[j]);
-    const bool high = magnitude >= kLowShare[i] * planes_[i][0].params().distance_min_rad_s;
+    const bool high = magnitude >= kLowReadingRatios[i] * planes_[i][0].params().distance_min_rad_s;
     if (high && magnitude >= share * memory.peak[j]) return true;
   }
   return false;
@@ -74,15 +74,15 @@ void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory
     const std::size_t count = readings.size();
     for (std::size_t k = 0; k < count; ++k) {
       for (; looked < std::min(count, k + kBeside + 1); ++looked) {
-        if (is_near(readings[looked], triad, memory, kKeepShare)) near_until = looked + kBeside + 1;
+        if (is_near(readings[looked], triad, memory, kStoreRatio)) near_until = looked + kBeside + 1;
       }
-      const bool keep = k < kLatest || k + kLatest >= count || k < near_until;
+      const bool keep = k < kLatestReadings || k + kLatestReadings >= count || k < near_until;
       if (keep) readings[kept++] = readings[k];
     }
     readings.resize(kept);
     const std::size_t most = readings_max_ - readings_max_ / 4;
     if (kept > most) {
-      const auto oldest = readings.begin() + static_cast<std::ptrdiff_t>(std::min(kLatest, most / 4));
+      const auto oldest = readings.begin() + static_cast<std::ptrdiff_t>(std::min(kLatestReadings, most / 4));
       readings.erase(oldest, oldest + static_cast<std::ptrdiff_t>(kept - most));
     }
   }
@@ -106,7 +106,7 @@ bool StreamingClippingFinder::observe(const Vector3d& reading, Triad triad, Stat
   Memory& memory = state.memory[index_of(triad)];
   if (!memory.readings.empty() && memory.readings.back() == reading) return false;
   store(reading, triad, memory);
-  if (is_near(reading, triad, memory, kNearShare)) {
+  if (is_near(reading, triad, memory, kNearExtremeRatio)) {
     ++memory.near;
     ++memory.unsearched_near_extremes;
     memory.samples_since_search = 0;
@@ -115,7 +115,8 @@ bool StreamingClippingFinder::observe(const Vector3d& reading, Triad triad, Stat
   }
   const bool ended = memory.samples_since_search == kBeside - 1;
   if (memory.unsearched_near_extremes == 0) return false;
-  if (!ended && memory.unsearched_near_extremes < std::max<std::size_t>(2, memory.near / kMore)) return false;
+  if (!ended && memory.unsearched_near_extremes < std::max<std::size_t>(2, memory.near / kSearchGrowthDivisor))
+    return false;
   memory.unsearched_near_extremes = 0;
   const RailPlanes planes = search(triad, state);
   const bool upright = are_upright(memory.readings, planes, state.known.axis_aligned_rails, triad);
@@ -146,7 +147,7 @@ Clipping StreamingClippingFinder::classify(const ImuSample* before, const ImuSam
     axis_aligned_rails_.add_rising_edge(sample, *after, axis_aligned_rails_.classify(*after, axis_aligned_rails),
                                         axis_aligned_rails, out);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer})
-    out = clip_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, after);
+    out = classify_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, after);
   return out;
 }
 

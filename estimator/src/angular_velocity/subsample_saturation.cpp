@@ -8,12 +8,13 @@ namespace tumble {
 
 namespace {
 
-// Maximum saturated fraction of the window. Above kShareMax, the unsaturated part does not determine the slope.
-constexpr double kShareMax = 0.85;
-// The standard deviation of the saturation deficit has two parts. The first part is the fraction `kOfLoss` of the
-// deficit. The second part is the fraction `kOfDepth` of the distance from the saturation level. The distance counts up
-// to `kDepthMax` (1 rad/s).
-constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
+// Maximum saturated fraction of the window. Above kSaturatedFractionMax, the unsaturated part does not determine the
+// slope.
+constexpr double kSaturatedFractionMax = 0.85;
+// The standard deviation of the saturation deficit has two parts. The first part is the fraction `kDeficitSigmaRatio`
+// of the deficit. The second part is the fraction `kDepthSigmaRatio` of the distance from the saturation level. The
+// distance counts up to `kDepthMax` (1 rad/s).
+constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
@@ -33,10 +34,11 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
     const double root = std::sqrt(std::max(0.0, 1.0 - (1.0 + ratio) * (1.0 - 2.0 * ratio)));
     share = (1.0 - root) / (1.0 + ratio);
   }
-  if (share > kShareMax) return {};
+  if (share > kSaturatedFractionMax) return {};
   // saturation deficit and its standard deviation: rails.md (R72), (R73)
   const double free = 1.0 - share, lost = share * share / (free * free) * depth;
-  return {true, lost, std::hypot(2.0 * noise_rad_s, kOfLoss * lost + kOfDepth * std::min(depth, kDepthMax))};
+  return {true, lost,
+          std::hypot(2.0 * noise_rad_s, kDeficitSigmaRatio * lost + kDepthSigmaRatio * std::min(depth, kDepthMax))};
 }
 
 }  // namespace tumble

@@ -21,7 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // unknowns: lever arm, accelerometer bias
 
-constexpr int kDelayMost = ImpactSums::kDelayMax_samples;  // largest delay, in samples
+constexpr int kMaxDelay_samples = ImpactSums::kDelayMax_samples;  // largest delay, in samples
 constexpr int kDelaysPerSample =
     4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
@@ -30,7 +30,7 @@ constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
 // Two readings closer in time than kApart_s count as one reading with jitter.
 constexpr double kApart_s = 1e-4;
 // Kernel widths of the robust cost, from the first to the last iteration [m/s^2].
-constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
+constexpr double kKernelWidths_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
 // Minimum decrease of the robust cost (at most 1 per sample) that is not due to chance.
 constexpr double kGainMin = 0.4;
 
@@ -53,7 +53,8 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
   TriadReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (repeated && repeated->repeats[k]) continue;
-    const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (repeated ? repeated->behind_s(k) : 0.0);
+    const double at_s =
+        seconds(samples[k].time_ns - samples[0].time_ns) - (repeated ? repeated->reading_age_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
     if (triad == Triad::gyro) {
       out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].unusable_gyro) != 0);
@@ -64,9 +65,9 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
   return out;
 }
 
-struct Instant {
+struct RotationSample {
   double time_s;
-  Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
+  Matrix3d jacobian_lever;  ///< [alpha]x + [w]x [w]x
 };
 
 // Interpolates the force at a time, by a cubic through four readings. `from` is the index of the last reading before
@@ -86,8 +87,8 @@ bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vect
   return true;
 }
 
-std::vector<Instant> instants_of(const TriadReadings& gyro) {
-  std::vector<Instant> out;
+std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
+  std::vector<RotationSample> out;
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
     if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
@@ -101,7 +102,7 @@ std::vector<Instant> instants_of(const TriadReadings& gyro) {
 
 // Returns the robust cost of a delay, minimised over lever arm and bias. The residuals are the flight residuals of
 // rate_smoother.md (R10).
-double cost(const TriadReadings& accel, std::span<const Instant> instants, const Vector3d& lever_arm_m,
+double cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
@@ -109,19 +110,19 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
       Vector3d::Constant(1.0 / (kBiasSigma_m_s2 * kBiasSigma_m_s2));
   at = prior;
   double sum = 0.0;
-  for (const double scale : kScales_m_s2) {
+  for (const double scale : kKernelWidths_m_s2) {
     Eigen::Matrix<double, 6, 6> H = information.asDiagonal();
     Unknown g = information.cwiseProduct(prior);
     sum = 0.0;
     std::size_t from = 0;
-    for (const Instant& instant : instants) {
+    for (const RotationSample& instant : instants) {
       Vector3d force;
       if (!force_at(accel, instant.time_s + delay_s, from, force)) {
         sum += 1.0;
         continue;
       }
       Eigen::Matrix<double, 3, 6> A;
-      A << instant.by_lever, Matrix3d::Identity();
+      A << instant.jacobian_lever, Matrix3d::Identity();
       const double r2 = (A * at - force).squaredNorm() / (scale * scale), ratio = 1.0 / (1.0 + r2);
       sum += r2 * ratio;
       const double weight = ratio * ratio / (scale * scale);
@@ -187,12 +188,12 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
 // Estimates the delay from flight. If there is too little flight, returns 0.
 double flight_duration_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
                          double period_s) {
-  const std::vector<Instant> turning = instants_of(gyro);
+  const std::vector<RotationSample> turning = rotation_samples(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
   const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
   const double none = of(0.0);
   double best = none, shift = 0.0;
-  for (int i = -kDelayMost * kDelaysPerSample; i <= kDelayMost * kDelaysPerSample; ++i) {
+  for (int i = -kMaxDelay_samples * kDelaysPerSample; i <= kMaxDelay_samples * kDelaysPerSample; ++i) {
     if (i == 0) continue;
     const double tried = static_cast<double>(i) / kDelaysPerSample, found = of(tried);
     if (found < best) {
@@ -219,8 +220,8 @@ TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const
   const TriadReadings gyro = readings_of(samples, clippings, Triad::gyro);
   const TriadReadings accel = readings_of(samples, clippings, Triad::accelerometer);
   const double period_s = median_period_s(samples);
-  const TriadDelay of_strokes = struck(gyro, accel, period_s);
-  if (of_strokes.sigma_s > 0.0) return of_strokes;
+  const TriadDelay impact_delay = struck(gyro, accel, period_s);
+  if (impact_delay.sigma_s > 0.0) return impact_delay;
   return {flight_duration_s(gyro, accel, lever_arm_m, period_s), 0.0};
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 // Returns the ratio phi(z) / Phi(z) of the normal density to the normal distribution. If phi and Phi underflow, returns
 // the asymptotic series.
-double density_over_share(double z) {
+double inverse_mills_ratio(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
   return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
@@ -22,7 +22,7 @@ double density_over_share(double z) {
 // Computes mean and variance of a normal variable with a soft lower bound: rate_smoother.md (R23), (R24).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double bound_variance) {
   const double spread2 = from.variance + bound_variance, spread = std::sqrt(spread2);
-  const double z = (from.mean - bound) / spread, r = density_over_share(z);
+  const double z = (from.mean - bound) / spread, r = inverse_mills_ratio(z);
   return {from.mean + from.variance * r / spread,
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }

@@ -27,8 +27,8 @@ ClippedReadings to_clipped_readings(std::span<const ImuSample> samples, const Cl
   ClippedReadings out;
   out.signs.resize(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) out.signs[k] = clip_signs(samples[k], found.clippings[k]);
-  out.near =
-      may_meet_rails(samples, found.rails.gyro_clips_after_compensation ? RailPlanes{} : found.rails.planes_in_use());
+  out.near = possible_partial_saturation(
+      samples, found.rails.gyro_clips_after_compensation ? RailPlanes{} : found.rails.planes_in_use());
   for (int j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = found.rails.planes.element[static_cast<std::size_t>(j)];
     if (plane) out.rows.row(j) = plane->row.transpose();

@@ -21,7 +21,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("scale_sigma", p.scale_sigma, 0.0, 1.0);
   require_within("position_sigma_m", p.position_sigma_m, 0.0, 10.0);
   require_within("noise_m_s2", p.noise_m_s2, 1e-12, 1e3);
-  require_within("acceleration_share", p.acceleration_share, 0.0, 1.0);
+  require_within("acceleration_noise_ratio", p.acceleration_noise_ratio, 0.0, 1.0);
   require_within("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
 }
 
@@ -66,8 +66,8 @@ void ForceErrors::update(State& state) const {
   for (int k = 1; k < params_.count; ++k) {
     reach_m = std::max(reach_m, (params_.p_C_m[static_cast<std::size_t>(k)] - params_.p_C_m[0]).norm());
   }
-  const double variance =
-      squared(params_.noise_m_s2) + squared(params_.acceleration_share * reach_m * state.acceleration_rad_s2 / samples);
+  const double variance = squared(params_.noise_m_s2) +
+                          squared(params_.acceleration_noise_ratio * reach_m * state.acceleration_rad_s2 / samples);
   const Eigen::Index used = kPerUnit * params_.count;
   auto P = state.P.topLeftCorner(used, used);
   for (int k = 0; k < params_.count; ++k) {

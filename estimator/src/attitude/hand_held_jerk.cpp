@@ -14,11 +14,11 @@ using Eigen::Vector3d;
 namespace {
 
 // `kSecondDifference` is the variance of a second difference of readings, as a multiple of q P^3. The jerk density is
-// q, and the period is P. `kJerkReach` is the time span of the second difference, in periods.
-constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
+// q, and the period is P. `kJerkSpan_periods` is the time span of the second difference, in periods.
+constexpr double kSecondDifference = 11.0 / 20.0, kJerkSpan_periods = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
-  return rates.signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.open_rad_s[k][axis] > 0.0);
+  return rates.signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.subsample_sigma_rad_s[k][axis] > 0.0);
 }
 
 struct Reach {
@@ -30,9 +30,9 @@ struct Reach {
 
 // Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). The second
 // difference of means over contiguous windows has the variance 11/20 q P^3, plus six times the noise variance.
-void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
-               std::vector<double>& densities) {
-  const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
+void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+                             std::vector<double>& densities) {
+  const double period_s = rates.windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);
   const double unit = kSecondDifference * period_s * period_s * period_s;
   std::vector<double> counts(densities.size(), 0.0);
   for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
@@ -70,8 +70,8 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
 // Estimates the jerk across a clipped segment of a sensing element: carried.md (C25). White jerk of density q changes
 // the angular acceleration by a mean square of q T within the time T. If a motion reverses beyond the saturation level,
 // its jerk is larger than the jerk of the adjacent unsaturated readings.
-void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
-                std::vector<double>& densities) {
+void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
+                                 double node_s, std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();
   const double noise = 2.0 * noise_rad_s / rates.windows.period_s;  // noise of the difference of two slopes
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -97,11 +97,11 @@ void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double n
 
 }  // namespace
 
-std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
-                              std::size_t nodes) {
+std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
+                                  double node_s, std::size_t nodes) {
   std::vector<double> out(nodes, 0.0);
-  add_bends(rates, rows, noise_rad_s, node_s, out);
-  add_across(rates, rows, noise_rad_s, node_s, out);
+  add_curvature_densities(rates, rows, noise_rad_s, node_s, out);
+  add_clipped_slope_densities(rates, rows, noise_rad_s, node_s, out);
   for (double& density : out) density = std::sqrt(density);
   return out;
 }

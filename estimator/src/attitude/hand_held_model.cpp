@@ -52,7 +52,7 @@ struct GyroRows {
   double predicted = 0.0, predicted_slope = 0.0;
 };
 
-GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constants& constants) {
+GyroRows predict_gyro(const Eigen::RowVector3d& m, const Node& node, const Constants& constants) {
   GyroRows rows;
   const Vector3d& w = node.w_WI_I_rad_s;
   const Vector3d& alpha = node.angular_acceleration_rad_s2;
@@ -82,8 +82,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
 
 // Replaces n readings at times t by two independent readings: the value at the mean time, and the slope, carried.md
 // (C13).
-double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
-                System::Corner& corner) {
+double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
+                              System::Corner& corner) {
   const double mean_t = e.time_sum_s / e.count;
   const double mean_z = e.reading_sum / e.count;
   const GyroRow row = rows.value + mean_t * rows.slope;
@@ -112,7 +112,7 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
 
 // Adds the information `w` that three states are zero. `i` is the index of the first state, and `value` contains the
 // current states.
-double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
+double add_zero_prior(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
@@ -121,8 +121,8 @@ double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
 // Adds information about `N` states of two consecutive nodes. The information is equal for each axis, and `first` is
 // the index of the first state.
 template <int N>
-double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
-                 const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
+double add_motion_factor(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
+                         const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
   const Eigen::Matrix<double, 3, 2 * N> slope = scale * values * information;
   for (int i = 0; i < N; ++i) {
     const int row = first + 3 * i;
@@ -159,19 +159,20 @@ void Constants::move(const System::BorderVector& step) {
 double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner) {
   std::array<GyroRows, 3> elements;
-  for (int i = 0; i < 3; ++i) elements[static_cast<std::size_t>(i)] = gyro_rows(rows.row(i), node, constants);
-  const double variance = noise.gyro_rad_s * noise.gyro_rad_s + noise.window_rad_s * noise.window_rad_s;
+  for (int i = 0; i < 3; ++i) elements[static_cast<std::size_t>(i)] = predict_gyro(rows.row(i), node, constants);
+  const double variance =
+      noise.gyro_rad_s * noise.gyro_rad_s + noise.window_rate_sigma_rad_s * noise.window_rate_sigma_rad_s;
   double cost = 0.0;
   for (int i = 0; i < 3; ++i) {
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
       // All readings of a node have one common tilt error. The tilt error therefore does not average out.
-      const double tilt = noise.tilt_share * deficit(readings, elements, i);
-      cost +=
-          add_free(e, element,
-                   1.0 / (variance + e.count * (tilt * tilt + e.partial_saturation_sigma * e.partial_saturation_sigma)),
-                   block, corner);
+      const double tilt = noise.deficit_error_ratio * deficit(readings, elements, i);
+      cost += add_unclipped_readings(
+          e, element,
+          1.0 / (variance + e.count * (tilt * tilt + e.partial_saturation_sigma * e.partial_saturation_sigma)), block,
+          corner);
     }
     if (e.clipped > 0.0) {
       const double sigma = std::sqrt(variance / e.clipped + noise.rail_rad_s * noise.rail_rad_s);
@@ -202,7 +203,7 @@ double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const R
   B.block<3, 3>(0, kAccelBias).setIdentity();
   B.block<3, 3>(0, kLever) = hat(alpha) + hat(w) * hat(w);
 
-  const double share = noise.accel_share * (readings.force_m_s2.norm() - g_W_m_s2.norm());
+  const double share = noise.force_noise_ratio * (readings.force_m_s2.norm() - g_W_m_s2.norm());
   const double variance = noise.accel_m_s2 * noise.accel_m_s2 / readings.force_count + share * share +
                           readings.force_timing_sigma_m_s2 * readings.force_timing_sigma_m_s2;
   double cost = 0.0;
@@ -232,9 +233,9 @@ double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const R
 }
 
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block) {
-  return add_zero(node.w_WI_I_rad_s, 1.0 / (noise.rest_rad_s * noise.rest_rad_s), kRate, block) +
-         add_zero(node.v_W_m_s, 1.0 / (noise.rest_m_s * noise.rest_m_s), kVelocity, block) +
-         add_zero(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHandAcceleration, block);
+  return add_zero_prior(node.w_WI_I_rad_s, 1.0 / (noise.rest_rad_s * noise.rest_rad_s), kRate, block) +
+         add_zero_prior(node.v_W_m_s, 1.0 / (noise.rest_m_s * noise.rest_m_s), kVelocity, block) +
+         add_zero_prior(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHandAcceleration, block);
 }
 
 // Returns the rotation vector between two nodes: carried.md (C3).
@@ -261,7 +262,7 @@ Motion::Motion(const Params& params) : params_(params) {
 
   // white noise drives the acceleration of the point in the hand: carried.md (C6), (C7), (C8)
   const double decay = std::exp(-h / params.hand_tau_s);
-  const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
+  const double density = (1.0 - decay * decay) * params.hand_sigma_m_s2 * params.hand_sigma_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;
   row << -decay, 0.0, 0.0, 1.0, 0.0, 0.0;
   hand_ = row.transpose() * row / (density * h);
@@ -305,11 +306,11 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   double cost = add_attitude(from, to, jerk, block, next);
   Eigen::Matrix<double, 3, 4> turn;
   turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;
-  cost += add_chain<2>(jerk_, 1.0 / (jerk * jerk), kRate, turn, block, next);
+  cost += add_motion_factor<2>(jerk_, 1.0 / (jerk * jerk), kRate, turn, block, next);
   Eigen::Matrix<double, 3, 6> ends;
   ends << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
-  cost += add_chain<3>(hand_, 1.0 / hand, kHandAcceleration, ends, block, next);
-  cost += add_chain<3>(kinematics_, 1.0, kHandAcceleration, ends, block, next);
+  cost += add_motion_factor<3>(hand_, 1.0 / hand, kHandAcceleration, ends, block, next);
+  cost += add_motion_factor<3>(kinematics_, 1.0, kHandAcceleration, ends, block, next);
   return cost;
 }
 
@@ -317,19 +318,19 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double position = params_.position_m * params_.position_m * params_.position_tau_s;
-  return add_zero(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
-         add_zero(node.p_W_m, params_.step_s / position, kPosition, block);
+  return add_zero_prior(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
+         add_zero_prior(node.p_W_m, params_.step_s / position, kPosition, block);
 }
 
 double Motion::add_initial_prior(const Node& node, System::Block& block) const {
   const Vector3d up_I = node.q_WI.conjugate() * Vector3d::UnitZ();
   block.diagonal.topLeftCorner<3, 3>() += 1e6 * up_I * up_I.transpose() + 0.1 * Matrix3d::Identity();
-  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, position = params_.position_m;
-  return add_zero(node.w_WI_I_rad_s, 1e-4, kRate, block) +
-         add_zero(node.angular_acceleration_rad_s2, 1e-6, kAngularAcceleration, block) +
-         add_zero(node.a_W_m_s2, 1.0 / (hand * hand), kHandAcceleration, block) +
-         add_zero(node.v_W_m_s, 1.0 / (velocity * velocity), kVelocity, block) +
-         add_zero(node.p_W_m, 1.0 / (position * position), kPosition, block);
+  const double hand = params_.hand_sigma_m_s2, velocity = params_.velocity_m_s, position = params_.position_m;
+  return add_zero_prior(node.w_WI_I_rad_s, 1e-4, kRate, block) +
+         add_zero_prior(node.angular_acceleration_rad_s2, 1e-6, kAngularAcceleration, block) +
+         add_zero_prior(node.a_W_m_s2, 1.0 / (hand * hand), kHandAcceleration, block) +
+         add_zero_prior(node.v_W_m_s, 1.0 / (velocity * velocity), kVelocity, block) +
+         add_zero_prior(node.p_W_m, 1.0 / (position * position), kPosition, block);
 }
 
 }  // namespace tumble::hand_held

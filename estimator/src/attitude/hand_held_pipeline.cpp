@@ -20,12 +20,12 @@ Eigen::Matrix3d rows_of(const RailPlanes& planes) {
 
 }  // namespace
 
-HandHeldPipeline::HandHeldPipeline(const Params& params) : stream_(params.stream), watch_(params.rails) {}
+HandHeldPipeline::HandHeldPipeline(const Params& params) : stream_(params.stream), clipping_finder_(params.rails) {}
 
 HandHeldPipeline::State HandHeldPipeline::start() const {
   State state;
   state.stream = stream_.start();
-  state.rails = watch_.start();
+  state.rails = clipping_finder_.start();
   return state;
 }
 
@@ -35,7 +35,7 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   state.signs.clear();
   classify_window(sample, state);
   const ImuSample* const latest = state.stream.readings.empty() ? nullptr : &state.stream.readings.back().sample;
-  const Clipping judged = watch_.classify(latest, sample, state.rails);
+  const Clipping judged = clipping_finder_.classify(latest, sample, state.rails);
   state.signs.push_back(clip_signs(sample, judged));
   RepeatDetector::State repeat_state = state.repeat_state;
   RepeatDetector().observe(sample, (judged.gyro | judged.unusable_gyro) != 0, repeat_state);
@@ -43,8 +43,9 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   const Status status = stream_.push(sample, known, state.stream, out, true, repeat_state);
   if (!status.ok()) return status;
   state.repeat_state = repeat_state;
-  state.levels_changed = watch_.observe(sample, state.rails);
-  watch_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);  // updates the hysteresis
+  state.levels_changed = clipping_finder_.observe(sample, state.rails);
+  clipping_finder_.axis_aligned_rails().classify(sample,
+                                                 state.rails.known.axis_aligned_rails);  // updates the hysteresis
   return status;
 }
 
@@ -59,13 +60,14 @@ void HandHeldPipeline::classify_window(const ImuSample& next, State& state) cons
   for (std::size_t k = state.levels_changed || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
     const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
     const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
-    state.signs.push_back(clip_signs(window[k].sample, watch_.classify(before, window[k].sample, state.rails, &after)));
-    if (state.levels_changed) watch_.axis_aligned_rails().classify(window[k].sample, axis_aligned_rails);
+    state.signs.push_back(
+        clip_signs(window[k].sample, clipping_finder_.classify(before, window[k].sample, state.rails, &after)));
+    if (state.levels_changed) clipping_finder_.axis_aligned_rails().classify(window[k].sample, axis_aligned_rails);
   }
 }
 
 Status HandHeldPipeline::check_state(const State& state) const {
-  if (!watch_.has_room_for(state.rails)) return {ErrorCode::out_of_range, "rails.readings", 1.0, 0.0};
+  if (!clipping_finder_.has_room_for(state.rails)) return {ErrorCode::out_of_range, "rails.readings", 1.0, 0.0};
   return stream_.check_state(state.stream);
 }
 

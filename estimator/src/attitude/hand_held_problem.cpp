@@ -12,12 +12,12 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude; for larger steps, the linearisation is invalid
-constexpr double kConverged = 1e-3;       // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
-constexpr int kFollowFirst = 3;           // iterations before the estimate of the hand's acceleration density
-constexpr int kFollowLast = 8;            // iterations after which the hand's density is fixed, for convergence
-constexpr double kHandMean_s = 0.25;      // averaging time of the hand's acceleration
-constexpr int kHalvings = 4;              // maximum number of times that a step is halved if the cost increases
-constexpr double kRises = 0.2;            // tolerated increase of the cost, corresponding to odds of 1.1
+constexpr double kConvergenceTolerance = 1e-3;  // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
+constexpr int kFirstAdaptIteration = 3;         // iterations before the estimate of the hand's acceleration density
+constexpr int kLastAdaptIteration = 8;          // iterations after which the hand's density is fixed, for convergence
+constexpr double kHandAveraging_s = 0.25;       // averaging time of the hand's acceleration
+constexpr int kHalvings = 4;                    // maximum number of times that a step is halved if the cost increases
+constexpr double kCostRiseMax = 0.2;            // tolerated increase of the cost, corresponding to odds of 1.1
 constexpr ErrorCode kLost = ErrorCode::diverged;
 
 }  // namespace
@@ -27,7 +27,7 @@ Motion::Params motion_params(const HandHeldSmoother::Params& p, double jerk) {
   out.step_s = p.expert.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
   out.rotation_error_sqrts = p.expert.readings.rotation_error_sqrts;
-  out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
+  out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
   out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
   out.position_m = p.position_m, out.position_tau_s = p.expert.hand.position_tau_s,
   out.position_leak_s = p.expert.hand.position_leak_s;
@@ -38,10 +38,10 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
   const double root_rate = 1.0 / std::sqrt(period_s);
   ReadingNoise out;
   out.gyro_rad_s = p.gyro_noise_density * root_rate;
-  out.tilt_share = p.expert.readings.tilt_share;
+  out.deficit_error_ratio = p.expert.readings.deficit_error_ratio;
   out.rail_rad_s = p.expert.readings.rail_sigma_rad_s;
   out.accel_m_s2 = p.accel_noise_density * root_rate;
-  out.accel_share = p.expert.readings.accel_error_share;
+  out.force_noise_ratio = p.expert.readings.accel_error_ratio;
   out.rest_rad_s = p.expert.still.rest_sigma_rad_s;
   out.rest_m_s = p.expert.still.rest_sigma_m_s;
   out.rest_m_s2 = p.expert.still.rest_sigma_m_s2;
@@ -55,18 +55,18 @@ namespace {
 // density q, the difference has the variance q P^3/320: carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
-  noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
+  noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
   return noise;
 }
 
 }  // namespace
 
-Problem::Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+Problem::Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                  std::vector<Node> nodes)
     : params_(params),
       rows_(rows),
       readings_(collected.nodes),
-      jerk_seen_(collected.jerk),
+      measured_jerk_(collected.jerk),
       motion_(motion_params(params)),
       period_s_(collected.rates.windows.period_s),
       noise_(reading_noise(params, period_s_)),
@@ -104,7 +104,7 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 
 double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
   ReadingNoise noise = noise_;
-  noise.window_rad_s *= jerk_[i];
+  noise.window_rate_sigma_rad_s *= jerk_[i];
   return hand_held::add_node(readings_[i], rows_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block, corner);
 }
 
@@ -170,15 +170,15 @@ void Problem::go(double share) {
 // noise has a lower limit: carried.md (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
-  const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
+  const double assumed = 3.0 * params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2;
   for (std::size_t i = 0; i < count; ++i)
     hand_power_[i + 1] = hand_power_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
   const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand.hand_window_s / params_.expert.node_s);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
     const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
-    hand_[i] =
-        std::max(params_.expert.hand.hand_floor, 1.0 + params_.expert.hand.hand_noise_adaptation * (local - 1.0));
+    hand_[i] = std::max(params_.expert.hand.hand_noise_floor_ratio,
+                        1.0 + params_.expert.hand.hand_noise_adaptation * (local - 1.0));
   }
 }
 
@@ -195,24 +195,24 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
-    if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_noise_adaptation > 0.0) {
+    if (k >= kFirstAdaptIteration && k <= kLastAdaptIteration && params_.expert.hand.hand_noise_adaptation > 0.0) {
       adapt_process_noise();
       before.reset();  // costs for different process noise are not comparable
     }
     report.cost = linearise();
-    if (before && !descend_from(*before, report.cost)) break;
+    if (before && !halve_step_until_decrease(*before, report.cost)) break;
     before = Iterate{nodes_, constants_, report.cost};
     double largest = 0.0;
     if (!step(largest))
       return {kLost, "iteration of the smoother for hand-held motion", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
-    report.converged = largest < kConverged;
-    if (report.converged && k > kFollowFirst) break;
+    report.converged = largest < kConvergenceTolerance;
+    if (report.converged && k > kFirstAdaptIteration) break;
   }
   if (before && !report.converged) {
     // checks the cost after the last step
     report.cost = linearise();
-    (void)descend_from(*before, report.cost);
+    (void)halve_step_until_decrease(*before, report.cost);
   }
   report.constants = constants_;
   report.hand_acceleration_ratio = hand_acceleration_ratio();
@@ -221,15 +221,15 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
 
 // If the last step increased the cost, tries shorter steps. If no shorter step decreases the cost, restores the nodes,
 // linearises again, and returns false.
-bool Problem::descend_from(const Iterate& before, double& cost) {
-  const auto goes_down = [&] { return cost < before.cost + kRises; };
-  for (int k = 0; k < kHalvings && !goes_down(); ++k) {
+bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
+  const auto cost_decreases = [&] { return cost < before.cost + kCostRiseMax; };
+  for (int k = 0; k < kHalvings && !cost_decreases(); ++k) {
     nodes_ = before.nodes;
     constants_ = before.constants;
     go(std::ldexp(1.0, -k - 1));
     cost = linearise();
   }
-  if (goes_down()) return true;
+  if (cost_decreases()) return true;
   nodes_ = before.nodes;
   constants_ = before.constants;
   cost = linearise();
@@ -240,7 +240,7 @@ bool Problem::descend_from(const Iterate& before, double& cost) {
 // contributes no information about how far a rate is beyond the bound.
 Status Problem::covariances(HandHeldSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
-    jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
+    jerk_[i] = std::max(params_.expert.jerk_inflation, measured_jerk_[i] / params_.jerk_rad_s3_sqrts);
   const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
   (void)linearise();
   noise_ = assumed;
@@ -264,11 +264,11 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
 // standard deviation s and correlation time tau. Its mean over a window T has the variance s^2 2 tau/T (1 - tau/T (1 -
 // exp(-T/tau))).
 double Problem::hand_acceleration_ratio() const {
-  const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
+  const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,
                ratio = params_.expert.hand.hand_tau_s / span;
   const double variance =
-      params_.hand_m_s2 * params_.hand_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
+      params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
   double largest = 0.0;
   Vector3d sum = Vector3d::Zero();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {

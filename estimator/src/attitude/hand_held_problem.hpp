@@ -40,7 +40,7 @@ struct Part {
 
 class Problem {
  public:
-  Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+  Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
           std::vector<Node> nodes);
   /// Constructs a part of another problem; condense_rest() must have set `part.before` and `part.after`. The constants
   /// and the density of the held point's acceleration are copied and fixed.
@@ -93,14 +93,14 @@ class Problem {
     double cost = 0.0;
   };
   void go(double share);
-  bool descend_from(const Iterate& before, double& cost);
+  bool halve_step_until_decrease(const Iterate& before, double& cost);
   void adapt_process_noise();
   double hand_acceleration_ratio() const;
 
   HandHeldSmoother::Params params_;
   Eigen::Matrix3d rows_;
   std::span<const NodeReadings> readings_;
-  std::span<const double> jerk_seen_;  // jerk density of each node, from Collected
+  std::span<const double> measured_jerk_;  // jerk density of each node, from NodeData
   Motion motion_;
   double period_s_ = 0.0;  // period of the gyro's distinct readings
   ReadingNoise noise_;

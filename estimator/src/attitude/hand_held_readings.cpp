@@ -103,7 +103,7 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
     const double value =
         raw[a] * v * v * (1.0 + 2.0 * u) + raw[b] * u * u * (1.0 + 2.0 * v) + gap * u * v * (slope_a * v - slope_b * u);
     const double rail = std::abs(raw[i]);
-    filled[i] = sign * std::clamp(sign * value, rail, kFillMost * rail);
+    filled[i] = sign * std::clamp(sign * value, rail, kFillRatioMax * rail);
   }
 }
 
@@ -158,7 +158,7 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
 // (C12). The corrected window centre is the middle of the possible range. The change of force over the possible range
 // of the centre adds to the uncertainty of the force.
-std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
+std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
   if (!(forces.windows.period_s > log_period_s)) return out;
@@ -166,13 +166,13 @@ std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
     forces.windows.centre_s[k] += 0.25 * forces.windows.period_s;
     const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, samples.size() - 1);
     const Vector3d change = samples[b].specific_force_m_s2 - samples[a].specific_force_m_s2;
-    if (b > a) out[k] = kOpenShare * change.norm() / static_cast<double>(b - a);
+    if (b > a) out[k] = kWindowCentreSigmaRatio * change.norm() / static_cast<double>(b - a);
   }
   return out;
 }
 
 // Corrects the unsaturated readings next to clipped readings for subsample saturation: rails.md (R69) to (R73).
-void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
+void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
     return rows.row(j).dot(rates.samples[k].angular_velocity_rad_s);
@@ -191,7 +191,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
                                                             sign * along(inside, axis), noise_rad_s);
       if (!(loss.expected_deficit_rad_s > noise_rad_s)) continue;
       lost[k][axis] = sign * loss.expected_deficit_rad_s;
-      rates.open_rad_s[k][axis] = loss.sigma_rad_s;
+      rates.subsample_sigma_rad_s[k][axis] = loss.sigma_rad_s;
     }
   }
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
@@ -202,17 +202,17 @@ void recovered_readings(const HandHeldSmoother::Params& params, const ClippedEle
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
     const Eigen::Matrix3d along = clipped.rows * clipped.recovered_covariance_rad2_s2[k] * clipped.rows.transpose();
-    Vector3d& open_rad_s = rates.open_rad_s[rates.of_sample[k]];
-    open_rad_s = open_rad_s.cwiseMax(nodes * along.diagonal().cwiseMax(0.0).cwiseSqrt());
+    Vector3d& subsample_sigma_rad_s = rates.subsample_sigma_rad_s[rates.of_sample[k]];
+    subsample_sigma_rad_s = subsample_sigma_rad_s.cwiseMax(nodes * along.diagonal().cwiseMax(0.0).cwiseSqrt());
   }
 }
 
-OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
-                         TimeNs origin_ns, double period_s) {
+TimedReadings timed_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
+                             TimeNs origin_ns, double period_s) {
   std::optional<RepeatedReadings> repeated = find_repeated(samples, triad);
   if (repeated && (repeated->agreement < kMinClockAgreement || repeated->period_s > sample_hold::kSlowest * period_s))
     repeated.reset();
-  OwnReadings out;
+  TimedReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.of_sample.push_back(out.samples.size());
     if (repeated && repeated->repeats[k]) {
@@ -239,12 +239,12 @@ bool clips(const NodeReadings& readings) {
 }
 
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
-              const Vector3d& open_rad_s, NodeReadings& node) {
+              const Vector3d& subsample_sigma_rad_s, NodeReadings& node) {
   const Vector3d z = rows * sample.angular_velocity_rad_s;
   for (int j = 0; j < 3; ++j) {
     const std::size_t i = static_cast<std::size_t>(j);
     add_gyro_reading(z[j], t, signs.gyro[i], node.gyro[i]);
-    node.gyro[i].partial_saturation_sigma = std::max(node.gyro[i].partial_saturation_sigma, open_rad_s[j]);
+    node.gyro[i].partial_saturation_sigma = std::max(node.gyro[i].partial_saturation_sigma, subsample_sigma_rad_s[j]);
   }
 }
 
@@ -258,38 +258,38 @@ void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeRe
   node.force_time_s += (t - node.force_time_s) / node.force_count;
 }
 
-Collected collect(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
-                  const ClippedElements& clipped) {
-  Collected out;
+NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
+                 const ClippedElements& clipped) {
+  NodeData out;
   const double period_s = median_step_or(samples, params.expert.node_s);
   const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
   out.samples = windows_of(samples, origin_ns, period_s);
   out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.centre_s.back() / params.expert.node_s)) + 1);
   place(params.expert.node_s, out.nodes.size(), out.samples);
 
-  out.rates = {own_readings(samples, clipped, Triad::gyro, origin_ns, period_s), {}};
+  out.rates = {timed_readings(samples, clipped, Triad::gyro, origin_ns, period_s), {}};
   place(params.expert.node_s, out.nodes.size(), out.rates.windows);
-  out.rates.open_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
+  out.rates.subsample_sigma_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
   const double noise_rad_s = params.gyro_noise_density / std::sqrt(out.rates.windows.period_s);
   if (out.rates.windows.period_s > kLongWindow * params.expert.node_s)
-    whole_windows(noise_rad_s, clipped.rows, out.rates);
+    correct_partial_saturation(noise_rad_s, clipped.rows, out.rates);
   recovered_readings(params, clipped, out.rates);
-  out.jerk = seen_jerk(out.rates, clipped.rows, noise_rad_s, params.expert.node_s, out.nodes.size());
-  OwnReadings forces = own_readings(samples, clipped, Triad::accelerometer, origin_ns, period_s);
-  const std::vector<double> open_m_s2 = open_forces(forces, period_s);
+  out.jerk = estimate_jerk(out.rates, clipped.rows, noise_rad_s, params.expert.node_s, out.nodes.size());
+  TimedReadings forces = timed_readings(samples, clipped, Triad::accelerometer, origin_ns, period_s);
+  const std::vector<double> window_force_sigma_m_s2 = window_force_sigmas(forces, period_s);
   place(params.expert.node_s, out.nodes.size(), forces.windows);
   const auto from_node = [&](const Windows& windows, std::size_t k) {
     return windows.centre_s[k] - static_cast<double>(windows.node_of[k]) * params.expert.node_s;
   };
   for (std::size_t k = 0; k < out.rates.samples.size(); ++k) {
     const Windows& windows = out.rates.windows;
-    add_rate(out.rates.samples[k], clipped.rows, out.rates.signs[k], from_node(windows, k), out.rates.open_rad_s[k],
-             out.nodes[windows.node_of[k]]);
+    add_rate(out.rates.samples[k], clipped.rows, out.rates.signs[k], from_node(windows, k),
+             out.rates.subsample_sigma_rad_s[k], out.nodes[windows.node_of[k]]);
   }
   for (std::size_t k = 0; k < forces.samples.size(); ++k) {
     NodeReadings& node = out.nodes[forces.windows.node_of[k]];
     add_force(forces.samples[k], forces.signs[k], from_node(forces.windows, k), node);
-    node.force_timing_sigma_m_s2 = std::max(node.force_timing_sigma_m_s2, open_m_s2[k]);
+    node.force_timing_sigma_m_s2 = std::max(node.force_timing_sigma_m_s2, window_force_sigma_m_s2[k]);
   }
   const std::vector<bool> rest = RestDetector(params.expert.rest).find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -319,7 +319,7 @@ std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const Cli
   return rates;
 }
 
-Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                    std::vector<Node>& nodes) {
   const std::span<const ImuSample> samples = collected.rates.samples;
   const Windows& windows = collected.rates.windows;

@@ -42,7 +42,7 @@ std::uint8_t clipped_axes(const hand_held::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
   for (std::size_t j = 0; j < 3; ++j) {
-    const bool in_part = rates.open_rad_s[reading][static_cast<Eigen::Index>(j)] > 0.0;
+    const bool in_part = rates.subsample_sigma_rad_s[reading][static_cast<Eigen::Index>(j)] > 0.0;
     if (rates.signs[reading].gyro[j] != 0 || in_part) axes = static_cast<std::uint8_t>(axes | (1u << j));
   }
   return axes;
@@ -57,9 +57,9 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 /// Adds the effect of the gyro's scale error on the attitude: carried.md (C27). The scale error matters if the body is
 /// not hand-held and continues to rotate in one direction. The attitude error grows with the smaller of two rotations:
 /// since the last rest, or until the next rest.
-void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::Collected& collected,
+void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
-  const double share = params.expert.readings.recovered_scale_share;
+  const double share = params.expert.readings.recovered_scale_sigma;
   const auto turned_on = [&](std::size_t k, Eigen::Vector3d& turned) {
     if (collected.nodes[collected.samples.node_of[k]].rest) return turned.setZero(), void();
     turned += seconds(rates[k].time_ns - rates[k - 1].time_ns) * rates[k].w_WI_I_rad_s;
@@ -91,7 +91,7 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
   attitudes.clear();
   report = {};
   if (const Status status = check(params_, samples, clipped); !status.ok()) return status;
-  const hand_held::Collected collected = hand_held::collect(params_, samples, clipped);
+  const hand_held::NodeData collected = hand_held::collect(params_, samples, clipped);
   std::vector<Node> start;
   Status status = hand_held::start_nodes(params_, clipped.rows, collected, start);
   if (!status.ok()) return status;

@@ -28,7 +28,7 @@ System::BorderVector moved(const hand_held::Constants& from, const hand_held::Co
   return out;
 }
 
-bool anything_clips(const HandHeldStream::State& state) {
+bool has_clipped_reading(const HandHeldStream::State& state) {
   return std::any_of(state.window.begin(), state.window.end(),
                      [](const auto& knot) { return hand_held::clips(knot.readings); });
 }
@@ -146,7 +146,7 @@ Status HandHeldStream::push(const ImuSample& sample, const ClippedElements& know
   // While the gyro is unsaturated, the predicted nodes are already accurate. While the gyro is unsaturated, occasional
   // steps are sufficient for attitude and calibration constants.
   const bool due =
-      begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
+      begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || has_clipped_reading(state));
   const bool factorised = due && step(state);
   if (due && !factorised) ++state.failures;
   if (wanted && state.readings.size() > delay_) {
@@ -240,14 +240,15 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (rates != nullptr) {
     const double share =
         reading.gyro.is_slower_than_log() ? hand_held::kAge_samples / reading.gyro.period_samples : 0.0;
-    const Vector3d open_rad_s = share * (state.rows * reading.gyro.change).cwiseAbs();
+    const Vector3d subsample_sigma_rad_s = share * (state.rows * reading.gyro.change).cwiseAbs();
     hand_held::add_rate(reading.sample, state.rows, reading.signs, rate_s - static_cast<double>(rate_node) * node_s,
-                        open_rad_s, *rates);
+                        subsample_sigma_rad_s, *rates);
   }
   if (forces != nullptr) {
-    const double share = reading.accel.is_slower_than_log()
-                             ? std::hypot(hand_held::kOpenShare, hand_held::kAge_samples / reading.accel.period_samples)
-                             : 0.0;
+    const double share =
+        reading.accel.is_slower_than_log()
+            ? std::hypot(hand_held::kWindowCentreSigmaRatio, hand_held::kAge_samples / reading.accel.period_samples)
+            : 0.0;
     hand_held::add_force(reading.sample, reading.signs, force_s - static_cast<double>(force_node) * node_s, *forces);
     forces->force_timing_sigma_m_s2 = std::max(forces->force_timing_sigma_m_s2, share * reading.accel.change.norm());
   }
@@ -281,7 +282,7 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
     const hand_held::ElementSums& e = knot.readings.gyro[static_cast<std::size_t>(j)];
     if (e.clipped > 0.0) {
       const double rail = std::abs(e.rail);
-      elements[j] = e.sign * std::clamp(e.sign * elements[j], rail, hand_held::kFillMost * rail);
+      elements[j] = e.sign * std::clamp(e.sign * elements[j], rail, hand_held::kFillRatioMax * rail);
     } else if (e.count > 0.0) {
       elements[j] = e.reading_sum / e.count;
     }
@@ -295,7 +296,7 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
 
 // Returns the noise density of the hand's acceleration: carried.md (C41).
 double HandHeldStream::hand(const State& state) const {
-  return std::max(params_.body.expert.hand.hand_floor,
+  return std::max(params_.body.expert.hand.hand_noise_floor_ratio,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
@@ -340,7 +341,7 @@ void HandHeldStream::marginalise_oldest(State& state) const {
   }
   state.prior_node = next;
   state.prior_constants = state.constants;
-  const double assumed = 3.0 * params_.body.hand_m_s2 * params_.body.hand_m_s2;
+  const double assumed = 3.0 * params_.body.hand_sigma_m_s2 * params_.body.hand_sigma_m_s2;
   const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.hand_window_s);
   state.acceleration_power_ratio +=
       share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.acceleration_power_ratio);

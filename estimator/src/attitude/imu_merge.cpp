@@ -18,15 +18,16 @@ namespace {
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
-constexpr int kRecovering = 3;     // minimum number of IMUs for recovering a rate from accelerometers
-constexpr double kUnharmed = 0.8;  // fraction of the accelerometer's range up to which errors are estimated
+constexpr int kMinImusForRecovery = 3;  // minimum number of IMUs for recovering a rate from accelerometers
+constexpr double kUnsaturatedForceRatio =
+    0.8;  // fraction of the accelerometer's range up to which errors are estimated
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-constexpr double kSuspect_s = 0.04;         // impacts come in groups, and filters prolong an impact
-constexpr double kAccelerationShare = 0.3;  // uncertainty of an acceleration, relative to its change per sample
+constexpr double kSuspect_s = 0.04;              // impacts come in groups, and filters prolong an impact
+constexpr double kAccelerationSigmaRatio = 0.3;  // uncertainty of an acceleration, relative to its change per sample
 
 }  // namespace
 
@@ -160,7 +161,7 @@ ImuSample ImuMerge::merge(State& state) const {
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
   close_windows(present, raw_rates, raw_forces, all_used, merged, state);
 
-  if (std::count(present.begin(), present.end(), true) >= kRecovering) {
+  if (std::count(present.begin(), present.end(), true) >= kMinImusForRecovery) {
     recover(readings, present, h, state, merged);
   } else {
     state.recovery.running = false;  // no prediction is valid across a gap in the data
@@ -190,15 +191,15 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
     // With three or more IMUs, a clipped gyro provides a lower bound of the rate. The merge therefore keeps the
     // accelerometer of an IMU with a clipped gyro.
-    const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
+    const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
   // If the selected IMUs are no majority, the selection contains all present IMUs. With one or two present IMUs, the
   // selection contains only unsaturated IMUs.
-  if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
+  if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // true if a previous window allows derivatives
-  if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
+  if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].excluded_windows += !used[i];
@@ -243,12 +244,12 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   // An IMU with a repeated reading may be frozen, and therefore does not update the errors. If all IMUs repeat their
   // readings, the rate is constant.
   const auto end = state.units.begin() + params_.count;
-  const auto some_repeat = [&](Repetition Unit::*hold) {
+  const auto any_repeats = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
                                        [&](const Unit& unit) { return (unit.*hold).repeated_s >= kRepeated_s; });
     return holding > 0 && holding < params_.count;
   };
-  const bool repeated = some_repeat(&Unit::rate_repeat) || some_repeat(&Unit::force_repeat);
+  const bool repeated = any_repeats(&Unit::rate_repeat) || any_repeats(&Unit::force_repeat);
   const bool free = state.unclipped_windows == kAccelerationWindows;
   if (all_used && !repeated && params_.count > 1 && follows && free) calibrate(rates, state);
   detect_disagreeing_units(present, rates, forces, merged.time_ns, state);
@@ -265,9 +266,9 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
     }
     unit.window = {};
   }
-  state.rate_before_rad_s = state.rate_rad_s;
+  state.previous_rate_rad_s = state.rate_rad_s;
   state.rate_rad_s = merged.angular_velocity_rad_s;
-  state.length_before_s = state.length_s;
+  state.previous_length_s = state.length_s;
   state.length_s = length_s;
   state.window_s = 0.0;
   ++state.windows;
@@ -281,15 +282,15 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
-  const double apart_s = 0.5 * (state.length_s + state.length_before_s);
-  const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / apart_s;
+  const double window_centre_step_s = 0.5 * (state.length_s + state.previous_length_s);
+  const Eigen::Vector3d before = (state.rate_rad_s - state.previous_rate_rad_s) / window_centre_step_s;
   RigidForces rigid;
   rigid.present = present;
   rigid.force_m_s2 = forces;
   rigid.rate_rad_s = rate;
   rigid.acceleration_rad_s2 = (rate - state.rate_rad_s) / since_s;
-  rigid.uncertainty_rad_s2 = kAccelerationShare * (rigid.acceleration_rad_s2 - before).norm();
-  rigid.small_peak_m_s2 = params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2;
+  rigid.uncertainty_rad_s2 = kAccelerationSigmaRatio * (rigid.acceleration_rad_s2 - before).norm();
+  rigid.small_peak_m_s2 = params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
   rigid.hidden_force_m_s2 = params_.expert.outliers.hidden_force_m_s2;
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
@@ -299,7 +300,7 @@ void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMa
     rigid.peak_m_s2[k] = force.cwiseAbs().maxCoeff();
     rigid.change_m_s2[k] = (params_.T_CI[k].linear() * force - state.units[k].last_force_m_s2).norm();
   }
-  RigidForces::Agreed agreed = rigid.most_agreed();
+  RigidForces::AgreeingForces agreed = rigid.most_agreed();
   if (agreed.others == 0) {
     rigid.acceleration_rad_s2 += rigid.common_acceleration();
     rigid.uncertainty_rad_s2 = 0.0;
@@ -341,8 +342,8 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     now += rates[k] / static_cast<double>(count);
     mean += state.units[k].last_rate_rad_s / static_cast<double>(count);
   }
-  const double apart_s = 0.5 * (state.window_s + state.length_before_s) + state.length_s;
-  const Eigen::Vector3d acceleration = (now - state.rate_before_rad_s) / apart_s;
+  const double window_centre_step_s = 0.5 * (state.window_s + state.previous_length_s) + state.length_s;
+  const Eigen::Vector3d acceleration = (now - state.previous_rate_rad_s) / window_centre_step_s;
   Vectors forces{};
   Eigen::Vector3d mean_force = Eigen::Vector3d::Zero();
   double peak = 0.0;
@@ -351,14 +352,14 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     mean_force += forces[k] / static_cast<double>(count);
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
-  if (peak < kUnharmed * params_.accel_range_m_s2) {
+  if (peak < kUnsaturatedForceRatio * params_.accel_range_m_s2) {
     forces_.calibrate({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
   }
   const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_,
                           by_rotation = jacobian_position * from_mean_m;
-    state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
+    state.sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
     state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all IMUs cancels
     state.lever_arm_effect_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }

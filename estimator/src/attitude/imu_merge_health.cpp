@@ -10,14 +10,15 @@ namespace tumble {
 
 namespace {
 
-constexpr int kBlaming = 3;  // minimum number of IMUs for identifying the faulty IMU
+constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying the faulty IMU
 constexpr double kMisfitTau_s = 0.5;
-constexpr double kComparable = 0.8;  // fraction of the gyro's range up to which IMUs are compared
+constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
-constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
+constexpr double kAxisContributionMin =
+    0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
 /// Returns the rotation across the direction of the repeated force, which is mostly gravity.
-double turned_across(const ImuMerge::Repetition& hold) {
+double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
 
@@ -33,7 +34,7 @@ std::uint8_t ImuMerge::combined_flags(const Readings& readings, const UnitMask& 
     const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
     for (int axis = 0; axis < 3; ++axis) {
       for (int own = 0; own < 3; ++own) {
-        if (std::abs(R_CI(axis, own)) <= kPart) continue;
+        if (std::abs(R_CI(axis, own)) <= kAxisContributionMin) continue;
         if ((flags & static_cast<unsigned>(kClipGyroX << own)) != 0) out |= static_cast<unsigned>(kClipGyroX << axis);
         if ((flags & static_cast<unsigned>(kClipAccelX << own)) != 0) out |= static_cast<unsigned>(kClipAccelX << axis);
       }
@@ -88,10 +89,10 @@ void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates
                              (middle_rate - unit.rate_repeat.others).norm() > params_.expert.frozen.rate_rad_s;
     const bool force_frozen = unit.force_repeat.repeated_s >= params_.expert.frozen.after_s &&
                               ((middle_force - unit.force_repeat.others).norm() > params_.expert.frozen.force_m_s2 ||
-                               turned_across(unit.force_repeat) > params_.expert.frozen.turned_rad);
+                               rotation_across_force_rad(unit.force_repeat) > params_.expert.frozen.turned_rad);
     unit.changing_readings_s = rate_same || force_same ? 0.0 : unit.changing_readings_s + dt_s;
     if (unit.frozen) {
-      unit.frozen = unit.changing_readings_s < params_.expert.frozen.thawed_after_s;
+      unit.frozen = unit.changing_readings_s < params_.expert.frozen.unfreeze_after_s;
     } else if (!railed && (rate_frozen || force_frozen)) {
       unit.frozen = true;
       unit.frozen_since_ns = rate_frozen ? unit.rate_repeat.since_ns : unit.force_repeat.since_ns;
@@ -112,14 +113,14 @@ Status ImuMerge::verdict(const State& state) const {
 /// Detects IMUs that disagree with the other IMUs for a long time.
 void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces,
                                         TimeNs time_ns, State& state) const {
-  if (std::count(present.begin(), present.end(), true) < kBlaming) return;
+  if (std::count(present.begin(), present.end(), true) < kMinImusForFault) return;
   const double h = state.windows > 0 ? state.window_s : params_.window_s, share = -std::expm1(-h / kMisfitTau_s);
   bool railed = false;
   for (std::size_t k = 0; k < present.size(); ++k) {
     const ImuAverage& window = state.units[k].window;
     if (!present[k] || window.readings == 0) continue;
-    railed |= window.rate_peak_rad_s >= kComparable * params_.gyro_range_rad_s ||
-              window.force_peak_m_s2 >= params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2;
+    railed |= window.rate_peak_rad_s >= kComparableRateRatio * params_.gyro_range_rad_s ||
+              window.force_peak_m_s2 >= params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
   }
   if (railed) return;
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);

@@ -31,8 +31,8 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<UnitSignCheck> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("senses.gain_m2_s3", s.explained_m2_s3);
-  visit("senses.size_m2_s3", s.effect_m2_s3);
+  visit("sign_check.gain_m2_s3", s.explained_m2_s3);
+  visit("sign_check.size_m2_s3", s.effect_m2_s3);
 }
 
 template <StateOf<ImuMerge::Repetition> Self, class Visitor>
@@ -74,14 +74,14 @@ void members(Self& s, Visitor& visit) {
   visit("merge.forces", s.forces);
   visit("merge.recovery", s.recovery);
   visit("merge.rate_rad_s", s.rate_rad_s);
-  visit("merge.rate_before_rad_s", s.rate_before_rad_s);
+  visit("merge.previous_rate_rad_s", s.previous_rate_rad_s);
   visit("merge.rotation_rate_rad_s", s.rotation_rate_rad_s);
   visit("merge.window_s", s.window_s);
   visit("merge.length_s", s.length_s);
-  visit("merge.length_before_s", s.length_before_s);
+  visit("merge.previous_length_s", s.previous_length_s);
   visit("merge.lever_arm_correlation", s.lever_arm_correlation);
   visit("merge.arm_square_m2_s3", s.lever_arm_effect_m2_s3);
-  visit("merge.senses", s.senses);
+  visit("merge.sign_check", s.sign_check);
   visit("merge.samples", s.samples);
   visit("merge.windows", s.windows);
   visit("merge.free_windows", s.unclipped_windows);

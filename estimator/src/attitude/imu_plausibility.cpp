@@ -11,18 +11,18 @@ namespace tumble {
 
 namespace {
 
-constexpr double kStandstillRad2 = 1e-6;  // largest squared rotation of a gyro at rest
-constexpr double kPushed = 0.5;           // difference from gravity that excludes rest, as a fraction of gravity
-constexpr double kPushedLeast_s = 0.2;    // minimum duration of this difference from gravity
-constexpr double kWeightless = 0.05;      // minimum force with a usable direction, as a fraction of gravity
+constexpr double kStandstillRad2 = 1e-6;    // largest squared rotation of a gyro at rest
+constexpr double kNonRestForceRatio = 0.5;  // difference from gravity that excludes rest, as a fraction of gravity
+constexpr double kPushedMin_s = 0.2;        // minimum duration of this difference from gravity
+constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable direction, as a fraction of gravity
 
-auto least_unexplained(const ImuPlausibility::State& state) {
+auto best_axis_residual(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
 // Returns the scalar product of two rotations, measured by gyro and by force: imu_merge.md (I20). The product follows
 // from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
-double together_rad2(const ImuPlausibility::State& state) {
+double rotation_product_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2.front());
 }
 
@@ -63,14 +63,14 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Repetiti
   if (reading != hold.reading) {
     hold.longest_s = std::max(hold.longest_s, hold.repeated_s);
     hold.repeated_s = 0.0;
-    hold.changing_s += dt_s;
+    hold.changing_duration_s += dt_s;
     hold.reading = reading;
     return;
   }
   hold.repeated_s += dt_s;
   const bool froze = hold.repeated_s >= params_.expert.frozen.repeats_s &&
-                     hold.changing_s >= params_.expert.frozen.repeats_s &&
-                     hold.repeated_s >= params_.expert.frozen.longest_share * hold.longest_s;
+                     hold.changing_duration_s >= params_.expert.frozen.repeats_s &&
+                     hold.repeated_s >= params_.expert.frozen.repetition_ratio_min * hold.longest_s;
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
@@ -80,7 +80,7 @@ void ImuPlausibility::process_average(State& state) const {
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
   const double length_s = state.average.length_s;
   state.average = {};
-  if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2)
+  if (std::abs(force.norm() - params_.gravity_m_s2) > kNonRestForceRatio * params_.gravity_m_s2)
     state.non_rest_force_s += length_s;
   if (state.window_started) {
     // Each averaged force refers to the centre of its average. The first and the last rotation therefore count by half.
@@ -88,7 +88,8 @@ void ImuPlausibility::process_average(State& state) const {
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
-    state.force_is_constant = state.force_is_constant && std::abs(force.norm() - start) <= params_.steady_share * start;
+    state.force_is_constant =
+        state.force_is_constant && std::abs(force.norm() - start) <= params_.magnitude_change_ratio_max * start;
     if (state.length_s >= params_.window_s - 0.5 * length_s) {
       if (state.force_is_constant && state.in_range) {
         state.force_sum_m_s2 += force.norm();
@@ -104,23 +105,23 @@ void ImuPlausibility::process_average(State& state) const {
     state.length_s = 0.0;
     state.window_started = true;
     state.in_range = true;
-    state.force_is_constant = force.norm() >= kWeightless;
+    state.force_is_constant = force.norm() >= kDirectionForceRatioMin;
   }
 }
 
 /// Adds a window with constant force to the sums: imu_merge.md (I19), (I22).
 void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
-    return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
+    return std::abs(force.norm() - params_.gravity_m_s2) <= params_.gravity_difference_ratio_max * params_.gravity_m_s2;
   };
   if (!near_gravity(state.force_start_m_s2) || !near_gravity(force_m_s2)) return;
   const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
   const double by_force = (to - from).squaredNorm();
   const double by_gyro = (state.gyro_rotation.conjugate() * from - from).squaredNorm();
-  const double least = params_.expert.turning.rotation_least_rad * params_.expert.turning.rotation_least_rad;
+  const double least = params_.expert.turning.rotation_min_rad * params_.expert.turning.rotation_min_rad;
   if (std::max(by_force, by_gyro) < least) return;
-  state.all_force_rad2 += by_force;
-  state.all_gyro_rad2 += by_gyro;
+  state.total_force_rotation_rad2 += by_force;
+  state.total_gyro_rotation_rad2 += by_gyro;
   if (by_force < least) return;
   state.force_rotation_rad2 += by_force;
   state.gyro_rotation_rad2 += by_gyro;
@@ -155,12 +156,12 @@ double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
 /// frozen at zero for longer than a free fall lasts, the gyro indicates motion.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Repetition& hold) {
-    return hold.changing_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
+    return hold.changing_duration_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
   };
-  const bool rotates_unseen = unexplained_rotation_ratio(state) >= params_.expert.frozen.unexplained_least;
-  const bool gyro = never_moved(state.gyro) && (rotates_unseen || state.non_rest_force_s >= kPushedLeast_s);
+  const bool rotation_unmeasured = unexplained_rotation_ratio(state) >= params_.expert.frozen.unexplained_ratio_min;
+  const bool gyro = never_moved(state.gyro) && (rotation_unmeasured || state.non_rest_force_s >= kPushedMin_s);
   const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
-                     state.gyro.changing_s >= params_.expert.frozen.repeats_s;
+                     state.gyro.changing_duration_s >= params_.expert.frozen.repeats_s;
   return std::max({state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.repeated_s : 0.0,
                    accel ? state.accel.repeated_s : 0.0});
 }
@@ -168,25 +169,26 @@ double ImuPlausibility::frozen_s(const State& state) const {
 /// Returns the ratio of the force's rotation to the gyro's rotation, by linear regression: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
-  return together_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
+  return rotation_product_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
 }
 
 double ImuPlausibility::rotation_agreement(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
-  return together_rad2(state) /
+  return rotation_product_rad2(state) /
          std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
 }
 
 double ImuPlausibility::force_rotation_ratio(const State& state) const {
-  return state.all_gyro_rad2 < params_.expert.turning.rotation_min_rad2 ? 1.0
-                                                                        : state.all_force_rad2 / state.all_gyro_rad2;
+  return state.total_gyro_rotation_rad2 < params_.expert.turning.rotation_min_rad2
+             ? 1.0
+             : state.total_force_rotation_rad2 / state.total_gyro_rotation_rad2;
 }
 
 /// Returns the axis labels that explain the readings better than the current labels: imu_merge.md (I22).
 std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state) const {
-  if (unexplained_rotation_ratio(state) < params_.expert.naming.unexplained_least) return std::nullopt;
-  const auto least = least_unexplained(state);
-  if (*least >= params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front()) return std::nullopt;
+  if (unexplained_rotation_ratio(state) < params_.expert.naming.unexplained_ratio_min) return std::nullopt;
+  const auto least = best_axis_residual(state);
+  if (*least >= params_.expert.naming.unexplained_ratio_max * state.unexplained_rad2.front()) return std::nullopt;
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
@@ -197,15 +199,15 @@ bool ImuPlausibility::fits_better(const State& state) const {
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
   // Pushes often reduce the slope. Pushes rarely invert the slope or increase the slope by half.
   const bool low = slope > 0.0 && slope < 1.0;
-  const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
+  const double most = low ? params_.expert.naming.unexplained_ratio_max : params_.expert.turning.unexplained_ratio_max;
   return left < most * state.unexplained_rad2.front();
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
   const double force = force_ratio(state);
-  if (force < params_.expert.force.share_min) {
+  if (force < params_.expert.force.steady_force_ratio_min) {
     return {ErrorCode::out_of_range, "mean specific force in steady windows (share of gravity)", force,
-            params_.expert.force.share_min};
+            params_.expert.force.steady_force_ratio_min};
   }
   if (force > params_.expert.force.share_max) {
     return {ErrorCode::out_of_range, "mean specific force in steady windows (share of gravity)", force,
@@ -216,14 +218,14 @@ Status ImuPlausibility::verdict(const State& state) const {
             params_.expert.frozen.repeats_s};
   }
   if (better_axis_labels(state)) {
-    const double least = *least_unexplained(state);
+    const double least = *best_axis_residual(state);
     return {ErrorCode::out_of_range,
             "rotation left unexplained by other gyro axes or signs (share of that for the stated axes)",
-            least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_share_max};
+            least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_ratio_max};
   }
-  if (const double still = force_rotation_ratio(state); still < params_.expert.turning.still_share) {
+  if (const double still = force_rotation_ratio(state); still < params_.expert.turning.still_rotation_ratio) {
     return {ErrorCode::out_of_range, "rotation of a steady force (share of the rotation measured by the gyro)", still,
-            params_.expert.turning.still_share};
+            params_.expert.turning.still_rotation_ratio};
   }
   const double slope = rotation_slope(state);
   const double least = params_.expert.turning.slope_min, most = params_.expert.turning.slope_max;

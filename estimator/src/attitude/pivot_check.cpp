@@ -21,7 +21,7 @@ constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
-constexpr double kClearly = 0.4;           // logarithm of a ratio of squared residuals
+constexpr double kClearLogRatio = 0.4;     // logarithm of a ratio of squared residuals
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
@@ -62,7 +62,7 @@ class Segments {
   }
   /// Completes the unfinished segment. A segment counts if it has at least half of the nominal length.
   void close() {
-    if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_least_rad) take();
+    if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_min_rad) take();
     sums_ = {};
     length_s_ = rotated_rad_ = 0.0;
   }
@@ -88,25 +88,25 @@ class Segments {
       return std::hypot(fits[k].residual_m_s,
                         length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
     };
-    const double as_it_is = residual(0);
+    const double unchanged_residual = residual(0);
     for (std::size_t k = 1; k < kCompared; ++k) {
       const double otherwise = residual(k);
-      if (std::min(as_it_is, otherwise) > params_.explains_m_s) continue;
+      if (std::min(unchanged_residual, otherwise) > params_.explained_rms_m_s) continue;
       const double noise = params_.noise_m_s;
-      const double gained = 2.0 * std::log(std::max(as_it_is, noise) / std::max(otherwise, noise));
+      const double gained = 2.0 * std::log(std::max(unchanged_residual, noise) / std::max(otherwise, noise));
       evidence[k] += gained;
       ++counted[k];
-      better[k] += gained > kClearly;
-      worse[k] += gained < -kClearly;
+      better[k] += gained > kClearLogRatio;
+      worse[k] += gained < -kClearLogRatio;
     }
   }
 
   /// Adds the segment's estimate of the gyro's scale: imu_merge.md (I30).
   void vote(const std::array<PivotFit, kReadings>& fits) {
     const PivotFit& fit = fits[0];
-    if (fit.residual_m_s > params_.explains_m_s) return;
+    if (fit.residual_m_s > params_.explained_rms_m_s) return;
     ++explained;
-    if (fit.arm_m > params_.arm_most_m) return;
+    if (fit.arm_m > params_.pivot_distance_max_m) return;
     const auto square = [&](std::size_t k) { return fits[k].residual_m_s * fits[k].residual_m_s; };
     const double curvature = (square(kLower) + square(kUpper) - 2.0 * square(0)) / (kScaleStep * kScaleStep);
     if (!(curvature > 0.0)) return;
@@ -195,17 +195,18 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
 /// Returns an error if the evidence against the unchanged rates exceeds its limits: imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
   const double least =
-      std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.compared_segments));
+      std::max(params_.evidence_min, params_.mean_evidence_min * static_cast<double>(found.compared_segments));
   const auto better = static_cast<double>(found.better_segments), worse = static_cast<double>(found.worse_segments);
-  if (found.evidence > least && better >= params_.segments_least && better >= params_.better_over_worse * worse) {
+  if (found.evidence > least && better >= params_.better_segments_min &&
+      better >= params_.better_worse_ratio_min * worse) {
     return {ErrorCode::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
             found.evidence, least};
   }
   const double off = std::abs(found.scale - 1.0);
-  const double bound = std::max(params_.scale_off, params_.scale_deviations * found.scale_sigma);
-  const double segments_least =
-      std::max(params_.scale_segments_least, params_.scale_share_least * static_cast<double>(found.explained_segments));
-  if (static_cast<double>(found.scale_segments) >= segments_least && off > bound) {
+  const double bound = std::max(params_.scale_error_min, params_.scale_error_min_sigmas * found.scale_sigma);
+  const double better_segments_min = std::max(
+      params_.scale_segments_min, params_.scale_segment_fraction_min * static_cast<double>(found.explained_segments));
+  if (static_cast<double>(found.scale_segments) >= better_segments_min && off > bound) {
     return {ErrorCode::out_of_range, "scale of the gyro estimated from rotation about a pivot", found.scale,
             found.scale < 1.0 ? 1.0 - bound : 1.0 + bound};
   }

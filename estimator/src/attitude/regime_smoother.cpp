@@ -18,7 +18,7 @@ bool unusable_count(const RateReport& report, const RateState& rate, std::size_t
 
 /// Returns samples whose forces are interpolated at the times of the rates: carried.md (C38). Without interpolation,
 /// the forces of a slow accelerometer would be older than the rates.
-std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
+std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
   for (std::size_t k = 0; k < forces.size(); ++k) out[k].specific_force_m_s2 = forces[k];
@@ -47,7 +47,8 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeProbabilities> probabilities;
-  if (!evidence_.find(forces_in_time(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities).ok())
+  if (!evidence_.find(interpolate_forces(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities)
+           .ok())
     return;
   report.judged = true;
   const double each = 1.0 / static_cast<double>(probabilities.size());
@@ -56,9 +57,9 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     report.probabilities.contact += each * share.contact;
     report.probabilities.hand_held += each * share.hand_held;
   }
-  const std::vector<double> by_segment = hand_held_by_segment(probabilities, report.rate, rates);
+  const std::vector<double> by_segment = segment_hand_held_probability(probabilities, report.rate, rates);
   report.hand_held_probability_max = *std::max_element(by_segment.begin(), by_segment.end());
-  if (report.hand_held_probability_max < params_.carried_min) return;
+  if (report.hand_held_probability_max < params_.hand_held_probability_min) return;
 
   ClippingFinder::Params finding;
   finding.axis_aligned_rails = params_.rate.rails;
@@ -70,22 +71,22 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   known.mark_partly_saturated(other);
   report.hand_held_smoother_ran = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (by_segment[k] <= params_.carried_min) continue;
+    if (by_segment[k] <= params_.hand_held_probability_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
-    rates[k] = mix_rates(rates[k], other[k], by_segment[k]);
+    rates[k] = mix_rate_states(rates[k], other[k], by_segment[k]);
     // the sample remains unclipped, because no clipping was detected for any motion type
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
 /// Returns the probability of hand-held motion for samples in a segment of clipped or suspect readings: carried.md
-/// (C40). The probability is the smallest value within `near_s` of the sample and within its segment. Outside such
-/// segments, the probability is 0.
-std::vector<double> RegimeSmoother::hand_held_by_segment(std::span<const RegimeProbabilities> probabilities,
-                                                         const RateReport& report,
-                                                         std::span<const RateState> rates) const {
+/// (C40). The probability is the smallest value within `segment_gap_max_s` of the sample and within its segment.
+/// Outside such segments, the probability is 0.
+std::vector<double> RegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
+                                                                  const RateReport& report,
+                                                                  std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
-  const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.near_s);
+  const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.segment_gap_max_s);
   for (std::size_t k = 0; k < rates.size();) {
     if (!unusable_count(report, rates[k], k)) {
       ++k;
@@ -95,7 +96,7 @@ std::vector<double> RegimeSmoother::hand_held_by_segment(std::span<const RegimeP
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
       if (unusable_count(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
-    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within near_s of sample i
+    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within segment_gap_max_s of sample i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
     for (; i < rates.size() && rates[i].time_ns <= to_ns; ++i) {
       while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;

@@ -8,8 +8,9 @@ namespace tumble {
 
 namespace {
 
-constexpr double kTurn_s = 0.01;     // time base of the angular acceleration, equal to model_error_s of the rate model
-constexpr double kResetShare = 0.5;  // fraction of the steps within a lag that reset the calibration
+constexpr double kAccelerationSpan_s =
+    0.01;  // time base of the angular acceleration, equal to model_error_s of the rate model
+constexpr double kResetFraction = 0.5;  // fraction of the steps within a lag that reset the calibration
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
   HandHeldStream::Params out = params.hand_held;
@@ -36,8 +37,8 @@ ClipSigns signs_of(const RateObservation& observation) {
 
 // Combines the rates of RateStream and HandHeldStream. A suspect reading counts as `bounded_only`, not as clipped, in
 // all motion types.
-RateState joined_rate(const RateState& rate, const RateState& hand_held, double share) {
-  RateState out = mix_rates(rate, hand_held, share);
+RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
+  RateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
   // HandHeldStream does not detect which readings may be partly saturated
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
@@ -45,16 +46,16 @@ RateState joined_rate(const RateState& rate, const RateState& hand_held, double 
 }
 
 // Returns the derivative of the rates around sample k: carried.md (C44). If there are enough samples, the derivative
-// covers kTurn_s. RateStream also estimates an angular acceleration, but this estimate depends on the force that is
-// tested.
+// covers kAccelerationSpan_s. RateStream also estimates an angular acceleration, but this estimate depends on the force
+// that is tested.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
   // the code subtracts integer time stamps, because seconds since the clock's start would lose precision
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
   std::size_t a = k, b = k;
-  while (b + 1 < window.size() && between_s(k, b) < kTurn_s) ++b;
-  while (a > 0 && between_s(a, k) < kTurn_s) --a;
+  while (b + 1 < window.size() && between_s(k, b) < kAccelerationSpan_s) ++b;
+  while (a > 0 && between_s(a, k) < kAccelerationSpan_s) --a;
   const double dt_s = between_s(a, b);
   if (!(dt_s > 0.0)) return Eigen::Vector3d::Zero();
   return (window[b].estimate.knot.rate_rad_s - window[a].estimate.knot.rate_rad_s) / dt_s;
@@ -72,7 +73,7 @@ RegimeStream::State RegimeStream::start() const {
   state.rate = rate_.start();
   state.hand_held = hand_held_.start();
   state.signs.reserve(state.rate.window.capacity());
-  state.near.reserve(static_cast<std::size_t>(std::ceil(params_.near_s / params_.rate.period_s)) + 2);
+  state.near.reserve(static_cast<std::size_t>(std::ceil(params_.segment_gap_max_s / params_.rate.period_s)) + 2);
   return state;
 }
 
@@ -91,13 +92,13 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   }
   std::optional<RateState> hand_held;
   // HandHeldStream accepts all input of RateStream, except for sensing directions that do not span three dimensions
-  if (state.probabilities.hand_held >= params_.carried_min) {
+  if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_running) {
       hand_held_.restart(state.hand_held);
       state.hand_held_running = true;
       ++state.starts;
     }
-    const bool wanted = share > params_.carried_min;
+    const bool wanted = share > params_.hand_held_probability_min;
     ImuSample without_offset = sample;
     without_offset.angular_velocity_rad_s -= params_.rate.model.nominal.gyro_bias_rad_s;
     state.hand_held_running =
@@ -107,8 +108,8 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   } else {
     state.hand_held_running = false;
   }
-  if (share > params_.carried_min && hand_held && hand_held->time_ns == out->time_ns) {
-    *out = joined_rate(*out, *hand_held, share);
+  if (share > params_.hand_held_probability_min && hand_held && hand_held->time_ns == out->time_ns) {
+    *out = mixed_rate(*out, *hand_held, share);
     ++state.combined_samples;
   }
   return {};
@@ -151,7 +152,7 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
 // function counts the resets within RateStream's lag, because the steps within the lag determine the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
-  return state.resets > kResetShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
+  return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
 // Updates the probabilities of the motion types with the reported sample and its rate: forward pass of carried.md
@@ -174,7 +175,7 @@ void RegimeStream::update_probabilities(const RateState& rate, State& state) con
 // probability of hand-held motion among nearby samples in the segment of clipped samples. Outside segments of clipped
 // samples, the weight is 0.
 double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
-  const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
+  const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.segment_gap_max_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
   const std::size_t here = index_of(rate, state);
   if (clips(window[here])) state.clipped_ns = rate.time_ns;
@@ -189,7 +190,7 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   if (within) state.near.push_back({rate.time_ns, state.probabilities.hand_held});
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
-  if (out < params_.carried_min || !before) return out;
+  if (out < params_.hand_held_probability_min || !before) return out;
   // continues with the provisional rates of the samples that are not reported yet
   RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
@@ -207,7 +208,7 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
 void RegimeStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t first = out.size();
   rate_.flush(state.rate, out);
-  if (!state.hand_held_running || !(state.probabilities.hand_held > params_.carried_min)) return;
+  if (!state.hand_held_running || !(state.probabilities.hand_held > params_.hand_held_probability_min)) return;
   std::vector<RateState> hand_held;
   hand_held_.flush(state.hand_held, hand_held);
   const std::size_t count = std::min(out.size() - first, hand_held.size());
@@ -216,7 +217,8 @@ void RegimeStream::flush(const State& state, std::vector<RateState>& out) const 
     RateState& rate = out[out.size() - count + k];
     const RateState& other = hand_held[hand_held.size() - count + k];
     const double share = hand_held_weight(rate, last);
-    if (share > params_.carried_min && rate.time_ns == other.time_ns) rate = joined_rate(rate, other, share);
+    if (share > params_.hand_held_probability_min && rate.time_ns == other.time_ns)
+      rate = mixed_rate(rate, other, share);
   }
 }
 

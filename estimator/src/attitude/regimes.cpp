@@ -34,7 +34,7 @@ double log_about_gravity(double n, double g, double variance) {
 // times the standard deviation.
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
-double log_carried(double n, double g, double hand_variance, double grip_variance) {
+double log_hand_held(double n, double g, double hand_variance, double grip_variance) {
   const double gentle = log_about_gravity(n, g, hand_variance + grip_variance);
   const double rough = log_about_gravity(n, g, kRougher * kRougher * hand_variance + grip_variance);
   const double larger = std::max(gentle, rough);
@@ -82,17 +82,17 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
   const double arm_m = lever_arm_m.norm();
   const Vector3d turning = alpha.cross(lever_arm_m) + w.cross(w.cross(lever_arm_m));
   const double turn = w.squaredNorm() + alpha.norm(), rate_variance = rate.covariance_rad2_s2.trace();
-  const double flight_variance = squared(params_.flight_m_s2) + squared(params_.flight_share) * turning.squaredNorm() +
-                                 turn * turn * lever_arm_variance_m2 +
-                                 4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
-  const double hand_variance = squared(params_.hand_m_s2);
-  const double grip_variance = squared(params_.grip_m * w.squaredNorm());
+  const double flight_variance =
+      squared(params_.flight_force_sigma_m_s2) + squared(params_.flight_share) * turning.squaredNorm() +
+      turn * turn * lever_arm_variance_m2 + 4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
+  const double hand_variance = squared(params_.hand_sigma_m_s2);
+  const double grip_variance = squared(params_.hand_distance_m * w.squaredNorm());
   const Vector3d& f = sample.specific_force_m_s2;
   const Vector3d left = f - turning;
-  Vector3d logs(
-      log_gaussian(left.squaredNorm(), flight_variance),
-      log_contact(left.norm(), f.norm(), params_.contact_max_m_s2, params_.gravity_m_s2, hand_variance + grip_variance),
-      log_carried(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
+  Vector3d logs(log_gaussian(left.squaredNorm(), flight_variance),
+                log_contact(left.norm(), f.norm(), params_.contact_force_max_m_s2, params_.gravity_m_s2,
+                            hand_variance + grip_variance),
+                log_hand_held(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
   if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
   logs *= std::min(1.0, dt_s / params_.memory_s);
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
@@ -144,7 +144,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
 }
 
 // Combines two rate estimates by their probability: carried.md (C39).
-RateState mix_rates(const RateState& first, const RateState& second, double share) {
+RateState mix_rate_states(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
   // The difference `apart` of the two estimates adds to the covariance of the more probable estimate.

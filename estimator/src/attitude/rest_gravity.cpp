@@ -12,11 +12,11 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;   // total duration of rest that is needed for checking the magnitude of gravity
-constexpr double kOtherUnit = 3.0;  // an error factor that no scale error or bias of an accelerometer reaches
+constexpr double kRested_s = 1.0;        // total duration of rest that is needed for checking the magnitude of gravity
+constexpr double kWrongUnitRatio = 3.0;  // an error factor that no scale error or bias of an accelerometer reaches
 
 /// Returns parameters that detect rest from any force, also from a force that is far from gravity.
-RestDetector::Params without_force(RestDetector::Params rests) {
+RestDetector::Params without_force_limits(RestDetector::Params rests) {
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
   return rests;
@@ -24,7 +24,7 @@ RestDetector::Params without_force(RestDetector::Params rests) {
 
 /// Returns parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. No robot stands still
 /// at ten times gravity.
-RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
+RestDetector::Params scaled_to_larger_units(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;
   rests.force_max_m_s2 = 1e6;
@@ -37,8 +37,8 @@ RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
 RestGravity::RestGravity(const Params& params)
     : params_(params),
       detector_(params.rests),
-      weightless_(without_force(params.rests)),
-      above_gravity_(of_larger_numbers(params.rests)) {
+      weightless_(without_force_limits(params.rests)),
+      above_gravity_(scaled_to_larger_units(params.rests)) {
   require_valid_fields(params);
 }
 
@@ -112,15 +112,15 @@ void RestGravity::end_segment(State& state) const {
 /// imu_merge.md (I23).
 void RestGravity::finish_span(State& state) const {
   end_segment(state);
-  if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
-      state.span_s > params_.span_most_s)
+  if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_min_rad ||
+      state.span_s > params_.rest_interval_max_s)
     return;
-  const Eigen::Vector3d here_m_s2 = state.rest.mean_force_m_s2();
+  const Eigen::Vector3d current_force_m_s2 = state.rest.mean_force_m_s2();
   const double angle_error_rad =
-      (state.rotation.conjugate() * state.last_rest_force_m_s2.normalized() - here_m_s2.normalized()).norm();
+      (state.rotation.conjugate() * state.last_rest_force_m_s2.normalized() - current_force_m_s2.normalized()).norm();
   const double sigma_rad = std::sqrt(state.variance_rad2);
   ++state.spans;
-  check_velocity(here_m_s2, sigma_rad, state);
+  check_velocity(current_force_m_s2, sigma_rad, state);
   if (angle_error_rad / allowed_rad(sigma_rad) < state.angle_error_rad / allowed_rad(state.angle_error_sigma_rad))
     return;
   state.angle_error_rad = angle_error_rad;
@@ -129,10 +129,11 @@ void RestGravity::finish_span(State& state) const {
 
 /// Compares the mean specific force between two rests with the specific force during the rests: imu_merge.md (I25),
 /// (I26).
-void RestGravity::check_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
+void RestGravity::check_velocity(const Eigen::Vector3d& current_force_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.last_rest_force_m_s2).norm() / state.last_rest_force_m_s2.norm();
-  const double from_end = (state.rotation.conjugate() * mean_m_s2 - here_m_s2).norm() / here_m_s2.norm();
+  const double from_end =
+      (state.rotation.conjugate() * mean_m_s2 - current_force_m_s2).norm() / current_force_m_s2.norm();
   const double share = from_start + from_end;
   const double hidden = 2.0 * state.saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
   const double allowed = std::hypot(allowed_rad(sigma_rad), hidden);
@@ -143,7 +144,8 @@ void RestGravity::check_velocity(const Eigen::Vector3d& here_m_s2, double sigma_
 
 /// Returns the maximum allowed error of the rotation between two rests: imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
-  return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
+  return std::min(params_.angle_tolerance_max_rad,
+                  std::max(params_.angle_tolerance_min_rad, params_.angle_error_max_sigmas * sigma_rad));
 }
 
 double RestGravity::magnitude_error_ratio(const MagnitudeState& state) const {
@@ -160,12 +162,12 @@ void RestGravity::limit_memory(MagnitudeState& state) {
 
 Status RestGravity::magnitude_verdict(const MagnitudeState& state) const {
   const double size = magnitude_error_ratio(state);
-  if (std::abs(size - 1.0) > params_.size_share_max) {
-    const bool unit = size > 0.0 && (size < 1.0 / kOtherUnit || size > kOtherUnit);
+  if (std::abs(size - 1.0) > params_.magnitude_error_max) {
+    const bool unit = size > 0.0 && (size < 1.0 / kWrongUnitRatio || size > kWrongUnitRatio);
     return {ErrorCode::out_of_range,
             unit ? "accelerometer unit: specific force at rest (share of gravity)"
                  : "specific force at rest (share of gravity)",
-            size, 1.0 + std::copysign(params_.size_share_max, size - 1.0)};
+            size, 1.0 + std::copysign(params_.magnitude_error_max, size - 1.0)};
   }
   return {};
 }

@@ -21,11 +21,11 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAgainst = 3.0;           // mean excess over the saturation level below which a segment is tested
+constexpr double kExcessMin = 3.0;         // mean excess over the saturation level below which a segment is tested
 constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
-constexpr double kAround_s = 0.3;          // duration before and after a segment that is solved with the segment
-constexpr double kTakeLogOdds = 3.0;       // log odds (20 to 1) for a change; the cost excludes model errors
-constexpr int kTurnsMax = 2;               // maximum number of revolutions more or less than in the optimised solution
+constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
+constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
+constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
 constexpr int kRounds = 3;                 // maximum rounds of tests, with a complete solution after each
 
 /// Range of nodes [first, last] in which the sensing element `element` was saturated and had no unsaturated reading.
@@ -40,7 +40,7 @@ struct Hypothesis {
 };
 
 /// Probable solutions of a segment other than the current solution, with the probabilities of the solutions.
-struct Open {
+struct AlternativeSolutions {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
@@ -73,7 +73,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
       }
       // at either end of the recording, no readings on the outer side determine the number of revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
-      const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
+      const bool against_rail = beyond_rad_s < kExcessMin * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
       if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(segment);
     }
@@ -133,7 +133,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   Problem as_it_is(whole, part);
   if (!keep(as_it_is)) return out;
   for (const double sign : {1.0, -1.0}) {
-    for (int n = 1; n <= kTurnsMax; ++n) {
+    for (int n = 1; n <= kExtraRevolutionsMax; ++n) {
       Problem other(whole, part);
       other.place(0, with_more_revolutions(as_it_is, axis, sign * n, a, b));
       if (!keep(other)) break;
@@ -155,8 +155,8 @@ struct TestedSegment {
 };
 
 /// Returns the probabilities of all solutions except for the solution with index `standing`: carried.md (C29).
-Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
-  Open out{tested.from, {}};
+AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std::optional<std::size_t> standing) {
+  AlternativeSolutions out{tested.from, {}};
   const double least = tested.found.front().cost;
   const auto weight = [&](const Hypothesis& each) { return std::exp(-0.5 * (each.cost - least)); };
   double sum = 0.0;
@@ -168,11 +168,11 @@ Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing)
 }
 
 /// Returns the alternative solutions of all segments. `taken` states whether the selected changes have been applied.
-std::vector<Open> left_open(const std::vector<TestedSegment>& tested, bool taken) {
-  std::vector<Open> out;
+std::vector<AlternativeSolutions> remaining_alternatives(const std::vector<TestedSegment>& tested, bool taken) {
+  std::vector<AlternativeSolutions> out;
   for (const TestedSegment& each : tested) {
     const std::optional<std::size_t> standing = taken && each.another ? std::optional<std::size_t>(0) : each.held;
-    Open open = shares_of(each, standing);
+    AlternativeSolutions open = alternative_probabilities(each, standing);
     if (!open.others.empty()) out.push_back(std::move(open));
   }
   return out;
@@ -186,7 +186,7 @@ Vector9 apart(const Node& from, const Node& to) {
 }
 
 std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segment> segments) {
-  const auto around = static_cast<std::size_t>(std::llround(kAround_s / problem.node_s()));
+  const auto around = static_cast<std::size_t>(std::llround(kSurroundings_s / problem.node_s()));
   std::vector<Part> out;
   for (const Segment& segment : segments) {
     const std::size_t from = segment.first > around ? segment.first - 1 - around : 0;
@@ -211,7 +211,7 @@ std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const
     for (std::size_t i = 0; i < tested.found.size() && !tested.held; ++i) {
       if (std::abs(angle_between(before, tested.found[i].nodes, m, problem.node_s())) <= kPi) tested.held = i;
     }
-    const double margin = fallen[k] ? 0.0 : 2.0 * kTakeLogOdds;
+    const double margin = fallen[k] ? 0.0 : 2.0 * kAcceptLogOdds;
     tested.another = !tested.held || tested.found[*tested.held].cost > tested.found.front().cost + margin;
     fallen[k] = fallen[k] || tested.another;
     out.push_back(std::move(tested));
@@ -239,7 +239,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   report.revolutions_tested = static_cast<int>(segments.size());
   if (segments.empty()) return;
   std::vector<Part> parts = with_surroundings(problem, segments);
-  std::vector<Open> open;
+  std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
   // The tests use linearised information about the nodes outside a part. After a change, the tests are therefore
   // repeated.
@@ -248,7 +248,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
     const auto taken =
         std::count_if(tested.begin(), tested.end(), [](const TestedSegment& each) { return each.another; });
-    open = left_open(tested, true);  // replaces the alternatives of the previous round
+    open = remaining_alternatives(tested, true);  // replaces the alternatives of the previous round
     if (taken == 0) break;
     const Problem::Answer before = problem.answer();
     const HandHeldSmoother::Report report_before = report;
@@ -259,14 +259,14 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
       problem.restore(before);
       report = report_before;
       report.revolutions_failed += static_cast<int>(taken);
-      open = left_open(tested, false);
+      open = remaining_alternatives(tested, false);
       break;
     }
     report.revolutions_corrected += static_cast<int>(taken);
   }
   report.revolutions_ambiguous = static_cast<int>(open.size());
   // the alternative solutions increase the covariance: carried.md (C29)
-  for (const Open& segment : open) {
+  for (const AlternativeSolutions& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const Vector9 d = apart(problem.nodes()[segment.from + i], nodes[i]);

@@ -26,7 +26,7 @@ struct RigidForces {
   double small_peak_m_s2 = 0.0;     ///< two units with smaller readings are not saturated
   double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement of all other units
 
-  struct Agreed {
+  struct AgreeingForces {
     std::size_t unit = 0;
     int others = -1;  ///< number of agreeing units
   };
@@ -45,8 +45,8 @@ struct RigidForces {
 
   /// Returns the unit with which most other units agree. If several units have equally many agreeing units, the
   /// function returns the unit whose force changed least.
-  Agreed most_agreed() const {
-    Agreed best;
+  AgreeingForces most_agreed() const {
+    AgreeingForces best;
     for (std::size_t k = 0; k < kUnits; ++k) {
       if (!present[k]) continue;
       int others = 0;

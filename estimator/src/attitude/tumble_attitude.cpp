@@ -76,7 +76,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
       return bad;
-    if (dt_s > params_.expert.gap.least_s) {
+    if (dt_s > params_.expert.gap.duration_min_s) {
       bridge_gap(sample, rate_covariance_rad2_s2, dt_s, state);
       state.last_time_ns = sample.time_ns;
       return {};
@@ -297,11 +297,12 @@ void TumbleAttitude::predict_node(State& state) const {
 /// Returns whether the sphere slips at the current node. During slip, the rolling constraint is unusable.
 bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
-  state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
-  state.grip_s = misfit < 0.5 * params_.expert.rolling.slip_velocity_m_s ? state.grip_s + state.node_s : 0.0;
+  state.slip_duration_s = state.slipping ? state.slip_duration_s + state.node_s : 0.0;
+  state.grip_duration_s =
+      misfit < 0.5 * params_.expert.rolling.slip_velocity_m_s ? state.grip_duration_s + state.node_s : 0.0;
   if (state.slipping) {
-    state.slipping = !state.at_rest && state.grip_s <= params_.expert.rolling.slip_quiet_s;
-    if (state.slip_s > params_.expert.rolling.slip_timeout_s) {
+    state.slipping = !state.at_rest && state.grip_duration_s <= params_.expert.rolling.slip_quiet_s;
+    if (state.slip_duration_s > params_.expert.rolling.slip_timeout_s) {
       // after a slip, the velocity from rolling is more accurate than the integrated velocity
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
       state.slipping = false;
@@ -317,8 +318,8 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
 double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                        const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
-  const double remembered = std::exp(-state.node_s / params_.motion_tau_s) * power;
-  return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
+  const double decayed_power = std::exp(-state.node_s / params_.motion_tau_s) * power;
+  return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});
 }
 
 /// Corrects velocity and displacement of a body other than a sphere: attitude.md (A12), (A14). The velocity is

@@ -8,9 +8,9 @@ namespace tumble {
 
 namespace {
 
-constexpr std::size_t kOfOneSensor = UnitSignCheck::kAlternatives / 2;
+constexpr std::size_t kSingleSensorAlternatives = UnitSignCheck::kAlternatives / 2;
 
-Eigen::Vector3d by_sense(std::size_t sense, const Eigen::Vector3d& v) {
+Eigen::Vector3d apply_alternative(std::size_t sense, const Eigen::Vector3d& v) {
   Eigen::Vector3d out = v;
   const auto axis = static_cast<Eigen::Index>(sense % 3);
   if (sense < 3) {
@@ -32,13 +32,15 @@ void UnitSignCheck::add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d
                         const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& acceleration_rad_s2,
                         double length_s) {
   const Eigen::Vector3d read = by_rotation(rate_rad_s, acceleration_rad_s2, position_m);
-  for (std::size_t k = 0; k < kOfOneSensor; ++k) {
-    const Eigen::Vector3d of_gyros = by_rotation(by_sense(k, rate_rad_s), by_sense(k, acceleration_rad_s2), position_m);
+  for (std::size_t k = 0; k < kSingleSensorAlternatives; ++k) {
+    const Eigen::Vector3d of_gyros =
+        by_rotation(apply_alternative(k, rate_rad_s), apply_alternative(k, acceleration_rad_s2), position_m);
     explained_m2_s3[k] += length_s * ((force_m_s2 - read).squaredNorm() - (force_m_s2 - of_gyros).squaredNorm());
     effect_m2_s3[k] += length_s * (of_gyros - read).squaredNorm();
-    const Eigen::Vector3d force = by_sense(k, force_m_s2);
-    explained_m2_s3[kOfOneSensor + k] += length_s * ((force_m_s2 - read).squaredNorm() - (force - read).squaredNorm());
-    effect_m2_s3[kOfOneSensor + k] += length_s * (by_sense(k, read) - read).squaredNorm();
+    const Eigen::Vector3d force = apply_alternative(k, force_m_s2);
+    explained_m2_s3[kSingleSensorAlternatives + k] +=
+        length_s * ((force_m_s2 - read).squaredNorm() - (force - read).squaredNorm());
+    effect_m2_s3[kSingleSensorAlternatives + k] += length_s * (apply_alternative(k, read) - read).squaredNorm();
   }
 }
 

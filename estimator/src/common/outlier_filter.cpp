@@ -14,15 +14,15 @@ namespace {
 using Eigen::Vector3d;
 
 // Thresholds of the outlier test. docs/maths/outliers.md, "Thresholds", lists the measurements behind the thresholds.
-constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
-constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
-constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
-constexpr double kTurn_rad_m = 40.0;      // largest angular acceleration per force
-constexpr double kLever_m = 10.0;         // largest force per angular acceleration
-constexpr double kTurnMost_rad_s = 50.0;  // limit of a rate jump that lasts one sample only
-constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts one sample only
-constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
-constexpr double kPeriodsAhead = 1.75;    // a longer step of the stamps is held: the next stamp may be earlier
+constexpr double kRateMin_rad_s = 1.0;   // smallest outlier of a gyro
+constexpr double kForceMin_m_s2 = 30.0;  // smallest outlier of an accelerometer
+constexpr double kOutlierRatio = 3.0;    // an outlier is larger than this multiple of the neighbours' difference
+constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration per force
+constexpr double kLever_m = 10.0;                     // largest force per angular acceleration
+constexpr double kRateJumpMax_rad_s = 50.0;           // limit of a rate jump that lasts one sample only
+constexpr double kVelocityJumpMax_m_s = 20.0;         // limit of a velocity jump that lasts one sample only
+constexpr double kNear_s = 0.1;                       // neighbours further away than this are not compared
+constexpr double kStampStepMax_periods = 1.75;  // a longer step of the stamps is held: the next stamp may be earlier
 
 // A reading above the fraction kAtRange of the stated range may be saturated. A large reading that repeats may also be
 // saturated.
@@ -75,7 +75,7 @@ struct Sequence {
   const ImuSample& operator[](std::size_t k) const { return *samples[k]; }
 };
 
-Sequence passed_near(const OutlierFilter::State& state) {
+Sequence recent_sequence(const OutlierFilter::State& state) {
   Sequence out;
   if (state.count == 2 && step_s(state.recent_inliers[0], state.recent_inliers[1]) <= kNear_s)
     out.add(state.recent_inliers[0]);
@@ -108,7 +108,7 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
 
 /// Returns how far a reading differs from both neighbours in one direction, on the axis with the largest difference:
 /// outliers.md (O1).
-double departure(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
+double distance_from_neighbours(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double from = now[axis] - before[axis], to = now[axis] - after[axis];
@@ -123,7 +123,7 @@ double distance(const ImuSample& sample, const OutlierFilter::State& state, cons
   const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
   const double apart = step.cwiseAbs().maxCoeff();
-  if (passed_near(state).count < 2) return apart;
+  if (recent_sequence(state).count < 2) return apart;
   const Vector3d slope = (triad.of(last) - triad.of(first)) / step_s(first, last);
   return std::min(apart, (step - step_s(last, sample) * slope).cwiseAbs().maxCoeff());
 }
@@ -131,15 +131,15 @@ double distance(const ImuSample& sample, const OutlierFilter::State& state, cons
 double gyro_threshold(const OutlierFilter::Device& device, const Sequence& sequence, const ImuSample& judged,
                       double step) {
   if (gyro_of(device).beyond_range(judged)) return kRateMin_rad_s;
-  const double caused = kTurn_rad_m * step * largest_step(sequence, accel_of(device));
-  return std::clamp(caused, kRateMin_rad_s, kTurnMost_rad_s);
+  const double caused = kAccelerationPerForce_rad_m * step * largest_step(sequence, accel_of(device));
+  return std::clamp(caused, kRateMin_rad_s, kRateJumpMax_rad_s);
 }
 
 double accel_threshold(const OutlierFilter::Device& device, const Sequence& sequence, const ImuSample& judged,
                        double step) {
   if (accel_of(device).beyond_range(judged)) return kForceMin_m_s2;
   const double caused = kLever_m / step * largest_bend(sequence, gyro_of(device));
-  return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kHitMost_m_s / step));
+  return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kVelocityJumpMax_m_s / step));
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   if (state.count == 0) return false;
   const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > device_.gap_max_s) return false;
-  return after_s > kPeriodsAhead * period_s(state) || jumps(sample, state);
+  return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state);
 }
 
 /// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
@@ -196,7 +196,7 @@ bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
   const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > kNear_s) return false;
   const double step = std::max(after_s, device_.period_s);
-  Sequence sequence = passed_near(state);
+  Sequence sequence = recent_sequence(state);
   sequence.add(sample);
   return distance(sample, state, gyro_of(device_)) > gyro_threshold(device_, sequence, sample, step) ||
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
@@ -207,12 +207,12 @@ bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after,
   const ImuSample& before = state.recent_inliers[1];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;
   const double step = std::max(step_s(before, delayed), device_.period_s);
-  Sequence sequence = passed_near(state);
+  Sequence sequence = recent_sequence(state);
   sequence.add(delayed);
   sequence.add(after);
   const auto stands_out = [&](const Triad& triad, double threshold) {
-    const double by = departure(triad.of(before), triad.of(delayed), triad.of(after));
-    return by > threshold && by > kAgreement * distance(after, state, triad);
+    const double by = distance_from_neighbours(triad.of(before), triad.of(delayed), triad.of(after));
+    return by > threshold && by > kOutlierRatio * distance(after, state, triad);
   };
   return stands_out(gyro_of(device_), gyro_threshold(device_, sequence, delayed, step)) ||
          stands_out(accel_of(device_), accel_threshold(device_, sequence, delayed, step));

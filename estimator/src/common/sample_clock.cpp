@@ -13,11 +13,12 @@ namespace {
 
 constexpr double kOutlier = 4.0;  // limit of an error, in standard deviations
 constexpr double kStray = 0.4;    // error, in periods, above which the sample number is uncertain
-constexpr std::size_t kStraysMax = 8;
-constexpr double kNoPeriod = 0.25;    // maximum jitter in periods; random stamps have 0.29
-constexpr double kWander = 0.5;       // maximum correlation of successive errors for a line that follows the clock
-constexpr double kLeastStep = 0.25;   // minimum time between two samples, in periods
-constexpr double kNumberSigma = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
+constexpr std::size_t kConsecutiveOutliersMax = 8;
+constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
+constexpr double kErrorCorrelationMax =
+    0.5;                                   // maximum correlation of successive errors for a line that follows the clock
+constexpr double kStepMin_periods = 0.25;  // minimum time between two samples, in periods
+constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
 
 constexpr double kPeriodMax_ns = 1e11;
 constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps remain uncorrected, to avoid overflow
@@ -66,7 +67,7 @@ double median_step(const Offsets& x_ns) {
 }
 
 // Numbers the samples by the time steps between their stamps.
-Numbers by_steps(const Offsets& x_ns, double period_ns) {
+Numbers index_from_steps(const Offsets& x_ns, double period_ns) {
   Numbers n{};
   for (std::size_t k = 1; k < n.size(); ++k)
     n[k] = n[k - 1] + std::max(1.0, std::round((x_ns[k] - x_ns[k - 1]) / period_ns));
@@ -92,7 +93,7 @@ bool SampleClock::corrects_stamps(const State& state) const {
   if (!state.line_fitted) return false;
   const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
   return jitter >= params_.jitter_min && jitter <= params_.jitter_max &&
-         state.lag_one_error_product_ns2 <= kWander * state.mean_square_error_ns2;
+         state.lag_one_error_product_ns2 <= kErrorCorrelationMax * state.mean_square_error_ns2;
 }
 
 std::optional<double> SampleClock::jitter_s(const State& state) {
@@ -118,7 +119,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   // Time must increase after an uncorrected stamp and after a burst of stamps. The corrected stamps then approach the
   // received stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
-    time_ns = state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kLeastStep * state.period_ns, 0.5 * step_ns)));
+    time_ns =
+        state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kStepMin_periods * state.period_ns, 0.5 * step_ns)));
   state.stamp_ns = stamp_ns;
   state.time_ns = time_ns;
   return {};
@@ -129,12 +131,12 @@ void SampleClock::begin(State& state) const {
   Offsets x_ns{};
   for (std::size_t k = 0; k < kFirstFitStamps; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
   state.samples = 0;
-  Numbers numbers = by_steps(x_ns, median_step(x_ns));
+  Numbers numbers = index_from_steps(x_ns, median_step(x_ns));
   Line line = fit(x_ns, numbers);
   numbers = index_from_fit(x_ns, numbers, line);
   line = fit(x_ns, numbers);
   if (!(line.period_ns > 0.0 && line.period_ns < kPeriodMax_ns)) return;
-  if (!(std::sqrt(line.mean_square_error_ns2) < kNoPeriod * line.period_ns)) return;
+  if (!(std::sqrt(line.mean_square_error_ns2) < kPeriodJitterMax * line.period_ns)) return;
   state.line_fitted = true;
   state.period_ns = line.period_ns;
   state.fit_residual_ns = line.last_ns - x_ns.back();
@@ -155,10 +157,10 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.jitter_min * state.period_ns);
   const double before =
       state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
-  const double unsure_ns = number * jitter_ns * std::sqrt(state.sum / before);
+  const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum / before);
   state.outliers = std::abs(prediction_error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
-  const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.outliers > kStraysMax ||
-                    jitter_ns > kNoPeriod * state.period_ns;
+  const bool lost = extrapolation_sigma_ns > kSampleNumberSigmaMax * state.period_ns ||
+                    state.outliers > kConsecutiveOutliersMax || jitter_ns > kPeriodJitterMax * state.period_ns;
   if (lost) {
     state.line_fitted = false;
     state.start.front() = stamp_ns;
@@ -166,14 +168,14 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
     return;
   }
   const double limited_ns = std::clamp(prediction_error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
-  const double fading = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
-  state.mean_square_error_ns2 += fading * (limited_ns * limited_ns - state.mean_square_error_ns2);
+  const double forget_fraction = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
+  state.mean_square_error_ns2 += forget_fraction * (limited_ns * limited_ns - state.mean_square_error_ns2);
   state.lag_one_error_product_ns2 +=
-      fading * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
+      forget_fraction * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
   state.prediction_error_ns = limited_ns;
 
   // Sample numbers count from the current sample. Only the residual of the current sample about the line is not zero.
-  const double keep = 1.0 - fading;
+  const double keep = 1.0 - forget_fraction;
   state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
                                               2.0 * number * state.weighted_number_sum + number * number * state.sum);
   state.weighted_number_sum = keep * (state.weighted_number_sum - number * state.sum);

@@ -29,13 +29,13 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.rematch_m = stages.coarse_rematch_m;
   out.expert.step_m = stages.coarse_step_m;
   out.expert.step_rad = stages.coarse_step_rad;
-  out.expert.fitting_share_min = stages.coarse_fitting_share_min;
-  out.expert.agreeing_min = out.matches_min;  // a coarse start has no prior that it could agree with
+  out.expert.inlier_ratio_min = stages.coarse_inlier_ratio_min;
+  out.expert.agreeing_matches_needed = out.matches_min;  // a coarse start has no prior that it could agree with
   return out;
 }
 
 /// Selects at most `count` evenly spread points.
-void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
+void select_evenly(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
   for (std::size_t i = 0; i < points.size(); i += every) out.push_back(points[i]);
@@ -65,31 +65,31 @@ Aligner::Aligner(const LidarInertialOdometry::Params& params)
       subsample_points_(params.expert.stages.subsample_points),
       coarse_points_(params.expert.stages.coarse_points) {}
 
-void Aligner::in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
-                      Registration::Result& found) {
+void Aligner::align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                                    Registration::Result& found) {
   align(full_, prior, scene, scene.points, trajectory, found);
 }
 
-void Aligner::to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
-                             Registration::Result& found) {
-  thin(scene.points, subsample_points_, thinned_);
+void Aligner::align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                                   Registration::Result& found) {
+  select_evenly(scene.points, subsample_points_, thinned_);
   align(subsampled_, prior, scene, thinned_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
   const int iterations = found.iterations;
   const std::unique_ptr<const Registration::Prior> here(new Registration::Prior(from(found, prior)));
-  in_full(*here, scene, trajectory, found);
+  align_with_all_points(*here, scene, trajectory, found);
   found.iterations += iterations;
 }
 
-void Aligner::from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
-                        SweepTrajectory& trajectory, Registration::Result& found) {
-  thin(scene.points, coarse_points_, thinned_);
+void Aligner::align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
+                                   const Scene& scene, SweepTrajectory& trajectory, Registration::Result& found) {
+  select_evenly(scene.points, coarse_points_, thinned_);
   const auto rough = std::make_unique<Registration::Result>();
   align(coarse_, start, scene, thinned_, trajectory, *rough);
   found.verdict = rough->verdict;
   if (rough->verdict != RegistrationVerdict::converged) return;
   const std::unique_ptr<const Registration::Prior> near(new Registration::Prior(from(*rough, prior)));
-  to_convergence(*near, scene, trajectory, found);
+  align_to_convergence(*near, scene, trajectory, found);
 }
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params) {
@@ -102,7 +102,7 @@ Registration::Params registration_params(const LidarInertialOdometry::Params& pa
   out.correction_max_m = params.expert.matching.correction_max_m;
   out.correction_max_rad = params.expert.matching.correction_max_rad;
   out.matches_min = params.expert.matching.matches_min;
-  out.expert.agreeing_min = params.expert.matching.agreeing_matches_min;
+  out.expert.agreeing_matches_needed = params.expert.matching.agreeing_matches_min;
   out.parallel_for = params.parallel_for;
   return out;
 }

@@ -25,16 +25,16 @@ class Aligner {
 
   /// Registers a sweep with all points and few iterations. Without convergence, the stages with fewer points continue
   /// at lower cost.
-  void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
-               Registration::Result& found);
+  void align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                             Registration::Result& found);
   /// Registers a sweep with some of the points until convergence, then with all points from the converged pose.
-  void to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
-                      Registration::Result& found);
+  void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                            Registration::Result& found);
   /// Registers a sweep from a start that may be far from the solution: coarsely with few points, then to convergence if
   /// the coarse stage succeeds. A failed start therefore costs only a fraction of a registration, and returns only its
   /// verdict.
-  void from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
-                 SweepTrajectory& trajectory, Registration::Result& found);
+  void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
+                            SweepTrajectory& trajectory, Registration::Result& found);
 
   /// Returns the Registration that computes the variance of a lidar return.
   const Registration& registration() const { return full_; }

@@ -38,7 +38,7 @@ double yaw_rad(const Eigen::Quaterniond& q) {
 
 /// Returns the matrix that transforms errors of the motion to a frame at the IMU, turned by `turn`. In the old frame,
 /// the displacement to the IMU has an error.
-Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
+Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
   T.block<3, 3>(6, 6) = turn;
@@ -63,7 +63,7 @@ void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
 
 }  // namespace
 
-StateEstimate belief_before_map(const Params& params, const MotionState& levelled) {
+StateEstimate estimate_before_map(const Params& params, const MotionState& levelled) {
   SweepCalibration calibration;
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
@@ -73,7 +73,7 @@ StateEstimate belief_before_map(const Params& params, const MotionState& levelle
   return of_motion(levelled, calibration, levelled.covariance, error);
 }
 
-void widen_to_motion(MotionState& levelled) {
+void widen_for_motion(MotionState& levelled) {
   u::variances(levelled.covariance, u::tilt).setConstant(kMovingTilt_rad * kMovingTilt_rad);
   u::variances(levelled.covariance, u::velocity).setConstant(kMovingSpeed_m_s * kMovingSpeed_m_s);
 }
@@ -100,7 +100,7 @@ StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estim
   return of_motion(state, estimate.mean.calibration, state.covariance, moved_to(T_WI, error).covariance);
 }
 
-StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
+StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s) {
   MotionState state = reckoned.mean.state;
   Motion C = u::block(reckoned.weight, u::motion), E = u::block(reckoned.error, u::motion);
   bound_speed(kSpeed_m_s * std::sqrt(kSpeedTime_s / step_s), state, C, E);
@@ -108,13 +108,13 @@ StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   state.p_WI_m.setZero();
   state.q_WI = (turn * state.q_WI).normalized();
   state.v_WI_m_s = turn * state.v_WI_m_s;
-  const Motion T = by_frame(turn.toRotationMatrix(), state.v_WI_m_s);
+  const Motion T = frame_jacobian(turn.toRotationMatrix(), state.v_WI_m_s);
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
 /// Returns the state estimate in a frame in which the IMU's attitude has no error. The new frame is turned by the tilt
 /// error φ of the IMU. In the turned frame, velocity v and gravity g have the errors δv + v × φ and g × φ.
-StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
+StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)

@@ -9,11 +9,11 @@ namespace tumble::mapping {
 
 /// Returns the state estimate of a levelled IMU. The world frame is vertical, so gravity is exact and the tilt is an
 /// error of the attitude.
-StateEstimate belief_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
+StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
 /// Widens the covariance of a state that was levelled in motion: the mean force is not gravity, and the velocity is
 /// unknown.
-void widen_to_motion(MotionState& levelled);
+void widen_for_motion(MotionState& levelled);
 
 /// Returns the motion with position and heading of the IMU as in `T_WI`. The tilt is unchanged.
 MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
@@ -22,12 +22,12 @@ StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estim
 /// Returns the reckoned state, `step_s` after the last call, with the origin and yaw of the frame moved to the IMU.
 /// Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity
 /// over minutes of motion.
-StateEstimate without_place(const StateEstimate& reckoned, double step_s);
+StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the map's first
 /// sweep defines the map's frame and has no error. The tilt error of dead reckoning therefore becomes an error of
-/// gravity's direction. `reckoned` is the result of without_place() or belief_before_map().
-StateEstimate belief_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
+/// gravity's direction. `reckoned` is the result of reset_origin_and_yaw() or estimate_before_map().
+StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 /// Returns a world whose vertical is as uncertain as the tilt of `reckoned`.
 WorldCovariance world_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);

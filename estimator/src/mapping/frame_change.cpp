@@ -37,7 +37,7 @@ void FrameChange::apply(Registration::Estimate& mean) const {
 void FrameChange::apply(const Registration::Estimate& mean, Matrix& of_all) const {
   const Matrix T = rotation();
   Matrix turned;
-  sandwich(T, of_all, turned);
+  propagate_covariance(T, of_all, turned);
   Eigen::Matrix<double, Registration::kUnknowns, 6> J = Eigen::Matrix<double, Registration::kUnknowns, 6>::Zero();
   u::rows(J, u::position).leftCols<3>().setIdentity();
   u::rows(J, u::position).rightCols<3>() = -so3::hat(mean.state.p_WI_m - sensor_M_m);
@@ -57,9 +57,10 @@ void FrameChange::apply(SweepBoundary& boundary) const {
   estimate.mean.state.covariance = u::block(estimate.weight, u::motion);
   const Matrix T = rotation();
   Matrix turned;
-  sandwich(T, boundary.end_by_start, turned);
-  boundary.end_by_start = turned;
-  boundary.railed_velocity_m2_s2 = (T_MW.linear() * boundary.railed_velocity_m2_s2 * T_MW.linear().transpose()).eval();
+  propagate_covariance(T, boundary.end_start_jacobian, turned);
+  boundary.end_start_jacobian = turned;
+  boundary.clipped_velocity_m2_s2 =
+      (T_MW.linear() * boundary.clipped_velocity_m2_s2 * T_MW.linear().transpose()).eval();
 }
 
 void FrameChange::apply(LagWindow& window) const {
@@ -70,8 +71,8 @@ void FrameChange::apply(LagWindow& window) const {
       apply(estimated->mean, estimated->errors);
     }
     Matrix turned;
-    sandwich(T, sweep.by_before, turned);
-    sweep.by_before = turned;
+    propagate_covariance(T, sweep.jacobian_previous, turned);
+    sweep.jacobian_previous = turned;
   });
 }
 

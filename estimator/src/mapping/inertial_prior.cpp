@@ -23,7 +23,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
-  double rotated_rad = 0.0, pushed_m_s = 0.0, gap_m2_s2 = 0.0, gap_m2 = 0.0, gap_m2_s = 0.0;
+  double rotated_rad = 0.0, velocity_change_m_s = 0.0, gap_m2_s2 = 0.0, gap_m2 = 0.0, gap_m2_s = 0.0;
   const double gap_m2_s3 = std::pow(params.expert.prior.gap_velocity_walk_m_s_sqrt_s, 2);
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
@@ -38,13 +38,13 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     gap_m2 += dt * (2.0 * gap_m2_s + dt * (gap_m2_s2 + walk_m2_s3 * dt / 3.0));
     gap_m2_s += dt * (gap_m2_s2 + 0.5 * walk_m2_s3 * dt);
     gap_m2_s2 += walk_m2_s3 * dt;
-    if (!sample.bridges_gap) pushed_m_s += dt * sample.f_I_m_s2.norm();
+    if (!sample.bridges_gap) velocity_change_m_s += dt * sample.f_I_m_s2.norm();
     rotated_rad += dt * sample.w_WI_I_rad_s.norm();
     turned += dt * R * variance.asDiagonal() * R.transpose();
   }
   u::variances(noise, u::velocity)
       .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
-                   std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
+                   std::pow(params.expert.prior.force_share * velocity_change_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
   // a robot at rest has zero velocity, so the code ignores the effect of the velocity's error on the position
   const auto rests = [&](const MotionSample& sample) {
@@ -53,13 +53,13 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   if (std::all_of(samples.begin(), samples.end(), rests))
     return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
   u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
-  u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_share * rotated_rad, 2);
+  u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_noise_ratio * rotated_rad, 2);
   return noise;
 }
 
 /// Computes the variance of the velocity due to saturated forces: mapping.md (R45).
-Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
-                                         std::span<const MotionSample> samples) {
+Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
+                                          const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
   std::size_t hint = 0;
   Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: duration of the saturation of axis j, in W
   for (const MotionSample& sample : samples) {

@@ -20,8 +20,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 
 /// Returns the variance of the velocity change over the segment due to accelerometer saturation, in W. The saturation
 /// deficit of the force is assumed constant while a saturation lasts.
-Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
-                                         std::span<const MotionSample> samples);
+Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
+                                          const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
 
 /// Computes the state at rest at the start of the first sample's window, with origin of W and yaw 0. The mean specific
 /// force of the samples within `rest_s` levels the attitude. Returns `degenerate` if the mean force is below 1 m/s^2.

@@ -66,7 +66,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   MotionSample next;
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
-  listen_for_rest(params, sample, rate, next);
+  update_rest(params, sample, rate, next);
   if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = assumed_rate_sigma(params, rate);
@@ -87,17 +87,17 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
 
 void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   const std::size_t first = samples_.size();
-  if (!in_flight || !fly_through(params, *before_newest_, *newest_))
+  if (!in_flight || !bridge_flight(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
-  if (undecided_rad_s_.empty()) return;
+  if (pending_rates_rad_s_.empty()) return;
   // The list of undecided rates contains one rate per sample. The last rate belongs to the pending sample.
   for (const MotionSample& part : std::span(samples_).subspan(first))
-    undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
+    pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
 /// Bridges the gap by a ballistic arc if the predicted rate agrees with the next reading: flight_arc.md (A12). The
 /// predicted rate assumes free flight up to the end of the gap.
-bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
+bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
   if (!flight_arc(*params.expert.flight.body, before.rate_rad_s, before.time_ns, after.from_ns, kArcStep_ns, samples_)
@@ -136,8 +136,8 @@ bool InertialTrack::detect_flight(const Params& params, const MotionSample& next
   return true;
 }
 
-void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate,
-                                    MotionSample& next) {
+void InertialTrack::update_rest(const Params& params, const ImuSample& sample, const RateState& rate,
+                                MotionSample& next) {
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
@@ -156,23 +156,23 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   }
   next.at_rest = initial_.lasts;
   if (rest_.pending_samples > 0) {
-    undecided_rad_s_.push_back(rate.w_WI_I_rad_s);
+    pending_rates_rad_s_.push_back(rate.w_WI_I_rad_s);
     return;
   }
   const bool goes_on = next.rest_start_ns && *next.rest_start_ns < rest_.pending_first_ns;
-  if (!goes_on) take_back_rest(next.rest_start_ns);
-  undecided_rad_s_.clear();
+  if (!goes_on) revoke_rest(next.rest_start_ns);
+  pending_rates_rad_s_.clear();
 }
 
 /// If a complete reading shows motion, marks all samples since the start of the reading as motion.
-void InertialTrack::take_back_rest(std::optional<TimeNs> rest_start_ns) {
-  const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
+void InertialTrack::revoke_rest(std::optional<TimeNs> rest_start_ns) {
+  const std::size_t count = std::min(pending_rates_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
     MotionSample& sample = samples_[samples_.size() - back];
     sample.rest_start_ns = rest_start_ns;
     if (!sample.at_rest || initial_.lasts) continue;
     sample.at_rest = false;
-    sample.w_WI_I_rad_s = undecided_rad_s_[undecided_rad_s_.size() - back] - initial_.gyro_bias_rad_s;
+    sample.w_WI_I_rad_s = pending_rates_rad_s_[pending_rates_rad_s_.size() - back] - initial_.gyro_bias_rad_s;
   }
 }
 

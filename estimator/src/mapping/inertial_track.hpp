@@ -61,18 +61,18 @@ class InertialTrack {
     static void members(Self& s, Visitor& visit);
   };
 
-  void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
-  void take_back_rest(std::optional<TimeNs> rest_start_ns);
+  void update_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
+  void revoke_rest(std::optional<TimeNs> rest_start_ns);
   bool detect_flight(const Params& params, const MotionSample& next, bool after_gap);
   void fill_gap(const Params& params, bool in_flight);
-  bool fly_through(const Params& params, const WindowRate& before, const WindowRate& after);
+  bool bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after);
 
   std::vector<MotionSample> samples_;
   std::optional<TimeNs> boundary_ns_;  // end of the last sweep
   RestDetector rest_detector_;
   RestDetector::State rest_;
   InitialRest initial_;
-  std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the last averaged reading of the rest detector
+  std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates since the last averaged reading of the rest detector
   std::optional<WindowRate> before_newest_, newest_;
 };
 

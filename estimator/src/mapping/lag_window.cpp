@@ -34,13 +34,13 @@ void LagWindow::smooth() {
   for (std::size_t k = sweeps_.size() - 1; k-- > 0;) {
     WindowSweep& sweep = sweeps_[k];
     const WindowSweep& next = sweeps_[k + 1];
-    solved.noalias() = next.by_before * sweep.filtered.errors;
-    dense::solve_semidefinite(invertible(next.predicted.errors), solved);
+    solved.noalias() = next.jacobian_previous * sweep.filtered.errors;
+    dense::solve_semidefinite(make_invertible(next.predicted.errors), solved);
     gain = solved.transpose();
     sweep.smoothed.mean = sweep.filtered.mean;
     sweep.smoothed.mean.add(gain * next.smoothed.mean.minus(next.predicted.mean));
     solved = next.smoothed.errors - next.predicted.errors;
-    sandwich(gain, solved, sweep.smoothed.errors);
+    propagate_covariance(gain, solved, sweep.smoothed.errors);
     sweep.smoothed.errors += sweep.filtered.errors;
     make_symmetric(sweep.smoothed.errors);
   }
@@ -51,8 +51,9 @@ void LagWindow::move_inserted(LocalMap& map) const {
   for (std::size_t k = 0; k + 1 < sweeps_.size(); ++k) {
     const WindowSweep& sweep = sweeps_[k];
     if (sweep.inserted.empty() || !sweep.motion(trajectory).ok()) continue;
-    const SweepCalibration &now = sweep.smoothed.mean.calibration, &inserted_by = sweep.filtered.mean.calibration;
-    map.move(trajectory, now.T_IL, now.time_offset_s - inserted_by.time_offset_s, sweep.inserted);
+    const SweepCalibration &now = sweep.smoothed.mean.calibration,
+                           &inserted_calibration = sweep.filtered.mean.calibration;
+    map.move(trajectory, now.T_IL, now.time_offset_s - inserted_calibration.time_offset_s, sweep.inserted);
   }
 }
 

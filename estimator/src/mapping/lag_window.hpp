@@ -18,7 +18,7 @@ struct Estimated {
 /// sweep.
 struct WindowSweep {
   Estimated predicted;
-  Registration::Matrix by_before = Registration::Matrix::Identity();  ///< derivative by the previous sweep
+  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();  ///< derivative by the previous sweep
   Estimated filtered, smoothed;
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;

@@ -23,20 +23,20 @@ class PoseVariance {
     Eigen::Matrix<double, 9, Registration::kCalibrationStart> F;
     F << step.jacobian_start, step.jacobian_deficit_s;
     const Eigen::Matrix<double, 9, 9> end = F * u::block(covariance, u::moving) * F.transpose();
-    start_m2_ = u::variances(covariance, u::position).mean();
-    start_rad2_ = u::variances(covariance, u::attitude).mean();
-    end_m2_ = u::variances(end, u::position).mean();
-    end_rad2_ = u::variances(end, u::attitude).mean();
+    start_variance_m2_ = u::variances(covariance, u::position).mean();
+    start_variance_rad2_ = u::variances(covariance, u::attitude).mean();
+    end_variance_m2_ = u::variances(end, u::position).mean();
+    end_variance_rad2_ = u::variances(end, u::attitude).mean();
   }
   double at_m2(const SweepPoint& point) const {
     const double share = std::clamp(point.t_s / duration_s_, 0.0, 1.0);
-    const double m2 = start_m2_ + share * (end_m2_ - start_m2_);
-    const double rad2 = start_rad2_ + share * (end_rad2_ - start_rad2_);
+    const double m2 = start_variance_m2_ + share * (end_variance_m2_ - start_variance_m2_);
+    const double rad2 = start_variance_rad2_ + share * (end_variance_rad2_ - start_variance_rad2_);
     return std::max(m2 + rad2 * point.range_m * point.range_m, 0.0);
   }
 
  private:
-  double duration_s_, start_m2_, start_rad2_, end_m2_, end_rad2_;
+  double duration_s_, start_variance_m2_, start_variance_rad2_, end_variance_m2_, end_variance_rad2_;
 };
 
 }  // namespace
@@ -46,21 +46,21 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   const SweepTrajectory& trajectory = sweep.trajectory;
   const std::span<const SweepPoint> points = sweep.points;
   compute_lever_arm_vectors(trajectory, points, levers_W_m_);
-  const PoseVariance of_pose(sweep.covariance, trajectory);
+  const PoseVariance pose_variance(sweep.covariance, trajectory);
   const std::uint32_t number = sweeps();
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
   const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.has_ring_numbers);
   const double moved_m =
       (trajectory.common_position_m(trajectory.duration_s()) - trajectory.common_position_m(0.0)).norm();
-  sight_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
+  free_space_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
   const auto add = [&](double sigma_max_m) {
     std::size_t added = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3f position = levers_W_m_[i] + trajectory.common_position_m(points[i].t_s).cast<float>();
-      sight_.add(position);
+      free_space_.add(position);
       if (map_.is_occupied(position)) continue;  // true for most points
       // standard deviation of an inserted point: mapping.md (R64)
-      const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
+      const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + pose_variance.at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =
           map_.add(position, static_cast<float>(sigma_m), number, ScanLines::line(line, points[i].ring));
@@ -73,16 +73,16 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   std::size_t added = add(params.expert.map.sigma_max_m);
   if (empty()) added = add(std::numeric_limits<double>::infinity());  // an uncertain map is better than none
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
-  if (sweep.pose_certain) look_through(sight_);
+  if (sweep.pose_certain) check_free_space(free_space_);
   return added;
 }
 
-void LocalMap::look_through(const SightGrid& sight) {
+void LocalMap::check_free_space(const FreeSpaceGrid& sight) {
   for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
     if (!map_.exists(index)) continue;
-    const SightGrid::Verdict verdict = sight.verdict(map_.position_W_m(index), map_.sigma_m(index));
-    if (verdict != SightGrid::Verdict::unknown)
-      map_.count_observation(index, verdict == SightGrid::Verdict::seen_through);
+    const FreeSpaceGrid::Verdict verdict = sight.verdict(map_.position_W_m(index), map_.sigma_m(index));
+    if (verdict != FreeSpaceGrid::Verdict::unknown)
+      map_.count_observation(index, verdict == FreeSpaceGrid::Verdict::seen_through);
   }
 }
 
@@ -131,7 +131,7 @@ bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   return true;
 }
 
-void LocalMap::withdraw(std::uint32_t first_sweep) {
+void LocalMap::remove_sweeps_since(std::uint32_t first_sweep) {
   if (first_sweep >= sweeps()) return;
   map_.remove_sweeps_from(first_sweep);
   seen_from_W_m_.resize(first_sweep);

@@ -55,7 +55,7 @@ class LocalMap {
   /// Returns the number of sweeps that contributed points. Each point stores the number of its sweep.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
   /// Removes the points of `first_sweep` and all later sweeps. Cost: O(number of points). The indices of points change.
-  void withdraw(std::uint32_t first_sweep);
+  void remove_sweeps_since(std::uint32_t first_sweep);
 
   /// Removes distant points once the sensor has moved far enough. Returns whether points were removed; a removal
   /// changes the indices of points.
@@ -71,14 +71,14 @@ class LocalMap {
 
  private:
   /// Checks each map point against the free space of the sweep.
-  void look_through(const SightGrid& sight);
+  void check_free_space(const FreeSpaceGrid& sight);
 
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;  // sensor position per sweep that contributed points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
   std::vector<Eigen::Vector3f> levers_W_m_;
-  SightGrid sight_;
+  FreeSpaceGrid free_space_;
 };
 
 }  // namespace tumble::mapping

@@ -12,7 +12,7 @@ namespace tumble {
 namespace {
 
 double innovation_max() {
-  return std::sqrt(mapping::unknowns::kAgrees / SweepUnknowns::kMotionSize);
+  return std::sqrt(mapping::unknowns::kAgreementChi2Max / SweepUnknowns::kMotionSize);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 // sin 10 deg. If the angle between a beam and the line to a neighbouring return is larger, both returns belong to one
 // surface (Bogoslavskyi, Stachniss).
-constexpr float kSurfaceSine = 0.17365f;
+constexpr float kMinSurfaceSine = 0.17365f;
 // sin 2 deg. If the sensor is 0.5 m above the ground, a beam of 14 m length meets the ground at 2 deg. A smaller angle
 // between a surface and the beam indicates an edge.
 constexpr float kGrazingSine = 0.0349f;
@@ -23,7 +23,7 @@ constexpr float kDeviations = 3.0f;
 // Maximum fraction of lone returns in a sweep in clear air. Lone returns come from thin objects, edges and distant
 // ground. Measured fractions are 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig that sees little
 // ground.
-constexpr float kClearShare = 0.02f;
+constexpr float kClearAirFraction = 0.02f;
 
 float square(float x) {
   return x * x;
@@ -47,7 +47,7 @@ bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam&
 }
 
 /// Returns whether the line between two returns forms an angle with the beam of at least `sine`: mapping.md (R14).
-bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
+bool LoneReturns::is_steep_surface(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.point_L_m.cross(b.point_L_m).squaredNorm() >=
          square(sine * farther) * (a.point_L_m - b.point_L_m).squaredNorm();
@@ -55,7 +55,7 @@ bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
 
 /// Returns whether a return is on the line between the previous and the next return: mapping.md (R15).
 bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after) {
-  if (!stands(kGrazingSine, before, after)) return false;
+  if (!is_steep_surface(kGrazingSine, before, after)) return false;
   const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));
   const float share = to_before / std::max(to_before + to_after, 1e-9f);
   const float expected_m = 1.0f / ((1.0f - share) / before.range_m + share / after.range_m);
@@ -87,9 +87,9 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   // In most cases, the previous beam shows that a return is not alone. An index below 0 wraps beyond the end of the
   // list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
-  if (has_before && stands(kSurfaceSine, beam, beams_[at - 1])) return true;
+  if (has_before && is_steep_surface(kMinSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);
-  if (has_after && stands(kSurfaceSine, beam, beams_[at + 1])) return true;
+  if (has_after && is_steep_surface(kMinSurfaceSine, beam, beams_[at + 1])) return true;
   const auto collect = [&](bool has_next, std::size_t direction) {
     Beside beside;
     std::size_t other = at + direction;
@@ -100,9 +100,9 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
     return beside;
   };
   const Beside before = collect(has_before, ~std::size_t{0}), after = collect(has_after, 1);
-  const auto at_its_range = [&](const Beam* other) { return same_range(noise, beam, *other); };
-  if (std::any_of(before.begin(), before.end(), at_its_range)) return true;
-  if (std::any_of(after.begin(), after.end(), at_its_range)) return true;
+  const auto has_equal_range = [&](const Beam* other) { return same_range(noise, beam, *other); };
+  if (std::any_of(before.begin(), before.end(), has_equal_range)) return true;
+  if (std::any_of(after.begin(), after.end(), has_equal_range)) return true;
   return std::any_of(before.begin(), before.end(), [&](const Beam* one) {
     return std::any_of(after.begin(), after.end(),
                        [&](const Beam* other) { return between(noise, *one, beam, *other); });
@@ -152,13 +152,13 @@ std::size_t LoneReturns::drop(const RangeNoise& noise, std::vector<SweepPoint>& 
   const float step2 = median_step2();
   if (step2 > square(kStepMax)) return 0;
   const float reach2 = square(kReachSteps) * step2;
-  alone_.resize(points.size());
-  for (std::size_t at = 0; at < beams_.size(); ++at) alone_[order_[at]] = !is_confirmed(noise, at, reach2);
-  const auto dropped = static_cast<std::size_t>(std::count(alone_.begin(), alone_.end(), 1));
-  if (static_cast<float>(dropped) <= kClearShare * static_cast<float>(points.size())) return 0;
+  isolated_.resize(points.size());
+  for (std::size_t at = 0; at < beams_.size(); ++at) isolated_[order_[at]] = !is_confirmed(noise, at, reach2);
+  const auto dropped = static_cast<std::size_t>(std::count(isolated_.begin(), isolated_.end(), 1));
+  if (static_cast<float>(dropped) <= kClearAirFraction * static_cast<float>(points.size())) return 0;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (alone_[i] == 0) points[kept++] = points[i];
+    if (isolated_[i] == 0) points[kept++] = points[i];
   }
   points.resize(kept);
   return dropped;

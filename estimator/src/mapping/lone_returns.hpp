@@ -42,7 +42,7 @@ class LoneReturns {
   static float sine2_between(const Beam& a, const Beam& b);
   static float variance_m2(const RangeNoise& noise, const Beam& beam);
   static bool same_range(const RangeNoise& noise, const Beam& a, const Beam& b);
-  static bool stands(float sine, const Beam& a, const Beam& b);
+  static bool is_steep_surface(float sine, const Beam& a, const Beam& b);
   static bool between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after);
   void sort_by_ring(const std::vector<SweepPoint>& points);
   void measure_steps();
@@ -53,7 +53,7 @@ class LoneReturns {
   std::vector<std::uint32_t> ring_next_, order_;
   std::vector<Beam> beams_;                    // beams ring by ring, in firing order
   std::vector<float> steps2_, sorted_steps2_;  // squared sines of the angle between successive beams on a ring
-  std::vector<std::uint8_t> alone_;
+  std::vector<std::uint8_t> isolated_;
 };
 
 }  // namespace tumble

@@ -9,21 +9,21 @@ namespace tumble::mapping {
 namespace {
 
 // A wrong pose makes a covered surface point agree by chance with at most this probability.
-constexpr double kChance = 0.8;
+constexpr double kChanceAgreementMax = 0.8;
 // The second best pose shows the chance in the present surroundings. This share of its disagreeing points is added to
 // the chance as a margin for its sampling error.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // bound for one search
-constexpr std::size_t kLeastPoints = 100;  // number of surface points for a search
-constexpr double kLeastCovered = 0.4;      // least share of surface points that the prior map covers
-constexpr int kPasses = 3;                 // number of successive sweeps that accept a pose
-constexpr int kFailures = 2;               // number of successive sweeps that reject a pose
+constexpr std::size_t kMinPoints = 100;    // number of surface points for a search
+constexpr double kMinCoveredRatio = 0.4;   // least share of surface points that the prior map covers
+constexpr int kAcceptSweeps = 3;           // number of successive sweeps that accept a pose
+constexpr int kRejectSweeps = 2;           // number of successive sweeps that reject a pose
 constexpr int kSearchSweeps = 5;           // number of sweeps between two searches
 constexpr double kSigmas = 3.0;            // limits of the search about an approximate pose
-constexpr double kLeastReach_m = 1.0, kLeastReach_rad = 0.15;
+constexpr double kMinReach_m = 1.0, kMinReach_rad = 0.15;
 
 /// Relative entropy of two Bernoulli distributions.
-double divergence(double share, double chance) {
+double relative_entropy(double share, double chance) {
   double out = 0.0;
   if (share > 0.0) out += share * std::log(share / chance);
   if (share < 1.0) out += (1.0 - share) * std::log((1.0 - share) / (1.0 - chance));
@@ -51,20 +51,20 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
   const bool searches = !T_MW_ && (attempts_ == 0 || sweeps_since_search_ >= kSearchSweeps);
   if (!T_MW_ && !searches) return std::nullopt;
   const std::vector<SurfacePoint> points = surface_points(local, p_WI_m.cast<float>(), kQueryRadius_m);
-  if (points.size() < kLeastPoints) return std::nullopt;
+  if (points.size() < kMinPoints) return std::nullopt;
   if (searches) propose(points, p_WI_m);
   if (!T_MW_) return std::nullopt;
 
   const FramePose pose = scene_->refined({.T_MW = *T_MW_}, points, p_WI_m, 0.4f);
-  const bool enough = double(pose.covered) >= kLeastCovered * double(points.size());
+  const bool enough = double(pose.covered) >= kMinCoveredRatio * double(points.size());
   if (!enough || !passes(pose)) {
     passed_ = 0;
-    if (++failed_ >= kFailures) T_MW_.reset();
+    if (++failed_ >= kRejectSweeps) T_MW_.reset();
     return std::nullopt;
   }
   T_MW_ = pose.T_MW;
   failed_ = 0;
-  if (++passed_ < kPasses) return std::nullopt;
+  if (++passed_ < kAcceptSweeps) return std::nullopt;
   localised_ = true;
   return pose;
 }
@@ -74,8 +74,8 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   SearchRegion region;
   if (map().T_MI) {  // the local frame was placed at the stated pose, so that the heading of W in M is about zero
     region.p_WI_m = region.p_MI_m = map().T_MI->translation();
-    region.reach_m = std::max(kSigmas * map().sigma_m, kLeastReach_m);
-    region.reach_rad = std::max(kSigmas * map().sigma_rad, kLeastReach_rad);
+    region.reach_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
+    region.reach_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
   }
   std::size_t tried = 0;
   const std::vector<FramePose> found =
@@ -84,21 +84,21 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   sweeps_since_search_ = passed_ = failed_ = 0;
   if (found.empty()) return;
   T_MW_ = found.front().T_MW;
-  tried_ = std::max(double(tried), 1.0);
+  compared_poses_ = std::max(double(tried), 1.0);
   const double second = found.size() > 1 ? found[1].ratio() : 0.0;
-  chance_ = std::max(kChance, second + kChanceMargin * (1.0 - second));
+  chance_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
 /// Chernoff bound of the binomial test, with Bonferroni's correction for the number of compared poses.
 bool MapLocaliser::passes(const FramePose& pose) const {
   if (pose.ratio() <= chance_ || chance_ >= 1.0) return false;
-  return double(pose.covered) * divergence(pose.ratio(), chance_) >= std::log(tried_ / kFalseAcceptance);
+  return double(pose.covered) * relative_entropy(pose.ratio(), chance_) >= std::log(compared_poses_ / kFalseAcceptance);
 }
 
 Status MapLocaliser::status() const {
   if (!has_map() || localised_) return {};
   return {ErrorCode::degenerate, "sweeps that agree with the prior map: not localised in the prior map",
-          double(passed_), double(kPasses)};
+          double(passed_), double(kAcceptSweeps)};
 }
 
 }  // namespace tumble::mapping

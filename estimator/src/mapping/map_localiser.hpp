@@ -40,7 +40,7 @@ class MapLocaliser {
   bool localised_ = false;
   std::optional<Eigen::Isometry3d> T_MW_;  // proposed pose
   double chance_ = 0.0;                    // share of surface points that agree at a wrong pose
-  double tried_ = 1.0;                     // number of poses that the search compared
+  double compared_poses_ = 1.0;            // number of poses that the search compared
   int passed_ = 0, failed_ = 0;            // successive sweeps that passed or failed the test
   int attempts_ = 0, sweeps_since_search_ = 0;
 };

@@ -20,7 +20,7 @@ void InertialTrack::members(Self& s, Visitor& visit) {
   visit.scratch(s.rest_detector_);
   visit("track.rest", s.rest_);
   visit("track.initial", s.initial_);
-  visit("track.undecided_rad_s", s.undecided_rad_s_);
+  visit("track.undecided_rad_s", s.pending_rates_rad_s_);
   visit("track.before_newest", s.before_newest_);
   visit("track.newest", s.newest_);
 }
@@ -60,9 +60,9 @@ void WorldCovariance::members(Self& s, Visitor& visit) {
   visit_params(s.params_, visit);
   visit("world.start_W_m", s.start_W_m_);
   visit("world.map_at_W_m", s.map_at_W_m_);
-  visit("world.start_by_mounting", s.start_by_mounting_);
+  visit("world.start_by_mounting", s.start_mounting_jacobian_);
   visit("world.map", s.map_);
-  visit("world.drift_m2", s.drift_m2_);
+  visit("world.drift_m2", s.drift_covariance_m2_);
 }
 
 template <class Self, class Visitor>
@@ -90,7 +90,7 @@ void MapLocaliser::members(Self& s, Visitor& visit) {
   if constexpr (Visitor::kReads) visit.require("prior.localised", has_map || !s.localised_);
   visit("prior.T_MW", s.T_MW_);
   visit("prior.chance", s.chance_, 0.0, 2.0);
-  visit("prior.tried", s.tried_, 1.0, 1e18);
+  visit("prior.tried", s.compared_poses_, 1.0, 1e18);
   visit("prior.passed", s.passed_, 0.0, 1e9);
   visit("prior.failed", s.failed_, 0.0, 1e9);
   visit("prior.attempts", s.attempts_, 0.0, 1e9);
@@ -104,7 +104,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
   visit("map.pruned_at_W_m", s.pruned_at_W_m_);
   visit("map.scan_lines", s.scan_lines_);
   visit.scratch(s.levers_W_m_);
-  visit.scratch(s.sight_);
+  visit.scratch(s.free_space_);
 }
 
 }  // namespace mapping

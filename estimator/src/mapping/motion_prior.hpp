@@ -13,9 +13,9 @@ struct MotionWindow;
 struct Prediction;
 
 /// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps. Each kind
-/// of information is a type with a function `impose` or `weigh`. The function `impose` replaces the state at the sweep
-/// boundary, before the sweep's noise is added. The function `weigh` fuses a measurement with the prediction, after all
-/// noise is added.
+/// of information is a type with a function `apply_velocity_prior` or `weigh`. The function `apply_velocity_prior`
+/// replaces the state at the sweep boundary, before the sweep's noise is added. The function `weigh` fuses a
+/// measurement with the prediction, after all noise is added.
 
 /// InertialPrior provides no additional information: the velocity at the end of the last sweep continues by the IMU.
 struct InertialPrior {};
@@ -28,9 +28,9 @@ struct KnownVelocity {
 };
 
 /// ConstantVelocity assumes a constant velocity with the uncertainty of impacts, for an accelerometer that is absent or
-/// always saturated. With ConstantVelocity, the gyro is still used. ConstantVelocity needs neither `impose` nor
-/// `weigh`, because its samples are treated like the samples of a gap (InertialTrack::exclude_accelerometer). The gap
-/// also determines the noise.
+/// always saturated. With ConstantVelocity, the gyro is still used. ConstantVelocity needs neither
+/// `apply_velocity_prior` nor `weigh`, because its samples are treated like the samples of a gap
+/// (InertialTrack::exclude_accelerometer). The gap also determines the noise.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
@@ -38,19 +38,19 @@ using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, 
 /// Process noise of position, attitude and velocity within a sweep.
 using MotionNoise = Eigen::Matrix<double, 9, 9>;
 
-void impose(const KnownVelocity& prior, Prediction& prediction);
-inline void impose(const MotionPrior& prior, Prediction& prediction) {
-  if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) impose(*velocity, prediction);
+void apply_velocity_prior(const KnownVelocity& prior, Prediction& prediction);
+inline void apply_velocity_prior(const MotionPrior& prior, Prediction& prediction) {
+  if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) apply_velocity_prior(*velocity, prediction);
 }
 
 /// Updates the prediction of a sweep by a reading from within the sweep, see mapping.md (R34) to (R37). `within` is a
 /// part of the sweep's noise. An unusable reading, or a reading outside of the window, has no effect.
-void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
-                   const MotionNoise& within, Prediction& prediction);
+void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
+                  const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction) {
   if (const auto* const reading = std::get_if<OdometerReading>(&prior))
-    weigh_reading(*reading, boundary, window, within, prediction);
+    fuse_reading(*reading, boundary, window, within, prediction);
 }
 
 }  // namespace tumble::mapping

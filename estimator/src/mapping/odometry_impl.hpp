@@ -74,12 +74,12 @@ struct LidarInertialOdometry::Impl {
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
   /// Sets the predicted motion to zero if the robot is at rest after a tracking failure and only the IMU provides the
   /// motion.
-  void stop_at_rest(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
-                    mapping::Prediction& prediction) const;
+  void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
+                          mapping::Prediction& prediction) const;
   void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
-  Status go_on_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
-                          mapping::LagWindow* into) const;
-  void go_back_to_inertia();
+  Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
+                             mapping::LagWindow* into) const;
+  void revert_to_inertia();
   /// Returns the state at the sweep boundary according to a contradicted relocalisation, after tracking failure.
   /// Returns null if no relocalisation was contradicted.
   const MotionState* rejected_relocalisation() const;

@@ -17,8 +17,8 @@ using mapping::UpdatedSweep, mapping::WindowSweep;
 
 namespace {
 
-constexpr double kTogether_s = 0.5;       // maximum delay between first sample and first sweep
-constexpr TimeNs kStep_ns = 100'000'000;  // time step of dead reckoning, for which the inertial noise is stated
+constexpr double kFirstSweepDelayMax_s = 0.5;  // maximum delay between first sample and first sweep
+constexpr TimeNs kStep_ns = 100'000'000;       // time step of dead reckoning, for which the inertial noise is stated
 
 }  // namespace
 
@@ -37,7 +37,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
-  const int rested_sweeps = resting_sweeps;
+  const int previous_resting_sweeps = resting_sweeps;
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<Prediction> prediction(
@@ -53,8 +53,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const auto placed = std::make_unique<Placed>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
   if (other && mapping::contradicts(tracking, placed->placement)) {  // restart from tracking failure
-    go_back_to_inertia();
-    resting_sweeps = rested_sweeps;
+    revert_to_inertia();
+    resting_sweeps = previous_resting_sweeps;
     report = SweepReport{};
     return add_sweep(start_ns, end_ns, returns, report);
   }
@@ -107,9 +107,9 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   if (Status status = level_start(levelled); !status.ok()) return status;
   if (start_pose) levelled = mapping::moved_to(*start_pose, levelled);
   if (!track.starts_at_rest(params.expert.start.bias_rest_s)) {
-    const StateEstimate in_motion = mapping::belief_before_map(params, levelled);
+    const StateEstimate in_motion = mapping::estimate_before_map(params, levelled);
     world = mapping::world_at_first_sweep(params, in_motion);
-    boundary.state_estimate = mapping::belief_at_first_sweep(params, in_motion);
+    boundary.state_estimate = mapping::estimate_at_first_sweep(params, in_motion);
     return {};
   }
   boundary.state_estimate = mapping::estimate_at_start(params, levelled);
@@ -120,7 +120,7 @@ Status LidarInertialOdometry::Impl::level_at_first() {
 /// Levels the start by the mean force, which is gravity only if the start is at rest.
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, track.samples(), levelled);
-  if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_to_motion(levelled);
+  if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_for_motion(levelled);
   return status;
 }
 
@@ -135,14 +135,14 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   report.isolated_points = counts.isolated;
   const std::size_t points = selected.ok() ? scratch.points.all().size() : 0;
   const bool usable = points >= params.expert.matching.matches_min;
-  if (usable && !track.border_ns() && seconds(start_ns - boundary.time_ns()) <= kTogether_s) return {};
+  if (usable && !track.border_ns() && seconds(start_ns - boundary.time_ns()) <= kFirstSweepDelayMax_s) return {};
   if (usable) {
-    const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
+    const mapping::MotionPrior sweep_prior = std::exchange(known, mapping::InertialPrior{});
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
-    known = of_sweep;
+    known = sweep_prior;
     if (start_pose) boundary.state_estimate = mapping::moved_to(*start_pose, boundary.state_estimate);
     world = mapping::world_at_first_sweep(params, boundary.state_estimate);
-    boundary.state_estimate = mapping::belief_at_first_sweep(params, boundary.state_estimate);
+    boundary.state_estimate = mapping::estimate_at_first_sweep(params, boundary.state_estimate);
     return {};
   }
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
@@ -157,7 +157,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
     if (Status status = level_start(levelled); !status.ok()) return status;
-    boundary.state_estimate = mapping::belief_before_map(params, levelled);
+    boundary.state_estimate = mapping::estimate_before_map(params, levelled);
   }
   if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levelling_max_s)) {
     if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
@@ -166,14 +166,15 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
       mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
           .setConstant(std::pow(params.expert.standstill.creep_max_m_s, 2));
     }
-    boundary = mapping::SweepBoundary{.state_estimate = mapping::belief_before_map(params, levelled)};
+    boundary = mapping::SweepBoundary{.state_estimate = mapping::estimate_before_map(params, levelled)};
   }
   while (boundary.time_ns() < end_ns) {
     const TimeNs from_ns = boundary.time_ns(), to_ns = std::min(end_ns, from_ns + kStep_ns);
     const MotionWindow motion{track.samples_from(from_ns), to_ns, 0};
-    if (Status status = go_on_by_inertia(motion, track.rests_between(from_ns, to_ns), boundary, nullptr); !status.ok())
+    if (Status status = continue_by_inertia(motion, track.rests_between(from_ns, to_ns), boundary, nullptr);
+        !status.ok())
       return status;
-    boundary.state_estimate = mapping::without_place(boundary.state_estimate, seconds(to_ns - from_ns));
+    boundary.state_estimate = mapping::reset_origin_and_yaw(boundary.state_estimate, seconds(to_ns - from_ns));
   }
   track.prune_until(end_ns);
   return {};
@@ -222,12 +223,12 @@ StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, co
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
   // The inertial prediction remains the only estimate. If the IMU is at rest, a velocity of zero prevents a drift of
   // the velocity.
-  if (mapping::is_lost(tracking)) stop_at_rest(motion, boundary, prediction);
+  if (mapping::is_lost(tracking)) predict_stationary(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
 
-void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const mapping::SweepBoundary& from,
-                                               Prediction& prediction) const {
+void LidarInertialOdometry::Impl::predict_stationary(const MotionWindow& motion, const mapping::SweepBoundary& from,
+                                                     Prediction& prediction) const {
   if (std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns))
     mapping::predict_rest(params, from, prediction);
 }
@@ -263,8 +264,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     world.add_drift(report.least_constrained_sigma_m, report.least_constrained_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
   const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
-  report.map_sigma_m =
-      world.sigma_in_map_m(mapping::pose_and_mounting(to_end, sweep.start.error), report.trajectory.back().p_WA_m);
+  report.map_sigma_m = world.sigma_in_map_m(mapping::propagate_pose_and_mounting(to_end, sweep.start.error),
+                                            report.trajectory.back().p_WA_m);
   enter_window(sweep, motion, boundary, window).inserted = std::move(inserted);
   if (aligned) {
     window.smooth();
@@ -285,9 +286,9 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
 /// Adds the pose error of a sweep to the map error at the robot's position. The points that the sweep adds to the map
 /// have the pose error of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
-  const double inserted_share =
+  const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  world.add_insertion(inserted_share, sweep.trajectory, sweep.start.error,
+  world.add_insertion(inserted_fraction, sweep.trajectory, sweep.start.error,
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
@@ -306,23 +307,24 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   if (relocalisation_unconfirmed && !unconfirmed_before) {
-    mapping::DeadReckoning& from_here = other.emplace();  // constructed in place, because it is too large for the stack
-    from_here.boundary = boundary;
-    from_here.window = window;
-    from_here.window.clear_inserted();
-    from_here.world = world;
-    from_here.inserted_from = map.sweeps() - 1;
+    mapping::DeadReckoning& reckoning_start =
+        other.emplace();  // constructed in place, because it is too large for the stack
+    reckoning_start.boundary = boundary;
+    reckoning_start.window = window;
+    reckoning_start.window.clear_inserted();
+    reckoning_start.world = world;
+    reckoning_start.inserted_from = map.sweeps() - 1;
   }
   if (!relocalisation_unconfirmed && !mapping::is_lost(tracking)) other.reset();
   if (!other) return;
   const bool rests = std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns);
-  if (!go_on_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
+  if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
 /// Propagates the state from the boundary to a sweep's end, without the sweep's points. If `rests`, the velocity is
 /// known to be 0. If there is a lag window, the sweep enters the window.
-Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
-                                                     mapping::LagWindow* into) const {
+Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
+                                                        mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
@@ -343,13 +345,13 @@ Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion,
 
 /// Reverts a contradicted relocalisation. Removes the points inserted since the relocalisation from the map, and
 /// resumes inertial prediction. The contradicted pose remains a start of the search.
-void LidarInertialOdometry::Impl::go_back_to_inertia() {
-  map.withdraw(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
+void LidarInertialOdometry::Impl::revert_to_inertia() {
+  map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
   std::swap(boundary, other->boundary);
   std::swap(window, other->window);
   other->window.clear_inserted();
   std::swap(world, other->world);
-  tracking = mapping::given_up(tracking);
+  tracking = mapping::after_reverted_relocalisation(tracking);
 }
 
 const MotionState* LidarInertialOdometry::Impl::rejected_relocalisation() const {
@@ -361,7 +363,7 @@ WindowSweep& LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep
   WindowSweep& newest = into.enter();
   newest.predicted.mean = sweep.prediction.prior.mean;
   newest.predicted.errors = sweep.prediction.errors;
-  newest.by_before.noalias() = sweep.prediction.by_last * from.end_by_start;
+  newest.jacobian_previous.noalias() = sweep.prediction.jacobian_boundary * from.end_start_jacobian;
   newest.filtered.mean = sweep.start.mean;
   newest.filtered.errors = sweep.start.error;
   newest.smoothed = newest.filtered;
@@ -374,7 +376,7 @@ PoseState LidarInertialOdometry::Impl::pose_along(const SweepTrajectory& motion,
                                                   const Registration::Matrix& errors) const {
   const Registration::Matrix F = mapping::unknowns_at(motion, t_s);
   PoseState pose = motion.state(t_s).pose();
-  pose.covariance = world.in_world(mapping::pose_and_mounting(F, errors), pose.p_WA_m);
+  pose.covariance = world.in_world(mapping::propagate_pose_and_mounting(F, errors), pose.p_WA_m);
   return pose;
 }
 

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-int most_on_one_line(const VoxelMap& map, const Neighbours& neighbours) {
+int max_points_on_line(const VoxelMap& map, const Neighbours& neighbours) {
   std::array<std::uint32_t, Neighbours::kMax> line;
   for (int i = 0; i < neighbours.count; ++i) line[i] = map.line(neighbours.index[i]);
   int most = 1;
@@ -29,7 +29,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
   const int n = neighbours.count;
   if (n < bounds.neighbours_min || n < 3) return fit;
 
-  if (n - most_on_one_line(map, neighbours) < bounds.off_line_min) {
+  if (n - max_points_on_line(map, neighbours) < bounds.off_line_neighbours_min) {
     fit.verdict = PlaneVerdict::one_scan_line;
     return fit;
   }
@@ -59,7 +59,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
 
   fit.centre_W_m = origin + mean.cast<float>();
   fit.thickness_variance_m2 = static_cast<float>(l[0]);
-  if (!(l[1] >= bounds.collinear_share * l[2]) || !(l[2] > 0.0)) {
+  if (!(l[1] >= bounds.collinear_ratio_max * l[2]) || !(l[2] > 0.0)) {
     fit.verdict = PlaneVerdict::collinear;
     return fit;
   }

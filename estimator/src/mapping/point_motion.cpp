@@ -15,7 +15,7 @@ PointMotion::PointMotion(const SweepTrajectory& trajectory, const SweepCalibrati
   turned_ = now_.q_WI * x_I;
   lever_ = now_.preintegrated_position_m + turned_;
   from_lidar_I_ = x_I - calibration.T_IL.translation();
-  if (clipped_) by_deficit_ = trajectory.deficit_derivative(t_s_, hint);
+  if (clipped_) deficit_derivative_ = trajectory.deficit_derivative(t_s_, hint);
 }
 
 void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivative) const {
@@ -25,8 +25,8 @@ void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivat
   u::segment(derivative, u::velocity) = t_s_ * n;
   auto of_deficit = u::segment(derivative, u::deficit);
   if (clipped_) {
-    of_deficit = by_deficit_.position_jacobian_m_s.transpose() * n +
-                 by_deficit_.attitude_jacobian_s.transpose() * turned_.cross(n);
+    of_deficit = deficit_derivative_.position_jacobian_m_s.transpose() * n +
+                 deficit_derivative_.attitude_jacobian_s.transpose() * turned_.cross(n);
   } else {
     of_deficit.setZero();
   }

@@ -29,7 +29,7 @@ class PointMotion {
   bool clipped_;
   SweepTrajectory::PreintegratedMotion now_;
   Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
-  SweepTrajectory::DeficitDerivative by_deficit_;  // used if an axis of the gyro is clipped
+  SweepTrajectory::DeficitDerivative deficit_derivative_;  // used if an axis of the gyro is clipped
 };
 
 }  // namespace tumble::mapping

@@ -24,17 +24,17 @@ using Params = LidarInertialOdometry::Params;
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
-  u::rows(next.by_last, u::deficit).setZero();
+  u::rows(next.jacobian_boundary, u::deficit).setZero();
   if (!params.expert.rails.estimate_deficit) return;
-  const Eigen::Vector3d share_at_start = trajectory.deficit_factor_at_start();
+  const Eigen::Vector3d boundary_factor = trajectory.deficit_factor_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(share_at_start[axis] > 0.0 && boundary.deficit_factor[axis] > 0.0)) continue;
+    if (!(boundary_factor[axis] > 0.0 && boundary.deficit_factor[axis] > 0.0)) continue;
     double remains =
-        std::clamp(boundary.deficit_factor[axis] / share_at_start[axis], 0.0, params.expert.rails.deficit_carry_max);
+        std::clamp(boundary.deficit_factor[axis] / boundary_factor[axis], 0.0, params.expert.rails.deficit_carry_max);
     for (int knot = 0; knot <= kLast; ++knot) {
       next.prior.mean.deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.deficit_rad_s(axis, kLast);
-      next.by_last(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
+      next.jacobian_boundary(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
       remains *= rho;
     }
   }
@@ -62,7 +62,7 @@ void add_deficit_noise(const Params& params, const MotionWindow& window, const S
   for (int axis = 0; axis < 3; ++axis) {
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
     const double sigma = deficit_sigma(params, window, trajectory, axis);
-    const bool carried = next.by_last.row(u::deficit_at(axis, 0)).squaredNorm() > 0.0;
+    const bool carried = next.jacobian_boundary.row(u::deficit_at(axis, 0)).squaredNorm() > 0.0;
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
         const double known = carried ? std::pow(rho, a + b) : 0.0;
@@ -70,7 +70,7 @@ void add_deficit_noise(const Params& params, const MotionWindow& window, const S
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
       next.noise(u::deficit_at(axis, a), u::deficit_at(axis, a)) +=
-          params.expert.rails.deficit_knot_share * params.expert.rails.deficit_knot_share * sigma * sigma;
+          params.expert.rails.knot_sigma_ratio * params.expert.rails.knot_sigma_ratio * sigma * sigma;
     }
   }
 }
@@ -83,26 +83,27 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
 
 /// Propagates the covariances by the motion of the segment: mapping.md (R32).
 void Prediction::compose(const StateEstimate& at_boundary) {
-  sandwich(by_last, at_boundary.weight, prior.covariance);
-  sandwich(by_last, at_boundary.error, errors);
+  propagate_covariance(jacobian_boundary, at_boundary.weight, prior.covariance);
+  propagate_covariance(jacobian_boundary, at_boundary.error, errors);
   prior.covariance += noise;
   errors += noise;
 }
 
 void Prediction::zero_velocity_update(double sigma_m_s) {
   prior.mean.state.v_WI_m_s.setZero();
-  u::rows(by_last, u::velocity).setZero();
+  u::rows(jacobian_boundary, u::velocity).setZero();
   u::rows(noise, u::velocity).setZero();
   u::columns(noise, u::velocity).setZero();
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
 /// Applies a known velocity to the prediction: mapping.md (R33).
-void impose(const KnownVelocity& known, Prediction& prediction) {
+void apply_velocity_prior(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
   prediction.prior.mean.state.v_WI_m_s = v_WI_m_s;
-  u::rows(prediction.by_last, u::velocity) = -so3::hat(v_WI_m_s) * u::rows(prediction.by_last, u::attitude);
+  u::rows(prediction.jacobian_boundary, u::velocity) =
+      -so3::hat(v_WI_m_s) * u::rows(prediction.jacobian_boundary, u::attitude);
 }
 
 Prediction predict(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
@@ -116,15 +117,15 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
-  impose(known, next);
+  apply_velocity_prior(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
-  const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
+  const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
   // A force late in a segment hardly changes the fitted velocity. The velocity variance due to saturated forces is
   // therefore also added to the next segment.
-  u::block(next.noise, u::velocity) += boundary.railed_velocity_m2_s2 + railed_m2_s2;
-  u::block(within, u::velocity) += railed_m2_s2;
+  u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
+  u::block(within, u::velocity) += clipped_force_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
   weigh(known, boundary, window, within, next);
   next.prior.deficit_start_rad_s = next.prior.mean.deficit_rad_s;
@@ -156,12 +157,12 @@ StateEstimate posterior(const Prediction& prediction) {
 namespace {
 
 /// Computes the matrix that transforms errors of the prior to errors after the registration: mapping.md (R52).
-/// `weigh_prior()` is a separate function to limit the use of the stack.
-[[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
-                                   Registration::Matrix& out) {
+/// `prior_error_gain()` is a separate function to limit the use of the stack.
+[[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
+                                        Registration::Matrix& out) {
   // noise of the normals (errors in variables) is not information
   Registration::Matrix kept = Registration::Matrix::Identity();
-  dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
+  dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
   kept += aligned.normal_noise_information;
   out.noalias() = aligned.covariance * kept;
 }
@@ -174,9 +175,9 @@ namespace {
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();
-  weigh_prior(prediction, aligned, *from_prior);
-  sandwich(*from_prior, prediction.errors, start.error);
-  sandwich(aligned.covariance, aligned.score_covariance, *from_prior);
+  prior_error_gain(prediction, aligned, *from_prior);
+  propagate_covariance(*from_prior, prediction.errors, start.error);
+  propagate_covariance(aligned.covariance, aligned.score_covariance, *from_prior);
   start.error += *from_prior;
   make_symmetric(start.error);
   return start;
@@ -187,22 +188,22 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
   const Registration::Vector away = aligned.minus(prediction.prior.mean);
   const Eigen::Matrix<double, kMotionSize, 1> moved = u::segment(away, u::motion);
   Eigen::Matrix<double, kMotionSize, kMotionSize> P = u::block(prediction.errors, u::motion);
-  P.diagonal().array() += unknowns::kLeastVariance;
+  P.diagonal().array() += unknowns::kMinVariance;
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotionSize);
 }
 
 bool is_expected(const Params& params, const Prediction& prediction, const Registration::Estimate& aligned,
                  double innovation) {
   const Eigen::Vector3d away_m = aligned.state.p_WI_m - prediction.prior.mean.state.p_WI_m;
-  return innovation * innovation * Registration::kMotionSize <= unknowns::kAgrees &&
+  return innovation * innovation * Registration::kMotionSize <= unknowns::kAgreementChi2Max &&
          away_m.norm() <= params.expert.matching.distance_m;
 }
 
 void boundary_after(const Params& params, const StateEstimate& start, const MotionWindow& window,
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary) {
-  boundary.end_by_start = unknowns_at(trajectory, trajectory.duration_s());
-  at_end(start, trajectory, boundary.end_by_start, window.end_ns, boundary.state_estimate);
-  boundary.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
+  boundary.end_start_jacobian = unknowns_at(trajectory, trajectory.duration_s());
+  at_end(start, trajectory, boundary.end_start_jacobian, window.end_ns, boundary.state_estimate);
+  boundary.clipped_velocity_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   const bool aligned = alignment != nullptr;
   boundary.deficit_factor = Eigen::Vector3d::Zero();
   if (aligned) boundary.deficit_factor = trajectory.deficit_factor_at_end();

@@ -10,13 +10,14 @@ namespace tumble::mapping {
 
 /// SweepBoundary is the state at the boundary of two sweeps, with all data that the next sweep needs.
 struct SweepBoundary {
-  StateEstimate state_estimate;                                          ///< estimate at the boundary
-  Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< derivative by the last sweep's start
+  StateEstimate state_estimate;                                                ///< estimate at the boundary
+  Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();  ///< derivative by the last sweep's start
   /// Magnitude |s_j| of the saturation deficit's factor at the boundary, on saturated axes. The magnitude is 0 if the
   /// last sweep was not aligned.
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the accelerometer's saturation, W
-  bool constrained = false;  ///< the last sweep was constrained in all directions
+  Eigen::Matrix3d clipped_velocity_m2_s2 =
+      Eigen::Matrix3d::Zero();  ///< variance from the accelerometer's saturation, W
+  bool constrained = false;     ///< the last sweep was constrained in all directions
 
   TimeNs time_ns() const { return state_estimate.mean.state.time_ns; }
 };
@@ -31,9 +32,10 @@ struct MotionWindow {
 /// Prediction is the prediction of the next sweep's unknowns.
 struct Prediction {
   Registration::Prior prior;
-  Registration::Matrix by_last = Registration::Matrix::Identity();  ///< derivative by the unknowns at the boundary
-  Registration::Matrix noise = Registration::Matrix::Zero();        ///< process noise
-  Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the mean's errors
+  Registration::Matrix jacobian_boundary =
+      Registration::Matrix::Identity();                        ///< derivative by the unknowns at the boundary
+  Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
+  Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the mean's errors
 
   /// Computes weight and errors from the weight and errors at the boundary, after all other members are set.
   void compose(const StateEstimate& at_boundary);

@@ -23,14 +23,14 @@ constexpr float kCell_m = 0.5f;  // edge of a grid cell, unless the grid becomes
 constexpr double kCellsMax = 32.0 * 1024 * 1024;
 constexpr std::uint8_t kOnSurface = 2, kNextToSurface = 1;
 constexpr int kYaws = 72;
-constexpr std::size_t kScored = 240;  // surface points of a coarse score
+constexpr std::size_t kCoarsePoints = 240;  // surface points of a coarse score
 constexpr std::size_t kKept = 4000, kRefined = 96;
 constexpr float kApart_m = 1.0f;  // poses that differ less are one pose
 constexpr double kApart_rad = 0.12;
 constexpr float kNormalZ = 0.3f;  // largest difference of the vertical part of an anchor's normal
 
 constexpr float kCovered_m = 1.0f;  // a point with a prior surface at this distance is covered
-constexpr float kNearSurface_m = 0.5f, kAgree_m = 0.12f, kAgreeNormal = 0.7f;
+constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 0.7f;
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
@@ -42,7 +42,7 @@ int slope_class(const Eigen::Vector3f& normal) {
 }
 
 /// Selects points of all slope classes in turn, each class in the order of the list.
-std::vector<SurfacePoint> balanced(const std::vector<SurfacePoint>& points, std::size_t most) {
+std::vector<SurfacePoint> select_by_slope(const std::vector<SurfacePoint>& points, std::size_t most) {
   std::array<std::vector<std::size_t>, 4> classes;
   for (std::size_t k = 0; k < points.size(); ++k)
     classes[static_cast<std::size_t>(slope_class(points[k].normal_W))].push_back(k);
@@ -60,7 +60,7 @@ std::vector<SurfacePoint> balanced(const std::vector<SurfacePoint>& points, std:
   return out;
 }
 
-bool is_same(const FramePose& a, const FramePose& b, const Eigen::Vector3d& sensor_W_m) {
+bool is_same_pose(const FramePose& a, const FramePose& b, const Eigen::Vector3d& sensor_W_m) {
   if ((a.T_MW * sensor_W_m - b.T_MW * sensor_W_m).norm() > kApart_m) return false;
   return Eigen::AngleAxisd(a.T_MW.linear().transpose() * b.T_MW.linear()).angle() < kApart_rad;
 }
@@ -177,7 +177,7 @@ Eigen::Isometry3d PriorScene::pose_of(const Candidate& candidate, const SurfaceP
 std::vector<PriorScene::Candidate> PriorScene::best_candidates(const std::vector<SurfacePoint>& points,
                                                                const SurfacePoint& anchor, const SearchRegion* region,
                                                                std::size_t& tried) const {
-  const std::vector<SurfacePoint> scored = balanced(points, kScored);
+  const std::vector<SurfacePoint> scored = select_by_slope(points, kCoarsePoints);
   std::vector<std::vector<std::int64_t>> steps(kYaws);
   for (int yaw = 0; yaw < kYaws; ++yaw) {
     const Eigen::Matrix3f R =
@@ -236,7 +236,7 @@ std::vector<FramePose> PriorScene::search(const std::vector<SurfacePoint>& point
   for (const Candidate& candidate : best_candidates(points, anchor, region, tried)) {
     FramePose pose;
     pose.T_MW = pose_of(candidate, anchor);
-    const auto same = [&](const FramePose& other) { return is_same(pose, other, sensor_W_m); };
+    const auto same = [&](const FramePose& other) { return is_same_pose(pose, other, sensor_W_m); };
     if (std::any_of(starts.begin(), starts.end(), same)) continue;
     starts.push_back(pose);
     if (starts.size() == kRefined) break;
@@ -244,7 +244,7 @@ std::vector<FramePose> PriorScene::search(const std::vector<SurfacePoint>& point
   std::vector<FramePose> distinct;
   for (const FramePose& start : starts) {
     FramePose pose = refined(start, points, sensor_W_m, 1.0f);
-    const auto same = [&](const FramePose& other) { return is_same(pose, other, sensor_W_m); };
+    const auto same = [&](const FramePose& other) { return is_same_pose(pose, other, sensor_W_m); };
     const auto twin = std::find_if(distinct.begin(), distinct.end(), same);
     if (twin == distinct.end()) {
       distinct.push_back(pose);
@@ -263,7 +263,7 @@ FramePose PriorScene::refined(const FramePose& start, const std::vector<SurfaceP
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   constexpr int kIterations = 18;
-  const std::vector<SurfacePoint> used = balanced(points, kRefinePoints);
+  const std::vector<SurfacePoint> used = select_by_slope(points, kRefinePoints);
   FramePose pose = start;
   Neighbours found;
   float kernel_m = first_kernel_m;
@@ -315,7 +315,7 @@ void PriorScene::count(const std::vector<SurfacePoint>& points, FramePose& pose)
     if (n.isZero(0.0f)) continue;  // a rough surface supports no pose
     ++pose.covered;
     if (found.distance2_m2[0] > kNearSurface_m * kNearSurface_m) continue;
-    pose.agreeing += std::abs(n.dot(x - voxels_.position_W_m(found.index[0]))) <= kAgree_m &&
+    pose.agreeing += std::abs(n.dot(x - voxels_.position_W_m(found.index[0]))) <= kAgreeDistance_m &&
                      std::abs(n.dot(T.linear() * point.normal_W)) >= kAgreeNormal;
   }
 }

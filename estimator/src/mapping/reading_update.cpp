@@ -22,10 +22,10 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Columns, 0, kMost, Columns>;
 using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
 using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 template <int Values>
-using OfMotion = Eigen::Matrix<double, Values, kMotionSize>;
+using MotionJacobian = Eigen::Matrix<double, Values, kMotionSize>;
 
-constexpr int kIterations = 6;     // two or three iterations are usually enough
-constexpr double kSettled = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
+constexpr int kIterations = 6;              // two or three iterations are usually enough
+constexpr double kConvergenceLimit = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
 /// Current change of the unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
 struct Offsets {
@@ -41,8 +41,8 @@ struct Expected {
 };
 
 /// State of the IMU at a time within the sweep.
-struct Moment {
-  double noise_share = 0.0;  ///< fraction of the sweep's noise up to this time
+struct MotionInstant {
+  double noise_fraction = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d p_WI_m, v_WI_m_s;
   Eigen::Matrix<double, kMotionSize, kUnknowns> jacobian_start;
@@ -59,14 +59,14 @@ class Sweep {
 
   /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviations of the noise grow in
   /// proportion to time.
-  Moment at(TimeNs time_ns, const Offsets& offsets) const {
-    Moment out;
+  MotionInstant at(TimeNs time_ns, const Offsets& offsets) const {
+    MotionInstant out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
     const double length_s = seconds(window_.end_ns - predicted_.state.time_ns);
     const double inside_s = std::clamp(t_s, 0.0, length_s);
-    out.noise_share = length_s > 0.0 ? inside_s / length_s : 0.0;
+    out.noise_fraction = length_s > 0.0 ? inside_s / length_s : 0.0;
     Registration::Vector moved = offsets.start;
-    u::segment(moved, u::motion) += out.noise_share * offsets.noise;
+    u::segment(moved, u::motion) += out.noise_fraction * offsets.noise;
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
@@ -94,10 +94,10 @@ class Sweep {
 /// Adds derivatives of the odometer reading by the unknowns at the boundary and by the noise. `by_moment` is the
 /// derivative by errors of the motion at the time of the reading.
 template <int Size>
-void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
+void add(const MotionJacobian<Size>& by_moment, const MotionInstant& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
   out.jacobian_start += jacobian_start;
-  out.by_noise += moment.noise_share * jacobian_start.template leftCols<kMotionSize>();
+  out.by_noise += moment.noise_fraction * jacobian_start.template leftCols<kMotionSize>();
 }
 
 template <int Size>
@@ -109,9 +109,9 @@ Expected nothing() {
 /// Predicts a velocity reading: mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
-  const Moment now = sweep.at(reading.time_ns, offsets);
+  const MotionInstant now = sweep.at(reading.time_ns, offsets);
   const Eigen::Matrix3d to_I = now.q_WI.toRotationMatrix().transpose();
-  OfMotion<3> by_moment = OfMotion<3>::Zero();
+  MotionJacobian<3> by_moment = MotionJacobian<3>::Zero();
   u::columns(by_moment, u::attitude) = to_I * so3::hat(now.v_WI_m_s);
   u::columns(by_moment, u::velocity) = to_I;
   add(by_moment, now, out);
@@ -123,7 +123,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
 /// Predicts an odometer reading of relative motion: mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
-  const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
+  const MotionInstant from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
   const Eigen::Matrix3d to_I = from.q_WI.toRotationMatrix().transpose();
   const Eigen::Vector3d moved_W_m = to.p_WI_m - from.p_WI_m;
   const Eigen::Quaterniond turned = from.q_WI.conjugate() * to.q_WI;
@@ -132,7 +132,7 @@ Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets&
   const Eigen::Matrix3d by_turn = so3::left_jacobian_inverse(mean_force_tilt_rad).transpose() * to_I;
   out.residual.head<3>() = reading.T_from_to.translation() - to_I * moved_W_m;
   out.residual.tail<3>() = mean_force_tilt_rad;
-  OfMotion<kMost> by_from = OfMotion<kMost>::Zero(), by_to = by_from;
+  MotionJacobian<kMost> by_from = MotionJacobian<kMost>::Zero(), by_to = by_from;
   by_to.topLeftCorner<3, 3>() = to_I;
   by_to.block<3, 3>(3, 3) = by_turn;
   by_from.topLeftCorner<3, 3>() = -to_I;
@@ -151,7 +151,7 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Buffers of an update. The buffers are on the heap, because sandwich() needs the stack.
+/// Buffers of an update. The buffers are on the heap, because propagate_covariance() needs the stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
@@ -161,7 +161,7 @@ struct Work {
 };
 
 /// Computes the gains at the current linearisation point: mapping.md (R37).
-bool find_gains(const MotionNoise& within, Work& work) {
+bool compute_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
   work.jacobian_start = work.at_start * expected.jacobian_start.transpose();
   work.by_noise = within * expected.by_noise.transpose();
@@ -176,11 +176,11 @@ bool find_gains(const MotionNoise& within, Work& work) {
 
 /// Iterates to the unknowns that best fit the odometer reading and the prediction. If there is no solution, returns
 /// false.
-[[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
-                              Work& work) {
+[[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const Sweep& sweep,
+                                              const MotionNoise& within, Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     work.expected = std::visit([&](const auto& kind) { return expect(kind, sweep, work.offsets); }, reading);
-    if (!find_gains(within, work)) return false;
+    if (!compute_gains(within, work)) return false;
     const Values innovation = work.expected.residual + work.expected.jacobian_start * work.offsets.start +
                               work.expected.by_noise * work.offsets.noise;
     const Offsets next{work.jacobian_start * innovation, work.by_noise * innovation};
@@ -188,7 +188,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
     const double change = std::max((next.start - work.offsets.start).cwiseAbs().maxCoeff(),
                                    (next.noise - work.offsets.noise).cwiseAbs().maxCoeff());
     work.offsets = next;
-    if (change < kSettled) return true;
+    if (change < kConvergenceLimit) return true;
   }
   return true;
 }
@@ -199,8 +199,8 @@ bool find_gains(const MotionNoise& within, Work& work) {
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
   work.jacobian_start.topRows<kMotionSize>() += work.by_noise;  // from here on, the gain of the sum
-  const Rows<kUnknowns> by_last = work.expected.jacobian_start * prediction.by_last;
-  prediction.by_last.noalias() -= work.jacobian_start * by_last;
+  const Rows<kUnknowns> jacobian_boundary = work.expected.jacobian_start * prediction.jacobian_boundary;
+  prediction.jacobian_boundary.noalias() -= work.jacobian_start * jacobian_boundary;
   work.left.setIdentity();
   work.left.noalias() -= work.jacobian_start * work.expected.jacobian_start;
 }
@@ -219,20 +219,20 @@ bool find_gains(const MotionNoise& within, Work& work) {
 
 }  // namespace
 
-void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
-                   const MotionNoise& within, Prediction& prediction) {
+void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
+                  const MotionNoise& within, Prediction& prediction) {
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
   // the gains follow from the covariance C, as in the registration: mapping.md section 6
-  sandwich(prediction.by_last, boundary.state_estimate.weight, work->at_start);
+  propagate_covariance(prediction.jacobian_boundary, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;
   u::block(before, u::motion) -= within;
   work->at_start += before;
-  if (!settle(reading, sweep, within, *work)) return;
+  if (!iterate_to_convergence(reading, sweep, within, *work)) return;
   move(*work, prediction);
-  sandwich(work->left, before, prediction.noise);
+  propagate_covariance(work->left, before, prediction.noise);
   add_noise(within, *work, prediction);
 }
 

@@ -23,7 +23,7 @@ namespace u = mapping::unknowns;
 
 Matrix information_of(const Matrix& covariance) {
   Matrix positive = covariance;
-  positive.diagonal().array() += u::kLeastVariance;
+  positive.diagonal().array() += u::kMinVariance;
   return dense::Cholesky(positive).inverse<Matrix>();
 }
 
@@ -37,7 +37,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   const Vector away = now.minus(prior.mean);
   u::block(J, u::attitude) = so3::left_jacobian_inverse(u::segment(away, u::attitude));
   Jt = J.transpose();
-  mapping::sandwich(Jt, information, pull);
+  mapping::propagate_covariance(Jt, information, pull);
   H += pull;
   g += J.transpose() * (information * away);
 }
@@ -48,8 +48,8 @@ bool agrees(const Registration::Prior& prior, const Registration::Estimate& now)
   const Vector moved = now.minus(prior.mean);
   const Eigen::Matrix<double, kMotionSize, 1> away = u::segment(moved, u::motion);
   Eigen::Matrix<double, kMotionSize, kMotionSize> P = u::block(prior.covariance, u::motion);
-  P.diagonal().array() += u::kLeastVariance;
-  return away.dot(P.ldlt().solve(away)) <= u::kAgrees;
+  P.diagonal().array() += u::kMinVariance;
+  return away.dot(P.ldlt().solve(away)) <= u::kAgreementChi2Max;
 }
 
 bool is_small(const Vector& step, double span_s, const Registration::Params& params) {
@@ -117,7 +117,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
                            Result& result) {
   const std::unique_ptr<Problem> posed(new Problem{prior, samples, end_ns, points, map});
   Problem& problem = *posed;
-  problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.matched_share_min *
+  problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.match_ratio_min *
                                                                                   static_cast<double>(points.size())));
   std::destroy_at(&result);  // reconstructed in place, because it takes 22 KiB
   std::construct_at(&result);
@@ -154,7 +154,7 @@ Status Registration::iterate(const Problem& problem, IterationState& at, SweepTr
   accumulate(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, at.sum);
   result.matches = at.sum.matches;
   result.inliers = at.sum.inliers;
-  if (at.sum.matches < std::min(problem.matches_needed, params_.expert.agreeing_min)) {
+  if (at.sum.matches < std::min(problem.matches_needed, params_.expert.agreeing_matches_needed)) {
     at.verdict = RegistrationVerdict::too_few;
     return {};
   }
@@ -182,7 +182,7 @@ Status Registration::iterate(const Problem& problem, IterationState& at, SweepTr
 RegistrationVerdict Registration::classify_result(const Problem& problem, const IterationState& at) const {
   // at a false minimum of the cost, most matches are far from their planes
   const bool fits =
-      static_cast<double>(at.sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(at.sum.matches);
+      static_cast<double>(at.sum.inliers) >= params_.expert.inlier_ratio_min * static_cast<double>(at.sum.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;
   if (at.sum.matches < problem.matches_needed && !agrees(problem.prior, at.now)) return RegistrationVerdict::too_few;
   return RegistrationVerdict::converged;

@@ -52,7 +52,7 @@ void Registration::Unknowns::hold(Matrix& H, Vector& g) const {
   }
 }
 
-void Registration::Unknowns::cut_fixed(Matrix& M) const {
+void Registration::Unknowns::clear_fixed_blocks(Matrix& M) const {
   for (int i = 0; i < kUnknowns; ++i) {
     if (is_free(i)) continue;
     M.row(i).setZero();
@@ -75,7 +75,7 @@ void Registration::Sums::add(const Sums& other) {
 
 /// Computes the variance of a point due to range and skew errors: first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
-  const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
+  const double range = std::max(params_.range_sigma_m, params_.range_sigma_ratio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
   return range * range + skew * skew;
 }
@@ -278,7 +278,7 @@ struct Registration::Pulls {
     Matrix lower = Matrix::Zero();
     for (const Vector& pull : pulls) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
     Matrix out = lower.selfadjointView<Eigen::Lower>();
-    unknowns.cut_fixed(out);
+    unknowns.clear_fixed_blocks(out);
     return out;
   }
 };

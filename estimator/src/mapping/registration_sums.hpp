@@ -21,7 +21,7 @@ struct Registration::Unknowns {
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
   /// Removes the fixed unknowns, so that their solution step is 0.
   void hold(Matrix& H, Vector& g) const;
-  void cut_fixed(Matrix& M) const;
+  void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;
 
  private:

@@ -35,13 +35,13 @@ bool fits(const Params& params, const Registration::Result& found) {
 /// larger deficits. A saturation within one sweep may cause an attitude error of a radian at the start of the search.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
-  aligner.in_full(prior, scene, trajectory, found);
+  aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
   // if an attempt exceeded the correction limit, another attempt would also exceed the limit
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
-    aligner.to_convergence(prior, scene, trajectory, found);
+    aligner.align_to_convergence(prior, scene, trajectory, found);
     iterations += found.iterations;
   }
   for (const double times : kDeficitTries) {
@@ -52,7 +52,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
       if (std::sqrt(prior.covariance(first, first)) < more / kDeficitSigmas) continue;
       const auto start = std::make_unique<Registration::Prior>(prior);
       start->deficit_start_rad_s.row(axis).array() += more;
-      aligner.from_afar(*start, prior, scene, trajectory, found);
+      aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
       iterations += found.iterations;
       ++tries;
     }
@@ -70,7 +70,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   if (from.contradicted != nullptr) {
     const auto start = std::make_unique<Registration::Prior>(prior);
     start->mean.state = *from.contradicted;
-    aligner.from_afar(*start, prior, scene, trajectory, found);
+    aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
     if (converged(found) && fits(params, found)) return;
   }
   struct Best {
@@ -78,7 +78,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
     SweepTrajectory trajectory;
   };
   std::unique_ptr<Best> best;
-  aligner.from_afar(prior, prior, scene, trajectory, found);
+  aligner.align_coarse_to_fine(prior, prior, scene, trajectory, found);
   const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search finds no pose
   const int moved = starts.starts_per_sweep - 1;
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
@@ -87,7 +87,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
     const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
     move_start(starts, index, *start);
-    aligner.from_afar(*start, prior, scene, trajectory, found);
+    aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
   }
   if (best && !(converged(found) && (fits(params, found) || found.inliers >= best->found.inliers))) {
     found = best->found;
@@ -141,12 +141,13 @@ void judge(const Params& params, const TrackingState& before, std::size_t points
         double(out.alignment->inliers) >= params.expert.tracking.confirm_inlier_ratio * double(out.alignment->matches);
     const bool relocalisation_unconfirmed =
         (is_lost(before) && !(out.expected && fits)) || (is_unconfirmed(before) && !fits);
-    out.placement = relocalisation_unconfirmed ? Placement::relocalisation_unconfirmed : Placement::found;
+    out.placement =
+        relocalisation_unconfirmed ? RegistrationOutcome::relocalisation_unconfirmed : RegistrationOutcome::found;
     return;
   }
   const bool enough = points >= params.expert.matching.matches_min;
   const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
-  out.placement = Placement::failed;
+  out.placement = RegistrationOutcome::failed;
   out.map_too_sparse = enough && attempt.too_few_matches;
   if (enough && ((attempt.too_few_matches && prior_certain) || given_up)) out.verdict = SweepVerdict::degenerate;
 }

@@ -33,7 +33,7 @@ Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext
 struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
   bool expected = true;  ///< the alignment agrees with the inertial prediction
-  Placement placement = Placement::not_tried;
+  RegistrationOutcome placement = RegistrationOutcome::not_tried;
   bool map_too_sparse = false;                    ///< the sweep has points, but the map has too few nearby points
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };

@@ -9,26 +9,26 @@ namespace tumble::mapping {
 
 namespace {
 
-// Minimum ratio of range to sensor motion on each side of the sweep's middle. SightGrid sorts returns into bins by
+// Minimum ratio of range to sensor motion on each side of the sweep's middle. FreeSpaceGrid sorts returns into bins by
 // their direction from one position. Above the minimum ratio, the error of the direction is below 0.1 rad, which is the
 // size of the checked bins.
-constexpr float kMovedToRange = 10.0f;
-constexpr int kEmptyMost = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins
+constexpr float kMinRangePerMotion = 10.0f;
+constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins
 // Distance by which all returns must be behind a map point that is no longer present. The distance covers errors of the
 // relative pose of two sweeps, noise of a return, and slope of the ground within a bin.
-constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
+constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 
 }  // namespace
 
-void SightGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
-  from_W_m_ = from_W_m;
-  least_m_ = kMovedToRange * moved_m;
+void FreeSpaceGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
+  origin_W_m_ = from_W_m;
+  range_min_m_ = kMinRangePerMotion * moved_m;
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
 /// Returns the direction of a point. For the ray origin and for non-finite coordinates, the result is empty.
-std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& lever_m) {
+std::optional<FreeSpaceGrid::Direction> FreeSpaceGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
   if (!(along > 0.0f) || !std::isfinite(along)) return std::nullopt;
@@ -39,8 +39,8 @@ std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& 
   return Direction{2 * static_cast<int>(axis) + (lever_m[axis] < 0.0f ? 1 : 0), bin(1), bin(2)};
 }
 
-void SightGrid::add(const Eigen::Vector3f& return_W_m) {
-  const Eigen::Vector3f lever_m = return_W_m - from_W_m_;
+void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
+  const Eigen::Vector3f lever_m = return_W_m - origin_W_m_;
   const std::optional<Direction> towards = direction(lever_m);
   if (!towards) return;
   float& nearest_m = nearest_m_[towards->bin()];
@@ -49,7 +49,7 @@ void SightGrid::add(const Eigen::Vector3f& return_W_m) {
 
 /// Returns the smallest range of the returns around a direction. If there are too few returns, or at the edge of the
 /// cube of directions, returns 0.
-float SightGrid::free_m(const Direction& towards) const {
+float FreeSpaceGrid::free_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;
   for (int v = towards.v - 1; v <= towards.v + 1; ++v) {
@@ -58,7 +58,7 @@ float SightGrid::free_m(const Direction& towards) const {
       const float beside_m = nearest_m_[Direction{towards.face, u, v}.bin()];
       if (std::isfinite(beside_m)) {
         nearest_m = std::min(nearest_m, beside_m);
-      } else if (++empty > kEmptyMost) {
+      } else if (++empty > kEmptyBinsMax) {
         return 0.0f;
       }
     }
@@ -67,16 +67,16 @@ float SightGrid::free_m(const Direction& towards) const {
 }
 
 /// Compares a map point with the returns in its direction: mapping.md (R65).
-SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
-  const Eigen::Vector3f lever_m = point_W_m - from_W_m_;
+FreeSpaceGrid::Verdict FreeSpaceGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
+  const Eigen::Vector3f lever_m = point_W_m - origin_W_m_;
   const float range_m = lever_m.norm();
-  if (!(range_m > least_m_)) return Verdict::unknown;
+  if (!(range_m > range_min_m_)) return Verdict::unknown;
   const std::optional<Direction> towards = direction(lever_m);
   if (!towards) return Verdict::unknown;
-  const float beyond_m = kBeyond_m + kBeyondShare * range_m + kDeviations * sigma_m;
+  const float beyond_m = kBeyond_m + kBeyondRatio * range_m + kDeviations * sigma_m;
   const float there_m = nearest_m_[towards->bin()];
   if (there_m > range_m + beyond_m)  // this test suffices for most points
-    return free_m(*towards) > range_m + beyond_m ? Verdict::seen_through : Verdict::unknown;
+    return free_range_m(*towards) > range_m + beyond_m ? Verdict::seen_through : Verdict::unknown;
   return there_m > range_m - beyond_m ? Verdict::seen : Verdict::unknown;
 }
 

@@ -7,10 +7,10 @@
 
 namespace tumble::mapping {
 
-/// SightGrid is the free space of a sweep: the nearest return per direction, in bins of a cube around one position,
+/// FreeSpaceGrid is the free space of a sweep: the nearest return per direction, in bins of a cube around one position,
 /// with world axes. A map point that is closer than all returns around its direction is no longer present, see
 /// mapping.md (R65). Directions with few returns, and directions at an edge of the cube, provide no information.
-class SightGrid {
+class FreeSpaceGrid {
  public:
   /// Sets the ray origin for the following points, and the distance that the sensor moved around the origin during the
   /// sweep.
@@ -29,10 +29,10 @@ class SightGrid {
     std::size_t bin() const { return static_cast<std::size_t>((face * kBins + v) * kBins + u); }
   };
   static std::optional<Direction> direction(const Eigen::Vector3f& lever_m);
-  float free_m(const Direction& towards) const;
+  float free_range_m(const Direction& towards) const;
 
-  Eigen::Vector3f from_W_m_ = Eigen::Vector3f::Zero();
-  float least_m_ = 0.0f;
+  Eigen::Vector3f origin_W_m_ = Eigen::Vector3f::Zero();
+  float range_min_m_ = 0.0f;
   std::vector<float> nearest_m_;  // infinity for a direction without a return
 };
 

@@ -24,20 +24,20 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
   u::variances(P, u::clock).setConstant(params.time_offset_sigma_s * params.time_offset_sigma_s);
 
   Eigen::Matrix<double, 9, 6> by_mounting = Eigen::Matrix<double, 9, 6>::Zero();
-  by_mounting.topRows<6>() = pose_by_mounting(levelled.q_WI, params.T_IL.translation());
+  by_mounting.topRows<6>() = pose_mounting_jacobian(levelled.q_WI, params.T_IL.translation());
   const Eigen::Matrix<double, 6, 6> mounting = u::block(P, u::mounting);
   u::block(P, u::motion) = levelled.covariance + by_mounting * mounting * by_mounting.transpose();
   u::block(P, u::motion, u::mounting) = by_mounting * mounting;
   if (params.expert.gravity_sigma_m_s2 > 0.0) {
-    Eigen::Matrix<double, 3, 6> gravity_by_mounting = Eigen::Matrix<double, 3, 6>::Zero();
-    gravity_by_mounting.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * levelled.q_WI.toRotationMatrix();
-    u::block(P, u::gravity, u::mounting) = gravity_by_mounting * mounting;
+    Eigen::Matrix<double, 3, 6> gravity_mounting_jacobian = Eigen::Matrix<double, 3, 6>::Zero();
+    gravity_mounting_jacobian.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * levelled.q_WI.toRotationMatrix();
+    u::block(P, u::gravity, u::mounting) = gravity_mounting_jacobian * mounting;
     u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
-    u::block(P, u::gravity) = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
+    u::block(P, u::gravity) = gravity_mounting_jacobian * mounting * gravity_mounting_jacobian.transpose();
     const double sigma2 = params.expert.gravity_sigma_m_s2 * params.expert.gravity_sigma_m_s2;
     // the standard deviation of gravity's magnitude is much smaller than the standard deviation of its direction
     u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
-    u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_by_mounting.transpose();
+    u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_mounting_jacobian.transpose();
   }
   u::block(P, u::calibration, u::motion) = u::block(P, u::motion, u::calibration).transpose();
   state_estimate.mean.state = levelled;
@@ -76,7 +76,7 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
 /// Computes the covariance of pose and mounting after the propagation by F. The blocks have the size of whole SIMD
 /// packets, which keeps the order of summation of the full matrix product. The rows of F for mounting and other
 /// constants are rows of the identity: mapping.md (R11).
-Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
+Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&
                 Registration::kCalibrationStart + 6 <= kMounting + kSize);
@@ -89,11 +89,11 @@ Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
 }
 
 /// Propagates the estimate from the start to the end of the sweep: mapping.md (R53).
-void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns,
-            StateEstimate& end) {
+void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Matrix& end_start_jacobian,
+            TimeNs end_ns, StateEstimate& end) {
   end.mean = at_start.mean;
-  sandwich(end_by_start, at_start.weight, end.weight);
-  sandwich(end_by_start, at_start.error, end.error);
+  propagate_covariance(end_start_jacobian, at_start.weight, end.weight);
+  propagate_covariance(end_start_jacobian, at_start.error, end.error);
   make_symmetric(end.weight);
   make_symmetric(end.error);
   end.mean.state = trajectory.state(trajectory.duration_s());
@@ -101,11 +101,11 @@ void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, co
   end.mean.state.covariance = unknowns::block(end.weight, unknowns::motion);
 }
 
-[[gnu::noinline]] void sandwich(const Matrix& F, const Matrix& P, Matrix& out) {
+[[gnu::noinline]] void propagate_covariance(const Matrix& F, const Matrix& P, Matrix& out) {
   out.noalias() = F * P * F.transpose();
 }
 
-Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {
+Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {
   const Eigen::Matrix3d R = q_WI.toRotationMatrix();
   Eigen::Matrix<double, 6, 6> B = Eigen::Matrix<double, 6, 6>::Zero();
   B.topLeftCorner<3, 3>() = -R * so3::hat(p_IL_m);
@@ -114,9 +114,9 @@ Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, con
   return B;
 }
 
-Matrix invertible(const Matrix& covariance) {
+Matrix make_invertible(const Matrix& covariance) {
   Matrix out = covariance;
-  out.diagonal().array() += unknowns::kLeastVariance;
+  out.diagonal().array() += unknowns::kMinVariance;
   return out;
 }
 

@@ -27,13 +27,13 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
 /// Computes F P F^T into `out`, which must be another matrix than P. The function needs 32 KiB of stack, so callers
 /// should not have matrices on the stack.
-void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
+void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
 /// Returns the blocks of the product F errors F^T that involve the pose or the mounting. F is the result of
 /// unknowns_at(). All other blocks of the returned matrix are zero. The returned blocks equal the blocks of the full
 /// product bit for bit, at a third of the cost. The low cost matters because the function is called for each pose of a
 /// recording.
-Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
+Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// MotionErrors is the covariance of the errors of position, attitude and velocity in W.
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
@@ -46,14 +46,14 @@ MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Ma
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors);
 
 /// Propagates the estimate to the end of the segment, at `end_ns`. `trajectory` is the motion of the estimate's mean.
-void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
-            TimeNs end_ns, StateEstimate& end);
+void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
+            const Registration::Matrix& end_start_jacobian, TimeNs end_ns, StateEstimate& end);
 
 /// Returns the derivative of the IMU's pose error by mounting errors for an exact lidar pose, at the given attitude of
 /// the IMU. The derivative is K of mapping.md (R54).
-Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
+Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
 /// Returns the covariance with variances of 0 replaced by small variances, so that the matrix can be inverted.
-Registration::Matrix invertible(const Registration::Matrix& covariance);
+Registration::Matrix make_invertible(const Registration::Matrix& covariance);
 
 }  // namespace tumble::mapping

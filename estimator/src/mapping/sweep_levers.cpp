@@ -13,7 +13,7 @@ namespace tumble {
 namespace {
 
 constexpr int kLanes = 8;
-constexpr double kForever_s = std::numeric_limits<double>::infinity();
+constexpr double kNoEnd_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
 /// Points in one interval of the trajectory: seconds since the start of the interval, positions in I, and results.
@@ -47,7 +47,7 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
   for (std::size_t first = 0; first < points.size();) {
     const Interval& now = interval_at(std::clamp<double>(points[first].t_s, from_s, to_s), hint);
     const double begin_s = hint == 0 ? from_s : now.start_s;
-    const double end_s = hint + 1 < intervals_.size() ? intervals_[hint + 1].start_s : kForever_s;
+    const double end_s = hint + 1 < intervals_.size() ? intervals_[hint + 1].start_s : kNoEnd_s;
     const double rate2 = now.rate_I_rad_s.squaredNorm();
     Lanes p;
     bool small = true;

@@ -69,9 +69,9 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<SweepBoundary> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("boundary.state_estimate", s.state_estimate);
-  visit("boundary.end_by_start", s.end_by_start);
+  visit("boundary.end_start_jacobian", s.end_start_jacobian);
   visit("boundary.deficit_share", s.deficit_factor);
-  visit("boundary.railed_velocity_m2_s2", s.railed_velocity_m2_s2);
+  visit("boundary.clipped_velocity_m2_s2", s.clipped_velocity_m2_s2);
   visit("boundary.constrained", s.constrained);
 }
 
@@ -123,7 +123,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<WindowSweep> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("sweep.predicted", s.predicted);
-  visit("sweep.by_before", s.by_before);
+  visit("sweep.jacobian_previous", s.jacobian_previous);
   visit("sweep.filtered", s.filtered);
   visit("sweep.smoothed", s.smoothed);
   visit("sweep.samples", s.samples);

@@ -14,7 +14,7 @@ namespace {
 
 /// Returns the largest standard deviation of each axis over the samples of the segment in which the axis was clipped.
 /// Samples after the segment do not affect the result.
-Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
+Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
     if (sample.from_ns >= end_ns) break;
@@ -27,7 +27,7 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
 
 /// Returns the signed factors s_j of the saturation deficit for a sample: mapping.md (R8). The factors are proportional
 /// to the standard deviation of the sample's rate.
-Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
+Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
@@ -90,7 +90,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
-  const Eigen::Vector3d sigma = least_known(samples, end_ns);
+  const Eigen::Vector3d sigma = max_rate_sigma(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
   next.preintegrated_velocity_m_s = next.preintegrated_position_m = next.rate_I_rad_s = next.specific_force_W_m_s2 =
@@ -103,7 +103,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     // a segment of zero length still gets one interval, so that the trajectory can be evaluated
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
-    const Eigen::Vector3d share = signed_shares(sample, sigma);
+    const Eigen::Vector3d share = deficit_factors(sample, sigma);
     clipped_axes_ |= sample.clipped_axes & 7;
     Interval& now = intervals_.emplace_back(next);
     now.start_s = seconds(from - start.time_ns);

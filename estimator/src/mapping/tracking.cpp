@@ -7,27 +7,28 @@ namespace {
 
 constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation: a single sweep may fit by chance
 
-bool is_found(Placement placement) {
-  return placement == Placement::found || placement == Placement::relocalisation_unconfirmed;
+bool is_registered(RegistrationOutcome placement) {
+  return placement == RegistrationOutcome::found || placement == RegistrationOutcome::relocalisation_unconfirmed;
 }
 
 }  // namespace
 
-TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict) {
-  const int failed = is_found(placement) ? 0 : failed_searches(before) + (placement == Placement::failed);
+TrackingState after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict) {
+  const int failed =
+      is_registered(placement) ? 0 : failed_searches(before) + (placement == RegistrationOutcome::failed);
   if (verdict == SweepVerdict::rejected) return Lost{consecutive_rejected_sweeps(before) + 1, failed};
-  if (is_lost(before) && placement == Placement::relocalisation_unconfirmed)
+  if (is_lost(before) && placement == RegistrationOutcome::relocalisation_unconfirmed)
     return Relocalised{consecutive_rejected_sweeps(before), failed_searches(before), 0};
   if (const Relocalised* found = std::get_if<Relocalised>(&before); found != nullptr && found->agreeing + 1 < kAgreeing)
     return Relocalised{found->after_sweeps, found->failed_searches, found->agreeing + 1};
   return Tracking{failed};
 }
 
-bool contradicts(const TrackingState& before, Placement placement) {
-  return is_unconfirmed(before) && placement != Placement::found;
+bool contradicts(const TrackingState& before, RegistrationOutcome placement) {
+  return is_unconfirmed(before) && placement != RegistrationOutcome::found;
 }
 
-Lost given_up(const TrackingState& relocalised) {
+Lost after_reverted_relocalisation(const TrackingState& relocalised) {
   const Relocalised* found = std::get_if<Relocalised>(&relocalised);
   if (found == nullptr) return {};
   return {found->after_sweeps + 1 + found->agreeing, found->failed_searches + 1};

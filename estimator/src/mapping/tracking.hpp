@@ -32,20 +32,20 @@ struct Relocalised {
 
 using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>;
 
-/// Placement is the result of registering one sweep.
-enum class Placement : std::uint8_t {
+/// RegistrationOutcome is the result of registering one sweep.
+enum class RegistrationOutcome : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
   relocalisation_unconfirmed,  ///< found by a search, but not yet confirmed
   found,
 };
 
-TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict);
+TrackingState after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict);
 
 /// Returns whether a sweep with the given placement contradicts the relocalisation.
-bool contradicts(const TrackingState& before, Placement placement);
+bool contradicts(const TrackingState& before, RegistrationOutcome placement);
 /// Returns the state after a relocalisation is reverted.
-Lost given_up(const TrackingState& relocalised);
+Lost after_reverted_relocalisation(const TrackingState& relocalised);
 
 bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);

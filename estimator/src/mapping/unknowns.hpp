@@ -27,10 +27,10 @@ inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
 inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
 /// Variance of an unknown whose prior is exact; the variance is above 0 so that the prior can be inverted.
-inline constexpr double kLeastVariance = 1e-12;
+inline constexpr double kMinVariance = 1e-12;
 /// Largest squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
 /// chi-square with nine degrees of freedom. See mapping.md (R25), (R71).
-inline constexpr double kAgrees = 16.9;
+inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 
 /// Returns the index of an axis of the saturation deficit at a knot.

@@ -33,7 +33,7 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
 
 /// Computes the squared distances from a query to the slabs of cells with offsets -reach to reach along one axis.
 /// `fraction` is the query's position within its own cell, in cells.
-void slab_distances(float fraction, float voxel_m, int reach, float* distance2) {
+void axis_distances2(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
     distance2[d + reach] = cells * cells * voxel_m * voxel_m;
@@ -86,7 +86,7 @@ class VoxelMap::Rows {
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
     low_ = Group::of(cell.array() - reach);
     across_ = Group::of(cell.array() + reach).x() - low_.x() + 1;
-    groups_.fill(kUnasked);
+    groups_.fill(kNotSearched);
   }
 
   /// Returns the occupied cells of a row as a bit mask, starting with the smallest x.
@@ -108,11 +108,11 @@ class VoxelMap::Rows {
  private:
   static constexpr int kAcross =
       (2 * kReachMax + Group::kMask) / (Group::kMask + 1) + 1;  // maximum number of groups along an axis
-  static constexpr std::uint32_t kUnasked = SpatialHash::kAbsent - 1;
+  static constexpr std::uint32_t kNotSearched = SpatialHash::kAbsent - 1;
 
   std::uint32_t group_of(const Eigen::Vector3i& away) {
     std::uint32_t& group = groups_[static_cast<std::size_t>((away.z() * kAcross + away.y()) * kAcross + away.x())];
-    if (group == kUnasked) group = map_.group_index_.find(SpatialHash::key(low_ + away));
+    if (group == kNotSearched) group = map_.group_index_.find(SpatialHash::key(low_ + away));
     return group;
   }
 
@@ -283,7 +283,7 @@ void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neig
   const Eigen::Vector3f fraction = query * cells_per_m_ - cell.cast<float>();
   const int reach = std::min(kReachMax, static_cast<int>(std::ceil(radius_m * cells_per_m_)));
   float slab[3][2 * kReachMax + 1];
-  for (int axis = 0; axis < 3; ++axis) slab_distances(fraction[axis], voxel_m, reach, slab[axis]);
+  for (int axis = 0; axis < 3; ++axis) axis_distances2(fraction[axis], voxel_m, reach, slab[axis]);
 
   float worst_distance2_m2 = std::min(radius_m, static_cast<float>(reach) * voxel_m);
   worst_distance2_m2 *= worst_distance2_m2;

@@ -18,7 +18,7 @@ using Pose = WorldCovariance::Pose;
 constexpr double kScale = 0.003;
 
 /// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
-Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
+Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
   unknowns::columns(G, unknowns::pose).setIdentity();
   unknowns::columns(G, unknowns::mounting) = -by_mounting;
@@ -29,9 +29,9 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
 }  // namespace
 
 /// A rotation of the map about the start moves distant points: mapping.md (R56).
-Pose WorldCovariance::by_start_mounting(const Eigen::Vector3d& p_WI_m) const {
-  Pose start = start_by_mounting_;
-  start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_by_mounting_.bottomRows<3>();
+Pose WorldCovariance::start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const {
+  Pose start = start_mounting_jacobian_;
+  start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_mounting_jacobian_.bottomRows<3>();
   return start;
 }
 
@@ -44,7 +44,7 @@ WorldCovariance WorldCovariance::of_prior_map(const WorldCovarianceParams& param
 }
 
 double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
-  const Pose P = less_mounting(joint, by_start_mounting(p_WI_m));
+  const Pose P = subtract_mounting(joint, start_mounting_jacobian(p_WI_m));
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
 }
 
@@ -54,24 +54,24 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
   by_tilt.topRows<3>() = -so3::hat(from_start_m).leftCols<2>();
   by_tilt.block<2, 2>(3, 0).setIdentity();
-  Pose P = less_mounting(joint, by_start_mounting(p_WI_m));
+  Pose P = subtract_mounting(joint, start_mounting_jacobian(p_WI_m));
   P += map_ + (params_.tilt_sigma_rad * params_.tilt_sigma_rad) * by_tilt * by_tilt.transpose();
-  P.topLeftCorner<3, 3>() += drift_m2_ + kScale * kScale * from_start_m * from_start_m.transpose();
+  P.topLeftCorner<3, 3>() += drift_covariance_m2_ + kScale * kScale * from_start_m * from_start_m.transpose();
   return P;
 }
 
 /// Adds the drift of a sweep in the direction that the surfaces constrain least: mapping.md (R61).
 void WorldCovariance::add_drift(double least_constrained_sigma_m,
                                 const Eigen::Matrix<double, 6, 1>& least_constrained_direction) {
-  const double sigma_m = params_.drift_share * std::min(least_constrained_sigma_m, params_.drift_sigma_max_m);
+  const double sigma_m = params_.drift_ratio * std::min(least_constrained_sigma_m, params_.drift_sigma_max_m);
   const Eigen::Vector3d direction = least_constrained_direction.head<3>();
-  drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
+  drift_covariance_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
 /// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
 /// The pose is more uncertain at the start and end of a sweep than in its middle. An error of the mounting is not an
 /// error of the map.
-void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
+void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
   // a rotation of the map about its last extension moves the map where the robot is now
@@ -81,8 +81,9 @@ void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory
   map_ = (moved * map_ * moved.transpose()).eval();
   map_at_W_m_ = p_WI_m;
   const Registration::Matrix F = unknowns_at(trajectory, middle_s);
-  map_ += inserted_share * inserted_share *
-          less_mounting(pose_and_mounting(F, errors), pose_by_mounting(trajectory.state(middle_s).q_WI, p_IL_m));
+  map_ += inserted_fraction * inserted_fraction *
+          subtract_mounting(propagate_pose_and_mounting(F, errors),
+                            pose_mounting_jacobian(trajectory.state(middle_s).q_WI, p_IL_m));
 }
 
 }  // namespace tumble::mapping

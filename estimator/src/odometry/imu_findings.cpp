@@ -15,11 +15,11 @@ namespace {
 
 using Kind = ImuFinding::Kind;
 
-constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
+constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
 // Fraction of hand-held samples above which a recording counts as hand-held. Measured fractions are at least 0.91 for
 // hand-held motion. For thrown bodies, the fractions are at most 0.25 with correct axes, and mostly below 0.6 with
 // wrong axes.
-constexpr double kHeldShare = 0.8;
+constexpr double kRepeatedFraction = 0.8;
 
 void add_finding(Kind kind, const Status& status, std::span<const ImuSample> samples, ImuFindings& out) {
   if (!status.ok()) out.all.push_back({kind, status, samples.empty() ? 0 : samples.front().time_ns, {}});
@@ -54,7 +54,7 @@ Status rate_unit(std::span<const ImuSample> samples) {
 }  // namespace
 
 bool ImuFindings::Readings::confirms_gyro() const {
-  return std::abs(rotation_slope - 1.0) < kSlopeRight && rotation_agreement > kSlopeAgreed;
+  return std::abs(rotation_slope - 1.0) < kSlopeTolerance && rotation_agreement > kSlopeAgreementMin;
 }
 
 bool ImuFindings::contradict() const {
@@ -88,7 +88,7 @@ ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> sam
                   plausibility.rotation_agreement(state),         plausibility.frozen_s(state),
                   plausibility.better_axis_labels(state)};
   add_finding(Kind::rate_unit, rate_unit(samples), samples, out);
-  add_finding(Kind::gravity_turn, plausibility.verdict(state), samples, out);
+  add_finding(Kind::gravity_rotation_mismatch, plausibility.verdict(state), samples, out);
   add_finding(Kind::rest_force, gravity.magnitude_verdict(at_rest), samples, out);
   return out;
 }
@@ -98,7 +98,7 @@ ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samp
   FlightSignCheck::Params params;
   params.lever_arm_m = imu.lever_arm_I_m;
   params.gyro_range_rad_s = imu.gyro_range_rad_s;
-  const bool thrown = carried_share && *carried_share < kHeldShare;
+  const bool thrown = carried_share && *carried_share < kRepeatedFraction;
   params.body = thrown ? FlightSignCheck::Body::thrown : FlightSignCheck::Body::may_be_hand_held;
   const FlightSignCheck sense(params);
   FlightSignCheck::State state;
@@ -113,7 +113,7 @@ ImuFindings check_rests(const CheckedImu& imu, std::span<const ImuSample> sample
   ImuFindings out;
   RestGravity::State& state = out.rests.emplace();
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  add_finding(Kind::turn_at_rests, gravity.verdict(state), samples, out);
+  add_finding(Kind::rest_rotation_mismatch, gravity.verdict(state), samples, out);
   return out;
 }
 
@@ -124,7 +124,7 @@ ImuFindings check_pivots(const CheckedImu& imu, std::span<const ImuSample> sampl
   const PivotCheck pivots(params);
   ImuFindings out;
   out.pivots = pivots.find(samples, rates);
-  add_finding(Kind::turn_at_pivots, pivots.verdict(*out.pivots), samples, out);
+  add_finding(Kind::pivot_rotation_mismatch, pivots.verdict(*out.pivots), samples, out);
   return out;
 }
 

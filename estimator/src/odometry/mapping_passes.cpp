@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kSearches = 3;                    // additional passes for a calibration that has not converged
+constexpr int kExtraPassesMax = 3;              // additional passes for a calibration that has not converged
 constexpr std::size_t kSweepsPerRejection = 5;  // more rejections: the pass does not determine the calibration
 
 /// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut, a clock offset would drop the
@@ -67,15 +67,16 @@ class Pass {
   }
 
   void add_reading(TimeNs to_ns) {
-    if (!input_.reading || !last_pose_ns_) return;
-    if (const auto reading = input_.reading(*last_pose_ns_, to_ns)) out_.status = out_.mapper.add_reading(*reading);
+    if (!input_.reading || !last_pose_time_ns_) return;
+    if (const auto reading = input_.reading(*last_pose_time_ns_, to_ns))
+      out_.status = out_.mapper.add_reading(*reading);
   }
 
   void add_points(const WaitingSweep& sweep) {
     MappedSweep& added = out_.sweeps.emplace_back();
     added.status = out_.mapper.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, added.report);
     if (added.report.trajectory.empty()) return;
-    last_pose_ns_ = added.report.pose.time_ns;
+    last_pose_time_ns_ = added.report.pose.time_ns;
     apply_next(std::exchange(added.report.smoothed, {}));
   }
 
@@ -94,7 +95,7 @@ class Pass {
   MappedRecording out_;
   std::size_t next_ = 0;      ///< next sample
   std::size_t smoothed_ = 0;  ///< next sweep without a smoothed trajectory
-  std::optional<TimeNs> last_pose_ns_;
+  std::optional<TimeNs> last_pose_time_ns_;
 };
 
 /// Returns the initial calibration of a pass with the stated uncertainty.
@@ -161,7 +162,7 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   double moved = 0.0;
   while (determines_calibration(out)) {
     moved = stated_calibration(started, params).deviations(out.mapper.calibration());
-    if (moved <= StatedCalibration::kDistanceMax_sigmas || passes > kSearches) break;
+    if (moved <= StatedCalibration::kDistanceMax_sigmas || passes > kExtraPassesMax) break;
     start_from(out.mapper.calibration(), started);
     again();
   }

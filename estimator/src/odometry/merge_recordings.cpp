@@ -200,7 +200,7 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
                         MergedRecordings& out) {
   out.lever_arm_m = merge.p_C_m();
   out.lever_arm_agreement = ImuMerge::lever_arm_agreement(state);
-  out.mislabelled_axes = state.senses.detected();
+  out.mislabelled_axes = state.sign_check.detected();
   for (std::size_t k = 0; k < units.index.size(); ++k) {
     const ImuMerge::Unit& unit = state.units[k];
     constexpr int kOffset = ImuMerge::kErrorCount - 1;

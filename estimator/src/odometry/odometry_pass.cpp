@@ -9,8 +9,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLeastGravity_m_s2 = 1e-3;
-constexpr double kRoom_s = 2.0;  // duration of preallocated sample memory, longer than any gap of a lidar
+constexpr double kMinGravity_m_s2 = 1e-3;
+constexpr double kPreallocated_s = 2.0;  // duration of preallocated sample memory, longer than any gap of a lidar
 
 std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
@@ -20,7 +20,7 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
 /// the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
 /// uncertain calibration, RateStream may extrapolate an impact by tens of rad/s, with a correspondingly large standard
 /// deviation.
-RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
+RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
     if ((rate.clipped_axes >> axis & 1) == 0) continue;
@@ -75,12 +75,12 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
     : rates_(rate),
       rate_state_(rates_.start()),
       mapper_(mapping),
-      scale_(mapping.expert.gravity_m_s2, samples_in(kRoom_s, rate)),
+      scale_(mapping.expert.gravity_m_s2, samples_in(kPreallocated_s, rate)),
       localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s),
-      rest_gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kLeastGravity_m_s2)}) {
-  pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
+      rest_gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kMinGravity_m_s2)}) {
+  pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kPreallocated_s), rate));
 }
 
 Status OdometryPass::add_imu(const ImuSample& sample) {
@@ -134,7 +134,7 @@ Status OdometryPass::newest(PoseState& pose, Eigen::Matrix3d* velocity_covarianc
   std::erase_if(rates, [&](const RateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
   for (RateState& rate : rates) {
     samples.push_back(classified.at(rate.time_ns));
-    rate = for_the_mapper(rate, samples.back(), rate_sigma_max_rad_s_);
+    rate = limit_rate_sigma(rate, samples.back(), rate_sigma_max_rad_s_);
   }
   return mapper_.predict(samples, rates, pose, velocity_covariance_I_m2_s2);
 }
@@ -146,7 +146,7 @@ void OdometryPass::process_rate(const RateState& rate) {
   if (last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_) return;
   last_mapped_ns_ = rate.time_ns;
   scale_.add(sample);
-  if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++rejected_samples_;
+  if (!mapper_.add_imu(sample, limit_rate_sigma(rate, sample, rate_sigma_max_rad_s_)).ok()) ++rejected_samples_;
 }
 
 void OdometryPass::flush_until(TimeNs time_ns) {

@@ -11,7 +11,8 @@
 
 namespace tumble {
 
-using odometry::filters_of, odometry::merge_params, odometry::rolling_params, odometry::sheets_of, odometry::watches_of;
+using odometry::filters_of, odometry::merge_params, odometry::rolling_params, odometry::sheets_of,
+    odometry::frozen_axis_detectors;
 
 namespace {
 
@@ -47,7 +48,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
 }
 
 /// Marks the sample of an IMU as absent.
-void leave_out(ImuSample& sample) {
+void mark_absent(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -82,7 +83,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
       outlier_filters_(filters_of(params)),
-      frozen_axis_detectors_(watches_of(params)),
+      frozen_axis_detectors_(frozen_axis_detectors(params)),
       rest_gravity_({.gravity_m_s2 = params.gravity_m_s2}),
       live_(params.lag_s <= 0.0) {}
 
@@ -150,7 +151,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
     if (outlier_filter_state_[k].delayed) {
       holds = true;
     } else {
-      leave_out(judged[k]);
+      mark_absent(judged[k]);
     }
   }
   if (holds) delayed_samples_ = judged;
@@ -188,7 +189,7 @@ Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
     const bool confirmed =
         follows && outlier_filters_[k].filter_sample(at_time(next.front().time_ns, next[k]), outlier_filter_state_[k]);
     if (!follows) OutlierFilter::finish(outlier_filter_state_[k]);
-    if (!confirmed) leave_out((*delayed_samples_)[k]);
+    if (!confirmed) mark_absent((*delayed_samples_)[k]);
   }
   const UnitRails::Samples held = *std::exchange(delayed_samples_, std::nullopt);
   const std::span<const ImuSample> inliers = std::span(held).first(next.size());
@@ -244,7 +245,7 @@ Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
     const bool frozen = finite && !frozen_axis_detectors_[k].verdict(states[k]).ok();
-    if (frozen) leave_out(samples[k]);
+    if (frozen) mark_absent(samples[k]);
     any = any || frozen;
     received = received || (finite && !frozen);
   }

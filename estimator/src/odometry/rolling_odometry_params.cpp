@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recovering a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
-constexpr double kUnknownRadiusShare = 0.05;  // prior of an unknown radius, if a known distance determines the radius
+constexpr double kUnknownRadiusSigmaRatio =
+    0.05;  // prior of an unknown radius, if a known distance determines the radius
 // Prior standard deviations of an IMU without a data sheet at an arbitrary position in the sphere.
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
@@ -84,7 +85,7 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
   if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)
-    out.filter.radius_sigma_m = kUnknownRadiusShare * out.filter.radius_m;
+    out.filter.radius_sigma_m = kUnknownRadiusSigmaRatio * out.filter.radius_m;
   return out;
 }
 
@@ -94,7 +95,7 @@ std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params) {
   return out;
 }
 
-std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params) {
+std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params) {
   std::vector<FrozenAxes> out;
   for (const RollingOdometry::Unit& unit : params.units) {
     out.emplace_back(FrozenAxes::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,

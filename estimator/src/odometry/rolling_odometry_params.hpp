@@ -17,7 +17,7 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
 
 /// Returns the data sheets, the detectors of frozen axes and the outlier filters of all units.
 std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params);
-std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params);
+std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params);
 std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params);
 
 }  // namespace tumble::odometry

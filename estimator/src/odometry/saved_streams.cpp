@@ -31,7 +31,7 @@ constexpr SavedKind kKind<RollingSmoother> = SavedKind::rolling_smoother;
 /// Creates a state before the first sample. The state is on the heap, because the state of RollingOdometry is too large
 /// for a stack.
 template <class Stream>
-std::unique_ptr<typename Stream::State> fresh_state(const Stream& stream) {
+std::unique_ptr<typename Stream::State> make_state(const Stream& stream) {
   using State = typename Stream::State;
   if constexpr (requires { stream.start(); }) return std::make_unique<State>(stream.start());
   return std::make_unique<State>();
@@ -39,7 +39,7 @@ std::unique_ptr<typename Stream::State> fresh_state(const Stream& stream) {
 
 /// Creates valid parameters. Parameters without a default get arbitrary values.
 template <class Stream>
-typename Stream::Params some_params() {
+typename Stream::Params valid_params() {
   typename Stream::Params out;
   if constexpr (requires { out.model.nominal; }) out.model.nominal = {};
   if constexpr (requires { out.rate.model.nominal; }) out.rate.model.nominal = {};
@@ -59,7 +59,7 @@ template <SavedStream Stream>
 Status load_state(std::span<const std::byte> bytes, const typename Stream::Params& params,
                   typename Stream::State& state) {
   const Stream stream(params);
-  const auto fresh = fresh_state(stream);
+  const auto fresh = make_state(stream);
   if (Status status = odometry::load(kKind<Stream>, bytes, params, *fresh); !status.ok()) return status;
   if (Status status = stream.check_state(*fresh); !status.ok()) return status;
   state = std::move(*fresh);
@@ -68,8 +68,8 @@ Status load_state(std::span<const std::byte> bytes, const typename Stream::Param
 
 template <SavedStream Stream>
 Status saved_params(std::span<const std::byte> bytes, typename Stream::Params& params) {
-  typename Stream::Params read = some_params<Stream>();
-  const auto any = fresh_state(Stream(read));
+  typename Stream::Params read = valid_params<Stream>();
+  const auto any = make_state(Stream(read));
   const Status status = odometry::load_params(kKind<Stream>, bytes, std::as_const(*any), read);
   if (status.ok()) params = read;
   return status;

@@ -12,8 +12,9 @@ namespace tumble {
 
 namespace {
 
-constexpr double kBefore_s = 0.1;       // time before the first buffered sweep, because the clocks may differ
-constexpr std::size_t kMoreShare = 20;  // the second pass may reject one sweep more than the first per this many sweeps
+constexpr double kBufferLead_s = 0.1;  // time before the first buffered sweep, because the clocks may differ
+constexpr std::size_t kSweepsPerExtraRejection =
+    20;  // the second pass may reject one sweep more than the first per this many sweeps
 // If more than one sweep in kSweepsPerRejection sweeps is rejected, the second pass does not use the calibration.
 constexpr std::size_t kSweepsPerRejection = 5;
 
@@ -40,7 +41,7 @@ SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
       rest_detector_(mapping::mapper_rest(mapping)) {
   require_valid_fields(params);
   if (!enabled_) return;
-  const double most_s = params.rest_s + kBefore_s + params.abandon_after_s;
+  const double most_s = params.rest_s + kBufferLead_s + params.abandon_after_s;
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
@@ -59,7 +60,7 @@ void SecondPass::store(const ImuSample& sample) {
   if (!motion_start_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
-    samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBefore_s));
+    samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBufferLead_s));
   } else if (seconds(sample.time_ns - buffer_start_ns()) > params_.abandon_after_s) {
     abandon();
     return;
@@ -181,7 +182,8 @@ void SecondPass::replace_first_pass(OdometryPass& first) {
   pass_->flush_until(first.smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;
-  if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!last_sweep_rejected_ || first_lost)) {
+  if (rejected_ <= rejected_by_first_ + sweeps_.size() / kSweepsPerExtraRejection &&
+      (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*pass_));
     applied_ = true;
     // an early second pass replaces the first pass when the regular second pass follows

@@ -151,15 +151,15 @@ std::optional<double> TumblingOdometry::estimated_jitter_s() const {
 
 Status TumblingOdometry::health() const {
   if (is_whole()) return health_of_recording();
-  const Status of_imu = pass_.rates().rate().health(pass_.rate_state().rate);
-  if (!of_imu.ok()) return of_imu;
-  if (const Status of_force = pass_.check_force_at_rest(); !of_force.ok()) return of_force;
-  const Status of_ranges = pass_.sweep_scale().verdict();
-  if (!of_ranges.ok()) return of_ranges;
-  if (const Status of_vertical = mapper().check_vertical(); !of_vertical.ok()) return of_vertical;
-  if (const Status of_map = mapper().localised(); !of_map.ok()) return of_map;
-  const Status of_localisation = pass_.localisation().current_verdict();
-  return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
+  const Status imu_status = pass_.rates().rate().health(pass_.rate_state().rate);
+  if (!imu_status.ok()) return imu_status;
+  if (const Status force_status = pass_.check_force_at_rest(); !force_status.ok()) return force_status;
+  const Status range_status = pass_.sweep_scale().verdict();
+  if (!range_status.ok()) return range_status;
+  if (const Status vertical_status = mapper().check_vertical(); !vertical_status.ok()) return vertical_status;
+  if (const Status map_status = mapper().localised(); !map_status.ok()) return map_status;
+  const Status localisation_status = pass_.localisation().current_verdict();
+  return localisation_status.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : localisation_status;
 }
 
 Status TumblingOdometry::finish(const SweepProgress& on_sweep) {

@@ -104,8 +104,8 @@ RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& par
   out.rate.expert.rests = stream.rate.expert.rests;
   out.evidence = stream.evidence;
   out.hand_held = stream.hand_held.body;
-  out.carried_min = stream.carried_min;
-  out.near_s = stream.near_s;
+  out.hand_held_probability_min = stream.hand_held_probability_min;
+  out.segment_gap_max_s = stream.segment_gap_max_s;
   return out;
 }
 

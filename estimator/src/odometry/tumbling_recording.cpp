@@ -52,9 +52,10 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
 /// Returns the finding about the whole recording with the highest priority.
 Status verdict(const RecordingEstimate& whole, const StatedCalibration& stated) {
   if (!whole.findings.all.empty()) return whole.findings.all.front().status;
-  if (const Status of_ranges = whole.scale.verdict(); !of_ranges.ok()) return of_ranges;
-  if (const Status of_vertical = whole.mapped.mapper.check_vertical(); !of_vertical.ok()) return of_vertical;
-  if (const Status of_tracking = whole.mapped.localisation.verdict(); !of_tracking.ok()) return of_tracking;
+  if (const Status range_status = whole.scale.verdict(); !range_status.ok()) return range_status;
+  if (const Status vertical_status = whole.mapped.mapper.check_vertical(); !vertical_status.ok())
+    return vertical_status;
+  if (const Status tracking_status = whole.mapped.localisation.verdict(); !tracking_status.ok()) return tracking_status;
   return whole.mapped.calibration_is_off() ? stated.verdict(whole.mapped.mapper.calibration()) : Status{};
 }
 

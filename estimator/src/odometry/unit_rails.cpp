@@ -10,7 +10,7 @@ namespace {
 constexpr int kReadings = 512;               // stored readings per triad: some seconds near the extremes
 constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores larger ranges
 
-StreamingClippingFinder::Params watch_params(const ImuSheet& sheet) {
+StreamingClippingFinder::Params clipping_finder_params(const ImuSheet& sheet) {
   StreamingClippingFinder::Params out;
   out.readings_max = kReadings;
   if (sheet.gyro_range_rad_s > 0.0 && sheet.gyro_range_rad_s <= kStatedMax_rad_s)
@@ -22,7 +22,8 @@ StreamingClippingFinder::Params watch_params(const ImuSheet& sheet) {
 }  // namespace
 
 UnitRails::UnitRails(std::span<const ImuSheet> sheets) {
-  for (const ImuSheet& sheet : sheets) units_.push_back({StreamingClippingFinder(watch_params(sheet)), sheet});
+  for (const ImuSheet& sheet : sheets)
+    units_.push_back({StreamingClippingFinder(clipping_finder_params(sheet)), sheet});
 }
 
 UnitRails::State UnitRails::start() const {

@@ -10,7 +10,7 @@ LastPass::LastPass(const RollingParams& params, std::span<const ImuSample> sampl
     : params_(params), samples_(samples), path_(path), distance_(distance), length_(segment) {
   kept_.resize(std::max<std::size_t>(1, (path.size() + length_ - 1) / length_));
   records_.reserve(std::min(path.size(), length_));
-  horizontal_m2_.reserve(path.size());
+  horizontal_variance_m2_.reserve(path.size());
 }
 
 void LastPass::run(const Checkpoint& start, std::size_t cut) {
@@ -22,15 +22,15 @@ void LastPass::run(const Checkpoint& start, std::size_t cut) {
     forward(segment, end_);
     nodes += records_.size();
   }
-  horizontal_m2_.resize(nodes);
+  horizontal_variance_m2_.resize(nodes);
   for (std::size_t segment = kept_.size(); segment-- > 0;) {
-    if (loaded_ != segment) go_again(segment);
+    if (loaded_ != segment) recompute_segment(segment);
     kept_[segment].end = adjoint_;
-    smooth_back(adjoint_, records_);
+    backward_pass(adjoint_, records_);
     smoothed_start_ = -output_covariance_rows(kept_[segment].start.filter.P) * adjoint_.lambda;
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const auto& P = records_[k].smoothed_P;
-      horizontal_m2_[first_of(segment) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
+      horizontal_variance_m2_[first_of(segment) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
     }
   }
 }
@@ -42,7 +42,7 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
   loaded_ = segment;
   records_.clear();
   points_.clear();
-  moved_at_end_.setZero();
+  distance_correction_.setZero();
   auto& [filter, cursor] = at;
   if (segment == 0 && cursor.next == 1) store(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
   RollingIntegrals sums;
@@ -72,18 +72,19 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
         const ImuSample& sample = samples_[k];
         so_far.add(sample, seconds(sample.time_ns - last_ns));
         last_ns = sample.time_ns;
-        store(last_ns, carried_on(params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s, node);
+        store(last_ns, extrapolate_nominal(params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s, node);
       }
       if (reading.whole) integrate(params_, average, filter.nominal, sums);
     }
     cursor = readings.cursor();
   }
   if (distance_ && !records_.empty()) {
-    moved_at_end_ = measure_distance(params_, distance_->distance_m, distance_->sigma_m, records_.back(), filter);
+    distance_correction_ =
+        measure_distance(params_, distance_->distance_m, distance_->sigma_m, records_.back(), filter);
   }
 }
 
-void LastPass::go_again(std::size_t segment) {
+void LastPass::recompute_segment(std::size_t segment) {
   again_ = kept_[segment].start;
   forward(segment, again_);
 }
@@ -95,22 +96,22 @@ void LastPass::store(TimeNs time_ns, const RollingNominal& nominal, const Eigen:
 
 void LastPass::load(std::size_t segment) {
   if (loaded_ == segment) return;
-  const Kept& kept = kept_[segment];
-  go_again(segment);
+  const SegmentEnds& kept = kept_[segment];
+  recompute_segment(segment);
   adjoint_ = kept.end;
-  smooth_back(adjoint_, records_);
+  backward_pass(adjoint_, records_);
   smoothed_start_ = -output_covariance_rows(kept.start.filter.P) * adjoint_.lambda;
 }
 
 void LastPass::give(std::size_t until, const std::function<void(const Smoothed&)>& take) {
   for (std::size_t segment = 0; segment < kept_.size() && first_of(segment) < until; ++segment) {
     load(segment);
-    give_segment(segment, until, take);
+    report_segment(segment, until, take);
   }
 }
 
-void LastPass::give_segment(std::size_t segment, std::size_t until,
-                            const std::function<void(const Smoothed&)>& take) const {
+void LastPass::report_segment(std::size_t segment, std::size_t until,
+                              const std::function<void(const Smoothed&)>& take) const {
   const std::size_t first = first_of(segment);
   const Checkpoint& start = kept_[segment].start;
   for (const SamplePoint& point : points_) {
@@ -118,7 +119,7 @@ void LastPass::give_segment(std::size_t segment, std::size_t until,
     const std::size_t next = point.node - first;
     const bool inside = next < records_.size(), at_start = next == 0;
     const Reported from = at_start ? smoothed_start_ : records_[next - 1].smoothed;
-    Reported error = inside ? from : Reported(from + moved_at_end_);
+    Reported error = inside ? from : Reported(from + distance_correction_);
     if (inside) {
       const TimeNs from_ns = at_start ? start.reading.time_ns : records_[next - 1].time_ns;
       const double length_s = seconds(records_[next].time_ns - from_ns);

@@ -49,9 +49,9 @@ class LastPass {
   /// cut().
   void run(const Checkpoint& start, std::size_t cut);
 
-  std::size_t nodes() const { return horizontal_m2_.size(); }
+  std::size_t nodes() const { return horizontal_variance_m2_.size(); }
   /// Returns the smoothed variance of the IMU's horizontal position at each node.
-  std::span<const double> horizontal_m2() const { return horizontal_m2_; }
+  std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
   const Checkpoint& cut() const { return cut_; }
   const PathFilter& end() const { return end_.filter; }
 
@@ -59,25 +59,25 @@ class LastPass {
   void give(std::size_t until, const std::function<void(const Smoothed&)>& take);
 
  private:
-  struct Kept {
+  struct SegmentEnds {
     Checkpoint start;
     Adjoint end;
   };
 
   std::size_t first_of(std::size_t segment) const { return segment * length_; }
   void forward(std::size_t segment, Checkpoint& at);
-  void go_again(std::size_t segment);
+  void recompute_segment(std::size_t segment);
   void load(std::size_t segment);
   void store(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
-  void give_segment(std::size_t segment, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
+  void report_segment(std::size_t segment, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
   std::span<const PathNode> path_;
   std::optional<Distance> distance_;
   std::size_t length_;
-  std::vector<Kept> kept_;
-  std::vector<double> horizontal_m2_;
+  std::vector<SegmentEnds> kept_;
+  std::vector<double> horizontal_variance_m2_;
   std::size_t cut_after_ = 0;
   Checkpoint cut_, end_;
   Checkpoint again_;  ///< filter in a segment that is recomputed
@@ -87,7 +87,7 @@ class LastPass {
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  Reported moved_at_end_ = Reported::Zero();  ///< correction due to the measured distance
+  Reported distance_correction_ = Reported::Zero();  ///< correction due to the measured distance
 };
 
 }  // namespace tumble::rolling

@@ -20,13 +20,13 @@ inline bool heading_lost(const Covariance& P) {
 
 /// Removes the effect of a rotation of the whole run from the derivative of the contact velocity, rolling.md (R35). The
 /// true effect is zero while the contact point does not move.
-inline void blind_to_heading(Contact& c) {
+inline void remove_heading_effect(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
 
 /// Returns how a correction `x` of the nominal changes the effect of a rotation about the vertical on velocity,
 /// position and slope, rolling.md (R36).
-inline Vector turned_by_heading(const Vector& x) {
+inline Vector heading_effect(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
   out.segment<2>(kVelocity) = turned(x.segment<2>(kVelocity));

@@ -32,7 +32,7 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s); !bad.ok())
       return bad;
-    if (dt_s > params_.expert.gap.gap_from_s) {
+    if (dt_s > params_.expert.gap.gap_min_duration_s) {
       bridge(sample, dt_s, state, listener);
     } else {
       state.average.add(sample, dt_s);
@@ -175,7 +175,8 @@ void RollingFilter::flag_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = may_slip(state.hypotheses[0].mode);
   if (!event) state.variance_before_event_m2 = variance_m2;
-  state.uncertain = event && variance_m2 - state.variance_before_event_m2 > squared(params_.expert.modes.uncertain_m);
+  state.uncertain =
+      event && variance_m2 - state.variance_before_event_m2 > squared(params_.expert.modes.event_sigma_growth_m);
 }
 
 void RollingFilter::weigh_modes(State& state) {
@@ -208,7 +209,7 @@ void RollingFilter::constrain_position(State& state) const {
 /// Moves the errors of the best hypothesis into the nominal trajectory and the constants. The states of all hypotheses
 /// are then relative to the best hypothesis.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
-  const Vector x = state.hypotheses[0].x, turned = rolling::turned_by_heading(x);
+  const Vector x = state.hypotheses[0].x, turned = rolling::heading_effect(x);
   rolling::move_linearisation_point(x, state.nominal);
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
@@ -224,7 +225,7 @@ const Eigen::Vector3d& RollingFilter::newest_rate_rad_s(const State& state) {
 }
 
 void RollingFilter::report(State& state) const {
-  const RollingNominal nominal = rolling::carried_on(params_, state.average, state.nominal);
+  const RollingNominal nominal = rolling::extrapolate_nominal(params_, state.average, state.nominal);
   const Eigen::Vector3d& rate = newest_rate_rad_s(state);
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);

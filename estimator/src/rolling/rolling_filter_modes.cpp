@@ -18,18 +18,22 @@ namespace tumble {
 
 namespace {
 
-constexpr double kDropped = -120.0;   // log weight relative to the best hypothesis, below which a hypothesis is pruned
-constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest; limits the effect of a single bad node
-constexpr double kLongAgo_s = 1.0;    // time in one mode after which the start of the mode no longer matters
+constexpr double kPruneLogWeight =
+    -120.0;  // log weight relative to the best hypothesis, below which a hypothesis is pruned
+constexpr double kRestLogLikelihoodMin =
+    -60.0;                             // minimum log likelihood at rest; limits the effect of a single bad node
+constexpr double kModeAgeMax_s = 1.0;  // time in one mode after which the start of the mode no longer matters
 // Mixture for the horizontal change of the contact point's velocity per node during slip. The component kPlateau_m_s is
 // as narrow as grip. A wider component would classify each phase of constant slip velocity as grip.
-constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
-constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of contact velocity, on a bump
+constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
+                 kSteadyFraction = 0.35;
+constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
+                 kRollOverFraction = 0.7;  // vertical change of contact velocity, on a bump
 constexpr std::int64_t kAgesApart = 4;
 // Minimum number of hypotheses that do not contain the last mode change of the best hypothesis. A slip with constant
 // spin looks like grip until the slip ends. When the slip ends, a hundred hypotheses with other recent modes have
 // higher weights than the slip.
-constexpr std::size_t kDissenters = 6;
+constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;         // cost per node, between the residuals of a slope and of grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // factor for a slope after a bump, because the foot of a ramp is a bump
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
@@ -46,23 +50,24 @@ double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
   };
-  return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
+  return std::log(kRollOverFraction * density(kRollOverSigma_m_s) + (1.0 - kRollOverFraction) * density(kHitSigma_m_s) +
+                  1e-300);
 }
 
 /// Returns the log density of a horizontal change of the contact velocity u per node: m2 of rolling.md (R24). During
 /// slip, the contact velocity is constant, drifts, or jumps. `square` is the squared length of the change.
 double log_change(double square) {
   double density = 0.0;
-  for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
-                                     std::pair(1.0 - kPlateauShare - kSteadyShare, kJump_m_s)}) {
+  for (const auto& [share, sigma] : {std::pair(kPlateauFraction, kPlateau_m_s), std::pair(kSteadyFraction, kSteady_m_s),
+                                     std::pair(1.0 - kPlateauFraction - kSteadyFraction, kJump_m_s)}) {
     density += share * std::exp(-0.5 * square / (sigma * sigma)) / (2.0 * std::numbers::pi * sigma * sigma);
   }
   return std::log(density + 1e-300);
 }
 
 /// Returns the log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R23).
-double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
-                 const RollingParams& params) {
+double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
+                      const RollingParams& params) {
   RollingFilter::Vector x = h.x;
   Eigen::Matrix<double, 3, rolling::kStates> H = c.H;
   const bool slope_reset = rolling::resets_slope(h.mode, mode);
@@ -149,7 +154,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
       if (mode != h.mode && bound) continue;
       if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a gap provides no evidence of a mode
-      if (!in_gap) likelihood = may_slip(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
+      if (!in_gap) likelihood = may_slip(mode) ? log_moving(c, h, mode, u, params) : log_stationary(c, h, mode, params);
       const double impact = mode == RollingMode::bump
                                 ? 0.0
                                 : state.sums.unexplained_impact_m_s / params.expert.contact.unexplained_impact_m_s;
@@ -167,11 +172,11 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
 /// Returns the start node of a mode after merging. Mode starts that are close in time merge, and the merging distance
 /// grows with the age of the starts.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
-  const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
-  const std::int64_t age = std::min(node - mode_start_node, long_ago);
+  const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
+  const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
   std::int64_t width = 1;
   while (width * kAgesApart < age) width *= 2;
-  return mode_start_node >= node - long_ago ? mode_start_node / width * width : node - long_ago;
+  return mode_start_node >= node - mode_age_max_nodes ? mode_start_node / width * width : node - mode_age_max_nodes;
 }
 
 struct Kept {
@@ -180,13 +185,13 @@ struct Kept {
 };
 
 /// Selects the candidates that remain: the most probable candidate for each mode and start. The function reserves
-/// `kDissenters` places for candidates that do not contain the last mode change of the best candidate.
+/// `kMinDissentingHypotheses` places for candidates that do not contain the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
-    if (kept.count == kept.of.size() || candidate.log_weight < candidates[0].log_weight + kDropped) break;
-    const bool dissents = candidate.mode_start_node < candidates[0].mode_start_node;
-    if (kept.count + kDissenters >= kept.of.size() && !dissents) continue;
+    if (kept.count == kept.of.size() || candidate.log_weight < candidates[0].log_weight + kPruneLogWeight) break;
+    const bool has_earlier_mode = candidate.mode_start_node < candidates[0].mode_start_node;
+    if (kept.count + kMinDissentingHypotheses >= kept.of.size() && !has_earlier_mode) continue;
     const std::int64_t since = beginning(candidate.mode_start_node, node, node_s);
     const auto same = [&](const Candidate& other) {
       return other.mode == candidate.mode && beginning(other.mode_start_node, node, node_s) == since;
@@ -235,7 +240,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 /// Updates the weights of the hypotheses and selects the most probable hypotheses: rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
-  if (heading_lost) rolling::blind_to_heading(c);
+  if (heading_lost) rolling::remove_heading_effect(c);
   const double node_s = state.sums.node_s;
   Candidates candidates;
   const std::span<const Candidate> ordered = propose(params_, c, state, candidates);
@@ -246,7 +251,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   for (std::size_t k = 0; k < kept.count; ++k) {
     const Candidate& candidate = kept.of[k];
     Hypothesis& h = state.hypotheses[k];
-    rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
+    rolling::update_slope_for_mode(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
     rolling::contact_rows(
         params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.P,
         [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.P); });
@@ -278,7 +283,7 @@ void RollingFilter::correct_at_rest(State& state) const {
                            likelihood += log_normal(measured - h.x[index], h.P(index, index) + variance);
                          rolling::update(index, measured, variance, h.x, h.P);
                        });
-    h.log_weight += std::max(likelihood, kRestFloor);
+    h.log_weight += std::max(likelihood, kRestLogLikelihoodMin);
     h.parent = k;
     if (may_slip(h.mode)) {
       h.mode_start_node = state.node;
@@ -294,14 +299,14 @@ void RollingFilter::correct_at_rest(State& state) const {
   });
   rearrange(order, count, state.hypotheses);
   // After some rest, the hypotheses agree about the present. One hypothesis is then sufficient.
-  const bool rested = seconds(state.rest.within_bias_since_ns) > kLongAgo_s;
+  const bool rested = seconds(state.rest.within_bias_since_ns) > kModeAgeMax_s;
   if (rested && state.count > 1) state.pruned_position_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {
     Hypothesis& h = state.hypotheses[k];
     h.log_weight -= best;
-    if (k == 0 || (!rested && h.log_weight > kDropped)) kept = k + 1;
+    if (k == 0 || (!rested && h.log_weight > kPruneLogWeight)) kept = k + 1;
   }
   keep_most_probable(kept, state);
 }

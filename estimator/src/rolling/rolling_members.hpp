@@ -40,9 +40,9 @@ void members(Self& s, Visitor& visit) {
   visit("sums.unexplained_impact_m_s", s.unexplained_impact_m_s);
   visit("sums.subsample_saturation_W_m_s", s.subsample_saturation_W_m_s);
   visit("sums.gap_s", s.gap_s);
-  visit("sums.gap_rad2", s.gap_rad2);
-  visit("sums.gap_rate_rad2_s", s.gap_rate_rad2_s);
-  visit("sums.gap_speed_m2_s2", s.gap_speed_m2_s2);
+  visit("sums.gap_angle_variance_rad2", s.gap_angle_variance_rad2);
+  visit("sums.gap_rate_variance_rad2_s", s.gap_rate_variance_rad2_s);
+  visit("sums.gap_speed_variance_m2_s2", s.gap_speed_variance_m2_s2);
   visit("sums.node_s", s.node_s);
 }
 
@@ -104,7 +104,7 @@ void members(Self& s, Visitor& visit) {
   visit("committed.nominal", s.nominal);
   visit("committed.P", s.P);
   visit("committed.mode", s.mode, RollingMode::rough);
-  visit("committed.event_variance_m2", s.event_variance_m2);
+  visit("committed.event_start_variance_m2", s.event_start_variance_m2);
   visit("committed.constrained_p_WG_m", s.constrained_p_WG_m);
   visit("committed.position_constrained", s.position_constrained);
   visit("committed.last_time_ns", s.last_time_ns);

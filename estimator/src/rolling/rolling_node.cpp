@@ -23,15 +23,15 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
   return {slope.x(), slope.y(), upward(slope)};
 }
 
-constexpr double kUsual_m_s2 = 3.0;                   // maximum difference of a force from gravity without an impact
-constexpr double kOffCentre_m = 0.02;                 // offset of an IMU, explains forces in fast rotation
-constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // as fractions of the accelerometer's range
-constexpr double kForceTilt_rad = 0.35;               // direction error of a force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;      // if the standard deviation is larger, a force levels the tilt
-constexpr double kUncertainTilt_rad = 0.1;            // the same limit at rest, where the force is gravity
+constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference of a force from gravity without an impact
+constexpr double kImuOffset_m = 0.02;        // offset of an IMU, explains forces in fast rotation
+constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
+constexpr double kForceTilt_rad = 0.35;                           // direction error of a force in motion
+constexpr double kLostTilt_rad = kForceTilt_rad;  // if the standard deviation is larger, a force levels the tilt
+constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
 // Difference between force and gravity, as a fraction of gravity, above which the sphere is pushed or rotates fast.
-constexpr double kPush = 0.15;
+constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
@@ -40,8 +40,9 @@ constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, cau
 // Limits of rate and angular acceleration around a gap. If the rates before and after a gap are below kGapRate_rad_s,
 // the sphere was hardly pushed during the gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
-constexpr double kGapTurned = 0.5;  // change of velocity in a gap, as a fraction of the rolling velocity's change
-constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a gap, as a fraction of the gap
+constexpr double kGapVelocityChangeRatio =
+    0.5;  // change of velocity in a gap, as a fraction of the rolling velocity's change
+constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
 
@@ -145,7 +146,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
   const bool lost = (sample.device_clip_flags & kClipGyro) != 0 ||
                     (beyond && !(params.expert.rails.recovered_rate_sigma_rad_s > 0.0));
-  const bool unturned = lost || beyond || known == Force::unknown;
+  const bool has_unknown_rate = lost || beyond || known == Force::unknown;
   const bool railed =
       (sample.device_clip_flags & kClipAccel) != 0 || reading.force_peak_m_s2 >= params.accel_range_m_s2;
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
@@ -153,20 +154,21 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.last_rate_I_rad_s = w_raw;
   // If the rate is unknown, the direction of the force is unknown. With an unknown direction of the force, the
   // integration keeps the velocity of the centre constant: rolling.md (R7).
-  const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
+  const Eigen::Vector3d centre_velocity_change_m_s = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
-  if (railed && !unturned) {
-    const RailedForce force = railed_force(sample, f, q_mid.conjugate() * ((keeps_centre + fallen) / dt_s));
+  if (railed && !has_unknown_rate) {
+    const RailedForce force =
+        railed_force(sample, f, q_mid.conjugate() * ((centre_velocity_change_m_s + fallen) / dt_s));
     f = force.force_m_s2;
     least = force.least_m_s2;
   }
-  const Eigen::Vector3d gained = unturned ? keeps_centre : Eigen::Vector3d(R_T * f - fallen);
+  const Eigen::Vector3d gained = has_unknown_rate ? centre_velocity_change_m_s : Eigen::Vector3d(R_T * f - fallen);
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
   sums.rotation_integral_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.rotation_rate_integral.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
-  if (!unturned) {  // otherwise no error of force or attitude affects the velocity
+  if (!has_unknown_rate) {  // otherwise no error of force or attitude affects the velocity
     sums.rotation_integral_used_force_s += R_T;
     sums.force_integral_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.rotation_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
@@ -175,24 +177,25 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.rate_integral_I_rad += dt_s * w;
   sums.force_integral_I_m_s += dt_s * f_raw;
   sums.squared_rate_integral_rad2_s += dt_s * w.squaredNorm();
-  const double about_gravity = std::abs(f.norm() - gravity) - kUsual_m_s2;
-  sums.impact_m_s += dt_s * std::max(0.0, about_gravity);
-  sums.unexplained_impact_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
+  const double excess_over_gravity_m_s2 = std::abs(f.norm() - gravity) - kNoImpactForce_m_s2;
+  sums.impact_m_s += dt_s * std::max(0.0, excess_over_gravity_m_s2);
+  sums.unexplained_impact_m_s += dt_s * std::max(0.0, excess_over_gravity_m_s2 - kImuOffset_m * w.squaredNorm());
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
-  const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
-  const double share = params.expert.rails.subsample_saturation_share;
+  const double hidden = std::clamp((peak - kPartialRangeMin) / (kPartialRangeMax - kPartialRangeMin), 0.0, 1.0);
+  const double share = params.expert.rails.subsample_saturation_ratio;
   if (railed) {
     sums.subsample_saturation_W_m_s += share * (R_T * least);
-  } else if (!unturned && hidden > 0.0) {
+  } else if (!has_unknown_rate && hidden > 0.0) {
     sums.subsample_saturation_W_m_s += share * hidden * (R_T * f);
   }
-  if (railed || unturned) sums.force_clipped_s += dt_s;
+  if (railed || has_unknown_rate) sums.force_clipped_s += dt_s;
   if (lost) sums.rate_clipped_s += dt_s;
   if (beyond && !lost) sums.recovered_rate_s += dt_s;
   sums.node_s += dt_s;
 }
 
-RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal) {
+RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
+                                   const RollingNominal& nominal) {
   RollingNominal out = nominal;
   if (reading.readings == 0) return out;
   RollingIntegrals unused;
@@ -217,11 +220,14 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
   // A gap has the duration T. A parabola between the rates before and after the gap has the integral a T^3 / 12:
   // rolling.md (R31).
-  const double mean_force_tilt_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
+  const double mean_force_tilt_rad =
+      acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
   // variance of the contact velocity in a gap: rolling.md (R32)
-  uncertainty.rate_rad2_s = squared(mean_force_tilt_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
-  uncertainty.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
+  uncertainty.rate_variance_rad2_s =
+      squared(mean_force_tilt_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
+  uncertainty.speed_variance_m2_s2 =
+      squared(kGapVelocityChangeRatio * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
   return piece;
@@ -231,9 +237,9 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
                    RollingNominal& nominal, RollingIntegrals& sums) {
   integrate(params, piece, nominal, sums, Force::unknown);
   sums.gap_s += piece.length_s;
-  sums.gap_rad2 += uncertainty.rad2;
-  sums.gap_rate_rad2_s += uncertainty.rate_rad2_s;
-  sums.gap_speed_m2_s2 += uncertainty.speed_m2_s2;
+  sums.gap_angle_variance_rad2 += uncertainty.rad2;
+  sums.gap_rate_variance_rad2_s += uncertainty.rate_variance_rad2_s;
+  sums.gap_speed_variance_m2_s2 += uncertainty.speed_variance_m2_s2;
 }
 
 /// Returns the transition matrix of the moving states: rolling.md (R10).
@@ -259,14 +265,14 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
   make_symmetric(P);
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
-      squared(params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s + sums.gap_rad2 +
+      squared(params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s + sums.gap_angle_variance_rad2 +
       squared(params.expert.rails.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
       squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_rate_s;
-  const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
-                          squared(params.expert.contact.impact_share * sums.impact_m_s) +
-                          squared(params.expert.noise.spin_force_sqrts * sums.squared_rate_integral_rad2_s) / h +
-                          sums.gap_speed_m2_s2 +
-                          squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
+  const double velocity =
+      squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
+      squared(params.expert.contact.impact_sigma_ratio * sums.impact_m_s) +
+      squared(params.expert.noise.velocity_walk_per_rate2_sqrts * sums.squared_rate_integral_rad2_s) / h +
+      sums.gap_speed_variance_m2_s2 + squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
@@ -304,7 +310,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.H.col(kRadius) = -w_W.cross(n);
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
-      squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_share * r * w_W.norm());
+      squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_ratio * r * w_W.norm());
   // A clip flag counts at any rate, because saturation may occur below the stated range.
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
@@ -314,7 +320,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
     out.grip_variance += squared(r * params.expert.rails.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
-    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R32)
+    out.gap_variance = squared(r) * sums.gap_rate_variance_rad2_s / sums.node_s;  // rolling.md (R32)
     out.grip_variance += out.gap_variance;
   }
   return out;
@@ -331,8 +337,8 @@ bool resets_slope(RollingMode from, RollingMode to) {
 }
 
 /// Resets the slope of the floor after a change of the contact mode: rolling.md (R21).
-void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                  const RollingNominal& nominal, Vector& x, Covariance& P) {
+void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
+                           const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
@@ -357,7 +363,7 @@ bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool 
   if (tilt_variance < squared(at_rest ? kUncertainTilt_rad : kLostTilt_rad)) return false;
   const double force = f_I_m_s2.norm();
   if (!(force > 0.1 * params.gravity_m_s2)) return false;
-  if (!at_rest && std::abs(force - params.gravity_m_s2) > kPush * params.gravity_m_s2) return false;
+  if (!at_rest && std::abs(force - params.gravity_m_s2) > kPushForceRatio * params.gravity_m_s2) return false;
   const Eigen::Vector3d up_W = nominal.q_WI * (f_I_m_s2 / force);
   nominal.q_WI = (so3::shortest_arc(up_W, Eigen::Vector3d::UnitZ()) * nominal.q_WI).normalized();
   nominal.v_WI_m_s.setZero();

@@ -59,13 +59,14 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
                Force known = Force::read);
 
 /// Returns the nominal trajectory, extrapolated by readings that are not yet processed.
-RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);
+RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
+                                   const RollingNominal& nominal);
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
 /// GapUncertainty is the uncertainty of a piece of a gap, with interpolated rate and without force.
 struct GapUncertainty {
-  double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
+  double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
 ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                     GapUncertainty& uncertainty);
@@ -84,8 +85,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
 
 /// Updates the floor's slope for a change of mode. The slope is a random walk while the mode lasts. When the contact
 /// point stops again, the slope becomes level or unknown. `h_s` is the duration of the node.
-void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                  const RollingNominal& nominal, Vector& x, Covariance& P);
+void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
+                           const RollingNominal& nominal, Vector& x, Covariance& P);
 
 /// Returns the variance of the pseudo-measurement of zero velocity at a node with unknown velocity. The result is empty
 /// at a node with known velocity.

@@ -14,19 +14,19 @@ namespace tumble {
 namespace {
 
 // Maximum number of preallocated samples and nodes. If the lag needs more samples, memory grows during the run.
-constexpr std::size_t kSetAsideMost = 1'000'000;
-constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of the preallocated number
+constexpr std::size_t kPreallocatedMax = 1'000'000;
+constexpr std::size_t kSamplesMaxFactor = 4;  // maximum number of samples, as a multiple of the preallocated number
 
-RollingParams quieter(RollingParams params, double share) {
+RollingParams scale_noise(RollingParams params, double share) {
   params.expert.contact.grip_sigma_m_s *= share;
-  params.expert.contact.grip_sigma_share *= share;
+  params.expert.contact.grip_sigma_ratio *= share;
   params.expert.noise.velocity_walk_m_s_sqrts *= share;
   params.expert.noise.rate_error_sqrts *= share;
   return params;
 }
 
 /// Returns the contact mode, out of two, that constrains the contact point less.
-RollingMode looser(RollingMode a, RollingMode b) {
+RollingMode less_constrained(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
     return mode == RollingMode::grip ? 0 : 1;
@@ -42,7 +42,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
 /// Returns the ratio of the reported variance to the variance of the final pass. The final pass uses reduced process
 /// noise.
 double stated(const RollingSmoother::Params& params) {
-  return 1.0 / (params.path_noise * params.path_noise);
+  return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
 }
 
 rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
@@ -97,31 +97,32 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
 
 struct Events {
   std::vector<bool> uncertain;
-  double committed_m2 = 0.0;  ///< event_variance_m2 of RollingSmoother::FinalPassState after the node `emitted`
+  double committed_variance_m2 =
+      0.0;  ///< event_start_variance_m2 of RollingSmoother::FinalPassState after the node `emitted`
 };
 
 Events find_events(const RollingSmoother::Params& params, std::span<const rolling::PathNode> path,
-                   std::span<const double> horizontal_m2, std::size_t emitted,
+                   std::span<const double> horizontal_variance_m2, std::size_t emitted,
                    const RollingSmoother::FinalPassState& committed) {
-  const std::size_t count = horizontal_m2.size();
+  const std::size_t count = horizontal_variance_m2.size();
   Events out;
   out.uncertain.resize(count, false);
-  double before_m2 = committed.event_variance_m2;
+  double before_m2 = committed.event_start_variance_m2;
   for (std::size_t a = 0; a < count;) {
     if (!may_slip(path[a].mode)) {
-      before_m2 = stated(params) * horizontal_m2[a];
-      if (a + 1 == emitted) out.committed_m2 = before_m2;
+      before_m2 = stated(params) * horizontal_variance_m2[a];
+      if (a + 1 == emitted) out.committed_variance_m2 = before_m2;
       ++a;
       continue;
     }
     std::size_t b = a;
     while (b < count && may_slip(path[b].mode)) {
-      if (b + 1 == emitted) out.committed_m2 = before_m2;
+      if (b + 1 == emitted) out.committed_variance_m2 = before_m2;
       ++b;
     }
-    const double after_m2 = stated(params) * horizontal_m2[std::min(b, count - 1)];
-    const bool grew =
-        after_m2 - before_m2 > params.filter.expert.modes.uncertain_m * params.filter.expert.modes.uncertain_m;
+    const double after_m2 = stated(params) * horizontal_variance_m2[std::min(b, count - 1)];
+    const bool grew = after_m2 - before_m2 >
+                      params.filter.expert.modes.event_sigma_growth_m * params.filter.expert.modes.event_sigma_growth_m;
     for (std::size_t n = a; n < b; ++n) out.uncertain[n] = grew;
     a = b;
   }
@@ -162,7 +163,7 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
   require_valid_fields(p);
   require_within("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRun);
   require_within("block_s", p.block_s, p.filter.expert.node_s, 1e3);
-  final_pass_params_ = quieter(p.filter, p.path_noise);
+  final_pass_params_ = scale_noise(p.filter, p.final_pass_noise_ratio);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.expert.node_s - 1e-9));
 }
@@ -177,7 +178,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const std::size_t most = lag_nodes_ + block_nodes_;
   if (params_.lag_s < kWholeRun && state.steps.size() > most)
     return {ErrorCode::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
-  const std::size_t samples_most = kBeyondStorage * preallocated_samples();
+  const std::size_t samples_most = kSamplesMaxFactor * preallocated_samples();
   if (params_.lag_s < kWholeRun && state.samples.size() > samples_most)
     return {ErrorCode::out_of_range, "rolling.samples", double(state.samples.size()), double(samples_most)};
   const FinalPassState& committed = state.committed;
@@ -198,8 +199,8 @@ Status RollingSmoother::check_state(const State& state) const {
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
   if (!state.live.started && params_.lag_s < kWholeRun) {
-    state.steps.reserve(std::min(lag_nodes_ + block_nodes_ + 1, kSetAsideMost));
-    state.samples.reserve(std::min(preallocated_samples(), kSetAsideMost));
+    state.steps.reserve(std::min(lag_nodes_ + block_nodes_ + 1, kPreallocatedMax));
+    state.samples.reserve(std::min(preallocated_samples(), kPreallocatedMax));
   }
   const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
     NodeModes step;
@@ -243,11 +244,12 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   rolling::Reading reading;
   while (readings.next(reading) && reading.whole && n < path.nodes.size()) {
     if (node_s >= params_.filter.expert.node_s - 0.5 * reading.average.length_s) {
-      path.nodes[n++].mode = looser(mode, known[std::min(reading.first, known.size() - 1)]);
+      path.nodes[n++].mode = less_constrained(mode, known[std::min(reading.first, known.size() - 1)]);
       mode = RollingMode::grip;
       node_s = 0.0;
     }
-    for (std::size_t k = reading.first; k < std::min(reading.end, known.size()); ++k) mode = looser(mode, known[k]);
+    for (std::size_t k = reading.first; k < std::min(reading.end, known.size()); ++k)
+      mode = less_constrained(mode, known[k]);
     node_s += reading.average.length_s;
   }
   smooth_window(path, path.nodes.size() + 1, state, take);
@@ -289,7 +291,7 @@ void RollingSmoother::smooth_window(const Path& path, std::size_t emitted, State
   state.constants = pass.end().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end().P(rolling::kRadius, rolling::kRadius)));
 
-  const Events events = find_events(params_, path.nodes, pass.horizontal_m2(), emitted, state.committed);
+  const Events events = find_events(params_, path.nodes, pass.horizontal_variance_m2(), emitted, state.committed);
   pass.give(emitted, [&](const rolling::LastPass::Smoothed& at) {
     RollingEstimate estimate = estimate_at(params_, at);
     if (at.node != nullptr) {
@@ -305,7 +307,7 @@ void RollingSmoother::smooth_window(const Path& path, std::size_t emitted, State
     last.nominal = filter.nominal;
     last.P = filter.P;
     last.mode = filter.mode;
-    last.event_variance_m2 = events.committed_m2;
+    last.event_start_variance_m2 = events.committed_variance_m2;
     last.last_time_ns = cursor.time_ns;
     last.last_rate_rad_s = cursor.last_rate_rad_s;
     last.gap_rate_rad_s = cursor.gap_rate_rad_s;

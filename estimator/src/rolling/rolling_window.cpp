@@ -40,7 +40,7 @@ Reported reported(const Vector& x) {
 
 /// Transforms the adjoint vector and matrix to the nominal state before its move: T^T lambda, T^T Lambda T, rolling.md
 /// (R36).
-void move_back(const Vector& turned, Adjoint& adjoint) {
+void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
   adjoint.Lambda.row(kHeading) += (turned.transpose() * adjoint.Lambda).eval();
@@ -78,7 +78,7 @@ bool Readings::next(Reading& out) {
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
     const double dt_s = seconds(sample.time_ns - last_ns);
-    if (dt_s > params_.expert.gap.gap_from_s) {
+    if (dt_s > params_.expert.gap.gap_min_duration_s) {
       if (out.average.readings > 0) break;
       cursor_.gap_rate_rad_s = cursor_.last_rate_rad_s;
       cursor_.gap_start_ns = last_ns;
@@ -112,7 +112,7 @@ void complete_node(const RollingParams& params, const RollingIntegrals& sums, co
   predict(params, sums, record.B, x, filter.P);
   record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.P);
   record.resets_slope = resets_slope(filter.mode, path.mode);
-  change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
+  update_slope_for_mode(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
   record.heading_lost = heading_lost(filter.P);
   const auto take = [&](const auto& row, double measured, double variance) {
     measure(row, measured, variance, record, x, filter.P);
@@ -121,14 +121,14 @@ void complete_node(const RollingParams& params, const RollingIntegrals& sums, co
     rest_rows(params, sums, filter.nominal, path.spins_in_place, take);
   } else {
     Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
-    if (record.heading_lost) blind_to_heading(c);
+    if (record.heading_lost) remove_heading_effect(c);
     contact_rows(params, c, path.mode, sums.node_s, filter.nominal.v_WI_m_s, x, filter.P, take);
   }
   make_symmetric(filter.P);
   filter.P.block<3, 3>(kPosition, kPosition) += path.position_spread_m2;
   move_linearisation_point(x, filter.nominal);
   if (record.heading_lost) {
-    record.turned = turned_by_heading(x);
+    record.turned = heading_effect(x);
     move_errors(record.turned, filter.P);
   }
   filter.mode = path.mode;
@@ -168,7 +168,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
 }
 
 /// Computes the smoothed states and covariances by a backward pass: rolling.md (R38), (R39).
-void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
+void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes) {
   auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
     NodeRecord& node = nodes[n];
@@ -177,7 +177,7 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
                          .finished();
     node.smoothed = -node.P_rows * lambda;
     node.smoothed_P = own - node.P_rows * Lambda * node.P_rows.transpose();
-    if (node.heading_lost) move_back(node.turned, adjoint);
+    if (node.heading_lost) transform_adjoint(node.turned, adjoint);
     for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {
       const Row& H = node.H[k];
       const Vector& K = node.gain[k];

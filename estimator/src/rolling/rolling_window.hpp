@@ -34,7 +34,7 @@ struct NodeRecord {
   bool heading_lost = false;
   Eigen::Matrix<double, kReported, kStates> P_rows;  ///< rows of P after the update
   Reported correction;                               ///< correction of the nominal by the update
-  Vector turned;                                     ///< turned_by_heading() of the correction, if the heading is lost
+  Vector turned;                                     ///< heading_effect() of the correction, if the heading is lost
   RollingNominal nominal;                            ///< nominal after the update
   PathNode path;
   TimeNs time_ns = 0;
@@ -120,6 +120,6 @@ struct Adjoint {
 /// Applies the modified Bryson-Fraser smoother, which computes `smoothed` and `smoothed_P` of consecutive nodes. On
 /// entry, `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first
 /// node.
-void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes);
+void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

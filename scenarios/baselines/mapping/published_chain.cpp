@@ -68,7 +68,7 @@ std::vector<TrimmedIcp::Point> means_of(std::span<const SweepCell> cells, double
     point.position_m = cell.sum / cell.count;
     const double count = static_cast<double>(cell.count);
     const double range =
-        std::max(params.range_sigma_m, params.range_sigma_share * static_cast<double>(point.position_m.norm()));
+        std::max(params.range_sigma_m, params.range_sigma_ratio * static_cast<double>(point.position_m.norm()));
     const double skew = params.skew_sigma_m_s * (cell.time_s / count - first_s);
     const double variance = params.voxel_averages_time ? skew * skew : cell.skew_variance / count;
     point.variance_m2 = static_cast<float>(range * range + variance);

@@ -35,7 +35,7 @@ class PublishedChain {
     double range_min_m = 0.2, range_max_m = 100.0;
     double sweep_voxel_m = 0.15;
     double map_spacing_m = 0.05;
-    double range_sigma_m = 0.02, range_sigma_share = 0.0015;
+    double range_sigma_m = 0.02, range_sigma_ratio = 0.0015;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -75,8 +75,8 @@ class PublishedChain {
       visit(p.map_spacing_m,
             {"map_spacing_m", "m", 0.0, 10.0, "minimum distance between a new map point and the existing map"});
       visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
-      visit(p.range_sigma_share,
-            {"range_sigma_share", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
+      visit(p.range_sigma_ratio,
+            {"range_sigma_ratio", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
     }
   };
   using SweepReport = LidarInertialOdometry::SweepReport;

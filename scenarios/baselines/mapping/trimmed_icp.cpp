@@ -62,9 +62,9 @@ const TrimmedIcp::Normal& TrimmedIcp::normal(const VoxelMap& map, std::uint32_t 
   // not planar.
   PlaneBounds any;
   any.neighbours_min = 3;
-  any.collinear_share = 0.0;
+  any.collinear_ratio_max = 0.0;
   any.rough_share = 1.0;
-  any.off_line_min = 0;
+  any.off_line_neighbours_min = 0;
   const PlaneFit fit = fit_plane(map, found, any);
   entry.usable = fit.verdict == PlaneVerdict::plane;
   entry.n = fit.normal_W;

@@ -61,7 +61,7 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
     for (const int times : {1, 2}) {
       const Twirl motion = twirl(9.0, hz, times);
       const RailPlanes known = planes();
-      const std::vector<std::uint8_t> near = may_meet_rails(motion.samples, known);
+      const std::vector<std::uint8_t> near = possible_partial_saturation(motion.samples, known);
       std::size_t in_part = 0, told = 0, besides = 0;
       for (std::size_t k = 0; k < near.size(); ++k) {
         const Vector3d& reading = motion.samples[k].angular_velocity_rad_s;
@@ -84,18 +84,18 @@ TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
   const auto none = [](const std::vector<std::uint8_t>& near) {
     return std::all_of(near.begin(), near.end(), [](std::uint8_t bits) { return bits == 0; });
   };
-  EXPECT_TRUE(none(may_meet_rails(twirl(0.96 * kRail_rad_s, 2.9).samples, planes())));
-  EXPECT_TRUE(none(may_meet_rails(twirl(0.98 * kRail_rad_s, 0.2).samples, planes())));
+  EXPECT_TRUE(none(possible_partial_saturation(twirl(0.96 * kRail_rad_s, 2.9).samples, planes())));
+  EXPECT_TRUE(none(possible_partial_saturation(twirl(0.98 * kRail_rad_s, 0.2).samples, planes())));
   // control: a fast rate of the same size
-  EXPECT_FALSE(none(may_meet_rails(twirl(0.98 * kRail_rad_s, 2.9).samples, planes())));
+  EXPECT_FALSE(none(possible_partial_saturation(twirl(0.98 * kRail_rad_s, 2.9).samples, planes())));
 }
 
 TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
   const Twirl motion = twirl(9.0, 2.9);
-  for (const std::uint8_t bits : may_meet_rails(motion.samples, {})) EXPECT_EQ(bits, 0);
+  for (const std::uint8_t bits : possible_partial_saturation(motion.samples, {})) EXPECT_EQ(bits, 0);
   RailPlanes one_sided = planes();
   one_sided.element[0]->samples = {0, 20};
-  const std::vector<std::uint8_t> near = may_meet_rails(motion.samples, one_sided);
+  const std::vector<std::uint8_t> near = possible_partial_saturation(motion.samples, one_sided);
   int positive = 0;
   for (std::size_t k = 0; k < near.size(); ++k) {
     const bool negative = motion.samples[k].angular_velocity_rad_s.x() < 0.0;
@@ -110,8 +110,8 @@ TEST(NearRails, TheRailIsThePlane) {
   std::vector<ImuSample> samples(3);
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k].angular_velocity_rad_s = Vector3d(k == 1 ? 7.0 : 6.5, 0.0, 4.0);
-  EXPECT_EQ(may_meet_rails(samples, planes(-0.01))[1], 1);
-  EXPECT_EQ(may_meet_rails(samples, planes(-0.1))[1], 0);
+  EXPECT_EQ(possible_partial_saturation(samples, planes(-0.01))[1], 1);
+  EXPECT_EQ(possible_partial_saturation(samples, planes(-0.1))[1], 0);
 }
 
 }  // namespace

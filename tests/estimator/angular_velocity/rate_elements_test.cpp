@@ -151,12 +151,12 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
 TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
   MinSaturationLevels least;
   least.add({2.0, 9.5, 0.0});
-  EXPECT_TRUE(least.rules_out({0.5, 8.5, 0.0}, 1));
-  EXPECT_FALSE(least.rules_out({0.5, 9.4, 0.0}, 1));
+  EXPECT_TRUE(least.is_below_min_level({0.5, 8.5, 0.0}, 1));
+  EXPECT_FALSE(least.is_below_min_level({0.5, 9.4, 0.0}, 1));
   // the tilt changes the saturation limit more for large rates about other axes
-  EXPECT_FALSE(least.rules_out({13.0, 8.5, 0.0}, 1));
-  EXPECT_FALSE(least.rules_out({0.5, -8.5, 0.0}, 1));  // there are no readings of this sign
-  EXPECT_FALSE(least.rules_out({8.5, 0.5, 0.0}, 0));   // there are no readings of this element
+  EXPECT_FALSE(least.is_below_min_level({13.0, 8.5, 0.0}, 1));
+  EXPECT_FALSE(least.is_below_min_level({0.5, -8.5, 0.0}, 1));  // there are no readings of this sign
+  EXPECT_FALSE(least.is_below_min_level({8.5, 0.5, 0.0}, 0));   // there are no readings of this element
 
   for (const bool beyond : {false, true}) {
     std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);

@@ -133,16 +133,16 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
     for (const double t : {0.0, 0.3, 1.7}) {
       const Vector3d a = body.acceleration(t);
       const RateKnot scaled{(1.0 + k) * body.rate(t), (1.0 + k) * a};
-      const Vector3d of_force = flight_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
-      EXPECT_LT((of_force + k * a.cross(rig.lever_arm_m)).norm(), 1e-9 + 1.1 * k * k * a.norm() * 0.11);
+      const Vector3d force_status = flight_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
+      EXPECT_LT((force_status + k * a.cross(rig.lever_arm_m)).norm(), 1e-9 + 1.1 * k * k * a.norm() * 0.11);
       const Vector3d of_torque = euler_factor(scaled, other).residual;
       EXPECT_LT((of_torque + k * (rig.inertia_matrix() - Eigen::Matrix3d::Identity()) * a).norm(), 1e-9);
       if (start.x() == 0.0) {
-        EXPECT_LT(of_force.norm() + of_torque.norm(), 1e-9);
+        EXPECT_LT(force_status.norm() + of_torque.norm(), 1e-9);
       } else {
         // with fixed lever arm and inertia, the scale error would be clearly observable
         EXPECT_GT(flight_factor(scaled, rig, body.specific_force(t, rig.lever_arm_m)).residual.norm(),
-                  3.0 * of_force.norm());
+                  3.0 * force_status.norm());
       }
     }
   }

@@ -152,7 +152,7 @@ TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   EXPECT_THROW(RateSmoother{{}}, InvalidParams) << "the lever arm has no default";
   refused([](RateSmoother::Params& p) { p.expert.descent.iterations_max = 0; });
   refused([](RateSmoother::Params& p) { p.expert.descent.tolerance_rad_s = 0.0; });
-  refused([](RateSmoother::Params& p) { p.expert.descent.widen_first = 0.5; });
+  refused([](RateSmoother::Params& p) { p.expert.descent.initial_threshold_factor = 0.5; });
   refused([](RateSmoother::Params& p) { p.gap_max_s = -1.0; });
   refused([](RateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
   refused([](RateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });

@@ -86,7 +86,7 @@ TEST(RateSmoother, CoverageInFlight) {
     options.mounting_seed = seed;
     options.roll = false;
     RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.02, seed);
-    params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = 0.0;  // the sensor has none either
+    params.model.expert.error_priors.gyro = params.model.expert.error_priors.accel = 0.0;  // the sensor has none either
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
       const Vector3d error = run.states[k].w_WI_I_rad_s - run.recording.truth[k];
@@ -131,7 +131,7 @@ Consistency consistency_with_matrices(double sigma, double stated) {
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
     RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.01, seed);
     params.expert.error_rounds_max = 1;
-    params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = stated;
+    params.model.expert.error_priors.gyro = params.model.expert.error_priors.accel = stated;
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
       if (run.recording.phase[k] != Phase::flight) continue;

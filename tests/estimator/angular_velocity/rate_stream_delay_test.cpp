@@ -63,7 +63,7 @@ TumbleRecording long_late_tumble(std::uint64_t seed, int late) {
 
 RateStream::Params looking(bool looks_for_it = true) {
   auto out = with_lever_arm<RateStream::Params>();
-  if (!looks_for_it) out.model.expert.error_sizes.delay_uncalibrated_s = out.model.expert.error_sizes.delay_s;
+  if (!looks_for_it) out.model.expert.error_priors.delay_uncalibrated_s = out.model.expert.error_priors.delay_s;
   return out;
 }
 

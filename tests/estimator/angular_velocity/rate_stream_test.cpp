@@ -340,7 +340,7 @@ TEST(RateStream, RefusesParametersOutsideOfTheirBounds) {
   refused([](RateStream::Params& p) { p.period_s = 0.0; });
   refused([](RateStream::Params& p) { p.lag_s = 0.01; });
   refused([](RateStream::Params& p) { p.lag_s = 11.0; });
-  refused([](RateStream::Params& p) { p.expert.widen_first = 0.0; });
+  refused([](RateStream::Params& p) { p.expert.initial_threshold_factor = 0.0; });
   refused([](RateStream::Params& p) { p.expert.bound_damping = 0.0; });
   refused([](RateStream::Params& p) { p.gap_max_s = std::nan(""); });
   refused([](RateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });

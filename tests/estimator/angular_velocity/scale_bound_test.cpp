@@ -40,7 +40,7 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
   RateReport report;
   EXPECT_TRUE(solve(params, model, observations, solution, report));
   EXPECT_TRUE(solution.iteration.factorise(model, solution.estimates, solution.rig));
-  const auto moved = solution.iteration.moved_by_errors(model, solution.estimates, solution.rig);
+  const auto moved = solution.iteration.error_derivatives(model, solution.estimates, solution.rig);
   SensorErrors scale;
   scale.gyro.setIdentity();
   ScaleInformation out{scale.vector().dot(moved.evidence.information * scale.vector()), 0.0};
@@ -54,7 +54,7 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
     const double share = p.expert.readings.accel_scale_error * recording.samples[k].specific_force_m_s2.norm();
     const double force2 = p.expert.flight.sigma_m_s2 * p.expert.flight.sigma_m_s2 + noise * noise + share * share;
     const double torque2 = std::pow(p.expert.flight.euler_sigma_rad_s2, 2) +
-                           std::pow(p.expert.contact.twist_share * p.expert.contact.lever_rad_m * force, 2);
+                           std::pow(p.expert.contact.twist_ratio * p.expert.contact.lever_rad_m * force, 2);
     // contact gives no information about the inertia, so the flights are then not used
     const Vector3d torque = estimates[k].flight_weight < 0.05
                                 ? Vector3d(J * a + 2.0 * knot.rate_rad_s.cross(Vector3d(J * knot.rate_rad_s)))
@@ -95,8 +95,9 @@ TEST(ScaleBound, TheErrorIsThatOfTheBound) {
       options.accel_error = scale * Vector3d(-1.1, 0.9, 1.0).asDiagonal();
       const TumbleRecording recording = make_tumble(options);
       auto params = with_lever_arm<RateSmoother::Params>();
-      params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.gyro_uncalibrated = std::max(5e-4, scale);
-      params.model.expert.error_sizes.accel = params.model.expert.error_sizes.accel_uncalibrated =
+      params.model.expert.error_priors.gyro = params.model.expert.error_priors.gyro_uncalibrated =
+          std::max(5e-4, scale);
+      params.model.expert.error_priors.accel = params.model.expert.error_priors.accel_uncalibrated =
           std::max(5e-4, scale);
       std::vector<RateState> states;
       RateReport report;

@@ -297,15 +297,15 @@ TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   const TumbleRecording late = late_tumble(3, 3);
   auto params = with_lever_arm<RateSmoother::Params>();
   params.model.errors.accel_delay_s = 0.03;
-  params.model.expert.error_sizes.delay_s = 2e-4;
-  params.model.expert.error_sizes.delay_uncalibrated_s = 4e-3;
+  params.model.expert.error_priors.delay_s = 2e-4;
+  params.model.expert.error_priors.delay_uncalibrated_s = 4e-3;
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(late.samples, states, report).ok());
   EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.03, 5e-4);
   constexpr int i = SensorErrors::kDelay;
   EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)),
-            0.5 * params.model.expert.error_sizes.delay_uncalibrated_s);
+            0.5 * params.model.expert.error_priors.delay_uncalibrated_s);
   EXPECT_GT(report.synchronous_probability, 0.5);
 }
 

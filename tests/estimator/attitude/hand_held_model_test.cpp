@@ -144,7 +144,7 @@ TEST(HandHeldModel, MotionHasItsGradient) {
   Motion::Params params;
   params.step_s = 0.02;
   params.jerk_rad_s3_sqrts = 100.0;
-  params.hand_m_s2 = 3.0, params.hand_tau_s = 0.15;
+  params.hand_sigma_m_s2 = 3.0, params.hand_tau_s = 0.15;
   params.velocity_m_s = 1.0, params.velocity_tau_s = 0.3;
   params.position_m = 0.5, params.position_tau_s = 1.0;
   const Motion motion(params);

@@ -133,7 +133,7 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
     samples.push_back(sample);
     apart += (sum / kParts - centre).squaredNorm() / (3.0 * kSamples);
   }
-  const hand_held::Collected collected = hand_held::collect({}, samples, {});
+  const hand_held::NodeData collected = hand_held::collect({}, samples, {});
   double power = 0.0;
   for (const double jerk : collected.jerk) power += jerk * jerk / static_cast<double>(collected.jerk.size());
   const double expected = kJerk * kJerk * std::pow(kPeriod_s, 3.0) / 320.0;
@@ -167,7 +167,7 @@ TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
   ClippedElements clipped;
   clipped.signs = signs;
   const HandHeldSmoother::Params params;
-  const hand_held::Collected collected = hand_held::collect(params, samples, clipped);
+  const hand_held::NodeData collected = hand_held::collect(params, samples, clipped);
   const std::vector<double> free = hand_held::collect(params, samples, {}).jerk;
   const double phase = std::asin(kRail_rad_s / kAmplitude_rad_s);
   const double change = 2.0 * kAmplitude_rad_s * kTurn_rad_s * std::cos(phase);

@@ -25,7 +25,7 @@ HandHeldStream::Params calm_hand(double lag_s) {
   HandHeldStream::Params out;
   out.lag_s = lag_s;
   out.window_s = lag_s + 0.5;
-  out.body.hand_m_s2 = 1.0;
+  out.body.hand_sigma_m_s2 = 1.0;
   out.body.gyro_bias_sigma_rad_s = 1e-3;
   return out;
 }

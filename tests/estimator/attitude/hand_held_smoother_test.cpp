@@ -127,7 +127,7 @@ TEST(HandHeldSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
   }
   const auto run = [&](double share, bool recovered) {
     HandHeldSmoother::Params params;
-    params.expert.readings.recovered_scale_share = share;
+    params.expert.readings.recovered_scale_sigma = share;
     ClippedElements clipped;
     const std::vector<Eigen::Matrix3d> none(samples.size(), Eigen::Matrix3d::Zero());
     if (recovered) clipped.recovered_covariance_rad2_s2 = none;
@@ -286,7 +286,7 @@ TEST(HandHeldSmoother, RefusesBadInput) {
   clipped.rows.setZero();
   EXPECT_EQ(error_code(good, clipped), ErrorCode::degenerate);
   EXPECT_THROW(HandHeldSmoother({.expert = {.node_s = 0.0}}), InvalidParams);
-  EXPECT_THROW(HandHeldSmoother({.hand_m_s2 = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
+  EXPECT_THROW(HandHeldSmoother({.hand_sigma_m_s2 = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
 }
 
 }  // namespace

@@ -239,11 +239,11 @@ TEST(ImuMergeHealth, AUnitThatDisagreesForLongIsLeftOutForGood) {
 }
 
 TEST(ImuMergeHealth, TheArmsTellAFlippedAxisOfAllGyros) {
-  EXPECT_FALSE(merge_harmed(250, 5.0, 1.0, nothing).state.senses.detected().has_value());
+  EXPECT_FALSE(merge_harmed(250, 5.0, 1.0, nothing).state.sign_check.detected().has_value());
   const HarmedMerge flipped = merge_harmed(250, 5.0, 1.0, [](double, UnitReadings& now) {
     for (ImuSample& sample : now) sample.angular_velocity_rad_s.x() *= -1.0;
   });
-  const auto told = flipped.state.senses.detected();
+  const auto told = flipped.state.sign_check.detected();
   ASSERT_TRUE(told.has_value());
   EXPECT_EQ(told->sense, 0U);
   EXPECT_NEAR(told->share, 1.0, 0.1);

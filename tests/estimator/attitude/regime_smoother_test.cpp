@@ -113,7 +113,7 @@ TEST(RegimeSmoother, ASpinInFlightIsNot) {
 
 TEST(RegimeSmoother, RefusesWhatItsPartsRefuse) {
   RegimeSmoother::Params params = params_of({});
-  params.carried_min = 1.5;
+  params.hand_held_probability_min = 1.5;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
   params = params_of({});
   params.hand_held.expert.node_s = 0.0;

@@ -157,10 +157,10 @@ TEST(Regimes, EitherHoldsBothAnswers) {
   second.covariance_rad2_s2 = 0.04 * Matrix3d::Identity();
   second.w_WI_I_rad_s = Vector3d(3.0, 0.0, 0.0);
   second.source = RateSource::bounded_only;
-  const RateState sure = mix_rates(first, second, 0.0);
+  const RateState sure = mix_rate_states(first, second, 0.0);
   EXPECT_EQ(sure.w_WI_I_rad_s, first.w_WI_I_rad_s);
   EXPECT_EQ(sure.covariance_rad2_s2, first.covariance_rad2_s2);
-  const RateState open = mix_rates(first, second, 0.6);
+  const RateState open = mix_rate_states(first, second, 0.6);
   EXPECT_EQ(open.w_WI_I_rad_s, second.w_WI_I_rad_s);
   EXPECT_EQ(open.source, RateSource::bounded_only);
   // 0.4 * 0.01 + 0.6 * 0.04 + 0.4 * 3^2, about the reported value

@@ -78,7 +78,7 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
 TEST(RestGravity, OfALongSpanNothingIsSaid) {
   const Harm halved = [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; };
   EXPECT_FALSE(RestGravity({}).verdict(after({}, halved)).ok());
-  const RestGravity::Params brief = {.span_most_s = 2.5};
+  const RestGravity::Params brief = {.rest_interval_max_s = 2.5};
   const RestGravity::State state = after({}, halved, 1.0, brief);
   EXPECT_EQ(state.spans, 0u) << "three seconds from rest to rest";
   EXPECT_TRUE(RestGravity(brief).verdict(state).ok());

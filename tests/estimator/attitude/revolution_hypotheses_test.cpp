@@ -29,7 +29,7 @@ struct SpinEstimate {
 
 HandHeldSmoother::Params smoother_params() {
   HandHeldSmoother::Params out;
-  out.hand_m_s2 = 1.0;
+  out.hand_sigma_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
   out.expert.jerk_inflation = 1.0;
   out.expert.iterations_max = 100;  // a filter with wrong forces is a poor start
@@ -114,7 +114,7 @@ TEST(RevolutionHypotheses, ASegmentThatIsKnownIsNotAsked) {
 /// The problem of such a spin, solved up to the iteration limit.
 struct Solved {
   SpinReadings readings;
-  hand_held::Collected collected;
+  hand_held::NodeData collected;
   hand_held::Problem problem;
   HandHeldSmoother::Report report;
 

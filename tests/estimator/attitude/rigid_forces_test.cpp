@@ -58,7 +58,7 @@ TEST(RigidForces, OfOneThatHidesTheOthersAgree) {
   RigidForces rigid = sphere();
   rigid.acceleration_rad_s2 += kBegins_rad_s2;
   rigid.force_m_s2[2] += Eigen::Vector3d(0.0, 0.0, 8.0);
-  const RigidForces::Agreed believed = rigid.most_agreed();
+  const RigidForces::AgreeingForces believed = rigid.most_agreed();
   EXPECT_EQ(believed.others, 1);
   EXPECT_EQ(believed.unit, 0U);
   EXPECT_FALSE(rigid.agree(2, 0));

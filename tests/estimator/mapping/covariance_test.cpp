@@ -43,7 +43,8 @@ class BelievedImu {
     const Eigen::Vector3d velocity_m_s =
         std::hypot(params_.expert.prior.sigma_m_s, params_.expert.prior.force_share * pushed_m_s) * noise_.vector();
     const Eigen::Vector3d rotation_rad =
-        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.rotation_share * rotated_rad) * noise_.vector();
+        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.rotation_noise_ratio * rotated_rad) *
+        noise_.vector();
     for (ImuSample& sample : sweep) {
       sample.specific_force_m_s2 += velocity_m_s / span_s;
       sample.angular_velocity_rad_s += rotation_rad / span_s;

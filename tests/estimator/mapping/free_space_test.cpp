@@ -10,7 +10,7 @@
 namespace tumble {
 namespace {
 
-using mapping::SightGrid;
+using mapping::FreeSpaceGrid;
 using test::RoomRig;
 using test::true_params;
 
@@ -18,8 +18,8 @@ constexpr float kWall_m = 8.0f;
 const Eigen::Vector3f kFrom(1.0f, 2.0f, 0.5f);
 
 /// A wall across x at 8 m with returns every half degree, and a post of 0.2 m in front of it, 0.5 m to the left.
-SightGrid before_a_wall(float moved_m) {
-  SightGrid sight;
+FreeSpaceGrid before_a_wall(float moved_m) {
+  FreeSpaceGrid sight;
   sight.start(kFrom, moved_m);
   for (float y = -4.0f; y <= 4.0f; y += 0.07f) {
     for (float z = -2.0f; z <= 2.0f; z += 0.07f) {
@@ -30,28 +30,28 @@ SightGrid before_a_wall(float moved_m) {
   return sight;
 }
 
-TEST(SightGrid, TellsFreeSpaceFromWhatIsThere) {
-  const SightGrid sight = before_a_wall(0.0f);
+TEST(FreeSpaceGrid, TellsFreeSpaceFromWhatIsThere) {
+  const FreeSpaceGrid sight = before_a_wall(0.0f);
   const auto verdict = [&](float x, float y, float z, float sigma_m = 0.01f) {
     return sight.verdict(kFrom + Eigen::Vector3f(x, y, z), sigma_m);
   };
-  EXPECT_EQ(verdict(4.0f, -0.8f, 0.3f), SightGrid::Verdict::seen_through);
-  EXPECT_EQ(verdict(kWall_m, -1.6f, 0.3f), SightGrid::Verdict::seen);
-  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), SightGrid::Verdict::seen);           // on the post
-  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), SightGrid::Verdict::seen_through);  // in front of the post
-  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), SightGrid::Verdict::unknown);      // behind the post
-  EXPECT_EQ(verdict(kWall_m + 3.0f, -1.6f, 0.3f), SightGrid::Verdict::unknown);
-  EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), SightGrid::Verdict::unknown);  // near the edge of the post
-  EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), SightGrid::Verdict::unknown);  // direction without a return
-  EXPECT_EQ(verdict(0.0f, 0.0f, 0.0f), SightGrid::Verdict::unknown);
-  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f), SightGrid::Verdict::seen_through);
-  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f, 0.3f), SightGrid::Verdict::seen);  // the position is too uncertain
+  EXPECT_EQ(verdict(4.0f, -0.8f, 0.3f), FreeSpaceGrid::Verdict::seen_through);
+  EXPECT_EQ(verdict(kWall_m, -1.6f, 0.3f), FreeSpaceGrid::Verdict::seen);
+  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), FreeSpaceGrid::Verdict::seen);           // on the post
+  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), FreeSpaceGrid::Verdict::seen_through);  // in front of the post
+  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), FreeSpaceGrid::Verdict::unknown);      // behind the post
+  EXPECT_EQ(verdict(kWall_m + 3.0f, -1.6f, 0.3f), FreeSpaceGrid::Verdict::unknown);
+  EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), FreeSpaceGrid::Verdict::unknown);  // near the edge of the post
+  EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), FreeSpaceGrid::Verdict::unknown);  // direction without a return
+  EXPECT_EQ(verdict(0.0f, 0.0f, 0.0f), FreeSpaceGrid::Verdict::unknown);
+  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f), FreeSpaceGrid::Verdict::seen_through);
+  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f, 0.3f), FreeSpaceGrid::Verdict::seen);  // the position is too uncertain
 }
 
-TEST(SightGrid, SaysNothingOfWhatTheSensorPassed) {
-  const SightGrid sight = before_a_wall(0.5f);
-  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(4.0f, -0.8f, 0.3f), 0.01f), SightGrid::Verdict::unknown);
-  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(6.0f, -1.2f, 0.3f), 0.01f), SightGrid::Verdict::seen_through);
+TEST(FreeSpaceGrid, SaysNothingOfWhatTheSensorPassed) {
+  const FreeSpaceGrid sight = before_a_wall(0.5f);
+  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(4.0f, -0.8f, 0.3f), 0.01f), FreeSpaceGrid::Verdict::unknown);
+  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(6.0f, -1.2f, 0.3f), 0.01f), FreeSpaceGrid::Verdict::seen_through);
 }
 
 constexpr int kLeaves = 8, kEnd = 32;  // sweeps

@@ -69,20 +69,20 @@ struct System {
     Numbers numbers;
     Dense x = Dense::Zero(kFree, 1), P = Dense::Identity(kFree, kFree);
     for (int k = 0; k < kSweeps; ++k) {
-      const Dense by_before = Dense::Identity(kFree, kFree) + 0.2 * numbers.matrix(kFree, kFree);
+      const Dense jacobian_previous = Dense::Identity(kFree, kFree) + 0.2 * numbers.matrix(kFree, kFree);
       const Dense noise = 0.3 * Dense::Identity(kFree, kFree);
       const int at = k * kFree;
       Dense rows = Dense::Zero(kFree, kSweeps * kFree);
       rows.middleCols(at, kFree).setIdentity();
       if (k > 0) {
-        x = by_before * x;
-        P = by_before * P * by_before.transpose() + noise;
-        rows.middleCols(at - kFree, kFree) = -by_before;
+        x = jacobian_previous * x;
+        P = jacobian_previous * P * jacobian_previous.transpose() + noise;
+        rows.middleCols(at - kFree, kFree) = -jacobian_previous;
       }
       information += rows.transpose() * inverse(k > 0 ? noise : P) * rows;
       WindowSweep sweep;
       sweep.predicted = estimated(x, P);
-      sweep.by_before = in_unknowns(by_before * (1.0 + transition_error));
+      sweep.jacobian_previous = in_unknowns(jacobian_previous * (1.0 + transition_error));
 
       const Dense H = numbers.matrix(kMeasured, kFree), z = numbers.matrix(kMeasured, 1);
       const Dense R = 0.1 * Dense::Identity(kMeasured, kMeasured);

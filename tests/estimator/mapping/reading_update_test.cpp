@@ -63,7 +63,7 @@ struct Case {
     boundary.state_estimate.weight = spread(scale, 0.3);
     boundary.state_estimate.error = spread(0.5 * scale, 1.9);
     within = spread(scale, 4.0).topLeftCorner<kMotionSize, kMotionSize>();
-    prediction.by_last += 0.2 * spread(1.0, 2.2);
+    prediction.jacobian_boundary += 0.2 * spread(1.0, 2.2);
     prediction.noise = spread(scale, 5.1);
     prediction.noise.topLeftCorner<kMotionSize, kMotionSize>() += within;
   }
@@ -122,7 +122,7 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   errors.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.error;
   const auto read = [&](const Eigen::VectorXd& joint) {
     const Registration::Vector start =
-        c.prediction.by_last * joint.head(kUnknowns) + joint.segment(kUnknowns, kUnknowns);
+        c.prediction.jacobian_boundary * joint.head(kUnknowns) + joint.segment(kUnknowns, kUnknowns);
     return off(start, joint.tail(kMotionSize));
   };
   const Eigen::VectorXd at = Eigen::VectorXd::Zero(all);
@@ -141,7 +141,7 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   out.errors = left * errors * left.transpose() + K * R * K.transpose();
   out.mean = K * residual;
   out.of_x = Eigen::MatrixXd::Zero(kUnknowns, all);
-  out.of_x.leftCols(kUnknowns) = c.prediction.by_last;
+  out.of_x.leftCols(kUnknowns) = c.prediction.jacobian_boundary;
   out.of_x.middleCols(kUnknowns, kUnknowns).setIdentity();
   out.of_x.topRightCorner(kMotionSize, kMotionSize).setIdentity();
   return out;
@@ -152,7 +152,7 @@ void expect_joint(Case& c, const OdometerReading& reading, const Read& off, cons
   const Joint joint = update_jointly(c, off, R);
   const Registration::Estimate before = c.prediction.prior.mean;
   const Matrix last = c.boundary.state_estimate.weight;
-  weigh_reading(reading, c.boundary, c.window, c.within, c.prediction);
+  fuse_reading(reading, c.boundary, c.window, c.within, c.prediction);
   c.prediction.compose(c.boundary.state_estimate);
   const double far = scale * scale;
   const Eigen::MatrixXd expected = joint.of_x * joint.covariance * joint.of_x.transpose();
@@ -161,7 +161,7 @@ void expect_joint(Case& c, const OdometerReading& reading, const Read& off, cons
   EXPECT_LT((c.prediction.errors - errors).cwiseAbs().maxCoeff(), 1e-4 * far);
   // includes the state at the boundary, which the window uses for smoothing
   const Eigen::MatrixXd with_last = joint.of_x * joint.covariance.leftCols(kUnknowns);
-  EXPECT_LT((c.prediction.by_last * last - with_last).cwiseAbs().maxCoeff(), 1e-4 * far);
+  EXPECT_LT((c.prediction.jacobian_boundary * last - with_last).cwiseAbs().maxCoeff(), 1e-4 * far);
   const Registration::Vector step = c.prediction.prior.mean.minus(before);
   EXPECT_LT((step - joint.of_x * joint.mean).cwiseAbs().maxCoeff(), 1e-3 * scale);
   EXPECT_GT(step.norm(), 0.1 * scale) << "else this asks nothing";
@@ -218,7 +218,7 @@ TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
   u::variances(c.boundary.state_estimate.weight, u::velocity).setConstant(0.09);
   u::variances(c.boundary.state_estimate.error, u::velocity).setConstant(0.04);
   c.within.setZero();
-  weigh_reading(VelocityReading{kStart_ns, {1.0, 0.0, -2.0}, 0.1}, c.boundary, c.window, c.within, c.prediction);
+  fuse_reading(VelocityReading{kStart_ns, {1.0, 0.0, -2.0}, 0.1}, c.boundary, c.window, c.within, c.prediction);
   c.prediction.compose(c.boundary.state_estimate);
   const double gain = 0.09 / (0.09 + 0.01);
   EXPECT_LT((c.prediction.prior.mean.state.v_WI_m_s - gain * Eigen::Vector3d(1.0, 0.0, -2.0)).norm(), 1e-12);
@@ -232,19 +232,19 @@ TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
 /// A reading with infinite variance changes nothing, up to rounding; a rejected reading changes nothing at all.
 TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
   Case c(0.1), same(0.1);
-  weigh_reading(VelocityReading{kEnd_ns, {5.0, 5.0, 5.0}, 1e6}, c.boundary, c.window, c.within, c.prediction);
+  fuse_reading(VelocityReading{kEnd_ns, {5.0, 5.0, 5.0}, 1e6}, c.boundary, c.window, c.within, c.prediction);
   EXPECT_LT(c.prediction.prior.mean.minus(same.prediction.prior.mean).norm(), 1e-9);
   EXPECT_LT((c.prediction.noise - same.prediction.noise).norm(), 1e-9);
   for (const TimeNs time_ns : {kStart_ns - 21'000'000, kEnd_ns + 21'000'000}) {
     Case other(0.1);
-    weigh_reading(VelocityReading{time_ns, {5.0, 5.0, 5.0}, 0.1}, other.boundary, other.window, other.within,
-                  other.prediction);
+    fuse_reading(VelocityReading{time_ns, {5.0, 5.0, 5.0}, 0.1}, other.boundary, other.window, other.within,
+                 other.prediction);
     EXPECT_EQ(other.prediction.prior.mean.state.v_WI_m_s, same.prediction.prior.mean.state.v_WI_m_s);
     EXPECT_EQ(other.prediction.noise, same.prediction.noise);
-    EXPECT_EQ(other.prediction.by_last, same.prediction.by_last);
+    EXPECT_EQ(other.prediction.jacobian_boundary, same.prediction.jacobian_boundary);
   }
-  weigh_reading(VelocityReading{kEnd_ns + 19'000'000, {5.0, 5.0, 5.0}, 0.1}, c.boundary, c.window, c.within,
-                c.prediction);
+  fuse_reading(VelocityReading{kEnd_ns + 19'000'000, {5.0, 5.0, 5.0}, 0.1}, c.boundary, c.window, c.within,
+               c.prediction);
   EXPECT_GT(c.prediction.prior.mean.minus(same.prediction.prior.mean).norm(), 0.01) << "negative control";
 }
 
@@ -254,7 +254,7 @@ TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
   Case c(1e-3);
   for (MotionSample& sample : c.samples) sample.clipped_axes = 1;
   u::variances(c.boundary.state_estimate.weight, u::deficit).setConstant(25.0);
-  c.prediction.by_last.setIdentity();
+  c.prediction.jacobian_boundary.setIdentity();
   MotionReading reading;
   reading.from_ns = kStart_ns;
   reading.to_ns = kEnd_ns;
@@ -262,7 +262,7 @@ TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
   for (int knot = 0; knot < SweepTrajectory::kKnots; ++knot) hidden[u::deficit_at(0, knot)] = 5.0;
   reading.T_from_to = read_motion(c, kStart_ns, kEnd_ns, hidden, Eigen::VectorXd::Zero(9));
   reading.covariance.diagonal().setConstant(1e-6);
-  weigh_reading(reading, c.boundary, c.window, c.within, c.prediction);
+  fuse_reading(reading, c.boundary, c.window, c.within, c.prediction);
   const Registration::Vector none = Registration::Vector::Zero();
   const Eigen::Isometry3d found = read_motion(c, kStart_ns, kEnd_ns, none, Eigen::VectorXd::Zero(9));
   const Eigen::Isometry3d off = found.inverse() * reading.T_from_to;

@@ -258,14 +258,14 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
 }
 
 /// A sweep of which the map contains only about sixty points.
-Registration::Result align_few(const Registration::Prior& prior, std::size_t agreeing_min) {
+Registration::Result align_few(const Registration::Prior& prior, std::size_t agreeing_matches_needed) {
   const test::Room room = test::Room::box_with_pillars();
   std::vector<SweepPoint> points;
   for (const SweepPoint& point : still_points(room)) {
     if (points.size() < 60 && point.ring % 4 == 0) points.push_back(point);
   }
   Registration::Params params;
-  params.expert.agreeing_min = agreeing_min;
+  params.expert.agreeing_matches_needed = agreeing_matches_needed;
   params.expert.correlation_discount = 1.0;  // the simulated noise has no correlation
   Registration registration(params);
   SweepTrajectory trajectory;
@@ -284,7 +284,8 @@ TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
   EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.3 * prior.mean.state.p_WI_m.norm());
   // fewer matches than the default minimum
   EXPECT_EQ(align_few(prior, 1000).verdict, RegistrationVerdict::too_few);
-  EXPECT_EQ(align_few(prior, Registration::Params{}.expert.agreeing_min).verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(align_few(prior, Registration::Params{}.expert.agreeing_matches_needed).verdict,
+            RegistrationVerdict::too_few);
 }
 
 TEST(Registration, BelievesNoFewMatchesWhereThePriorExpectsNone) {

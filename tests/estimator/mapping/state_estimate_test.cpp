@@ -65,7 +65,7 @@ TEST(Unknowns, PoseAndMountingAreThoseOfTheWholeProduct) {
   for (int i = 0; i < root.size(); ++i) root(i) = std::sin(1.0 + 0.7 * i);
   Matrix errors = root * root.transpose();
   make_symmetric(errors);
-  const Matrix whole = F * errors * F.transpose(), part = pose_and_mounting(F, errors);
+  const Matrix whole = F * errors * F.transpose(), part = propagate_pose_and_mounting(F, errors);
   EXPECT_EQ(u::block(part, u::pose), u::block(whole, u::pose));
   EXPECT_EQ(u::block(part, u::pose, u::mounting), u::block(whole, u::pose, u::mounting));
   EXPECT_EQ(u::block(part, u::mounting, u::pose), u::block(whole, u::mounting, u::pose));
@@ -181,7 +181,7 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
 TEST(Prediction, AKnownVelocityTurnsWithTheAttitude) {
   Prediction prediction;
   prediction.prior.mean.state.q_WI = so3::exp({0.1, 0.7, -0.3});
-  impose(KnownVelocity{{1.0, -2.0, 0.5}, 0.1}, prediction);
+  apply_velocity_prior(KnownVelocity{{1.0, -2.0, 0.5}, 0.1}, prediction);
   prediction.compose(uncertain());
   const Registration::Estimate& mean = prediction.prior.mean;
   EXPECT_LT((mean.state.v_WI_m_s - mean.state.q_WI * Eigen::Vector3d(1.0, -2.0, 0.5)).norm(), 1e-15);
@@ -191,7 +191,7 @@ TEST(Prediction, AKnownVelocityTurnsWithTheAttitude) {
   EXPECT_LT((u::block(prediction.prior.covariance, u::velocity, u::attitude) + 0.04 * hat).norm(), 1e-12);
 
   Prediction inertial;
-  impose(InertialPrior{}, inertial);
+  apply_velocity_prior(InertialPrior{}, inertial);
   inertial.compose(uncertain());
   EXPECT_EQ(inertial.prior.covariance, uncertain().weight);
 }

@@ -12,7 +12,7 @@ namespace tumble::mapping {
 namespace {
 
 using enum SweepVerdict;
-using enum Placement;
+using enum RegistrationOutcome;
 
 std::string text(const TrackingState& state) {
   struct Name {
@@ -32,7 +32,7 @@ std::string text(const TrackingState& state) {
 TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
   struct Row {
     TrackingState before;
-    Placement placement;
+    RegistrationOutcome placement;
     SweepVerdict verdict;
     const char* after;
   };
@@ -62,13 +62,13 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
 }
 
 TEST(Tracking, APlaceFoundAgainIsContradictedByAllButOneThatFits) {
-  for (const Placement placement : {not_tried, failed, relocalisation_unconfirmed}) {
+  for (const RegistrationOutcome placement : {not_tried, failed, relocalisation_unconfirmed}) {
     EXPECT_TRUE(contradicts(Relocalised{3, 2, 1}, placement));
     EXPECT_FALSE(contradicts(Tracking{}, placement));
     EXPECT_FALSE(contradicts(Lost{}, placement));
   }
   EXPECT_FALSE(contradicts(Relocalised{3, 2, 1}, found));
-  EXPECT_EQ(text(given_up(Relocalised{3, 2, 1})), "lost 5 3");
+  EXPECT_EQ(text(after_reverted_relocalisation(Relocalised{3, 2, 1})), "lost 5 3");
 }
 
 TEST(Tracking, AnswersOfItsStates) {

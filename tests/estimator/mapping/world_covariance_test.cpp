@@ -53,7 +53,7 @@ TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
   const WorldCovariance covariance(without_tilt(), kStart, kLever_m);
   Matrix joint = Matrix::Zero();
   u::block(joint, u::mounting) = Eigen::Matrix<double, 6, 1>(1e-4, 2e-4, 3e-4, 1e-6, 2e-6, 3e-6).asDiagonal();
-  const Pose K = pose_by_mounting(kStart, kLever_m);
+  const Pose K = pose_mounting_jacobian(kStart, kLever_m);
   const Pose by_mounting = K * u::block(joint, u::mounting);
   u::block(joint, u::pose) = by_mounting * K.transpose();
   u::block(joint, u::pose, u::mounting) = by_mounting;
@@ -64,7 +64,7 @@ TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
 
 TEST(WorldCovariance, DriftGrowsAlongTheDirectionThatNothingHeld) {
   WorldCovarianceParams params = without_tilt();
-  params.drift_share = 0.1;
+  params.drift_ratio = 0.1;
   params.drift_sigma_max_m = 3.0;
   WorldCovariance covariance(params, kStart, kLever_m);
   Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();

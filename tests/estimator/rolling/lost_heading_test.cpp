@@ -83,13 +83,13 @@ TEST(LostHeading, TheContactTellsNothingOfATurnOfTheWholeRun) {
   const Eigen::Vector3d with_all = c.H * turn, of_turn = Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
   EXPECT_GT(of_turn.norm(), 0.1);
   EXPECT_LT((with_all - of_turn).norm(), 1e-9);
-  rolling::blind_to_heading(c);
+  rolling::remove_heading_effect(c);
   EXPECT_LT((c.H * turn).norm(), 1e-9);
 }
 
 TEST(LostHeading, ErrorsMoveWithTheNominal) {
   rolling::Vector x = rolling::Vector::LinSpaced(rolling::kStates, -0.5, 0.7), error = x.reverse();
-  const rolling::Vector turned = rolling::turned_by_heading(x);
+  const rolling::Vector turned = rolling::heading_effect(x);
   rolling::Covariance T = rolling::Covariance::Identity(), P = error * error.transpose();
   T.col(rolling::kAttitude + 2) += turned;
   const rolling::Covariance moved = T * P * T.transpose();

@@ -190,11 +190,12 @@ TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
 /// With such a low bound, every event counts as uncertain, with a high bound none; a run without events never does.
 TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
   const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
-  const auto called = [&](const Contact& contact, double uncertain_m) {
+  const auto called = [&](const Contact& contact, double event_sigma_growth_m) {
     RollingTruth truth = truth_of(l_shape, contact);
     add_errors(1003, truth);
-    const RollingFilter filter(
-        {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .expert = {.modes = {.uncertain_m = uncertain_m}}});
+    const RollingFilter filter({.radius_m = testing::kRadius_m,
+                                .lever_arm_m = kLeverArm,
+                                .expert = {.modes = {.event_sigma_growth_m = event_sigma_growth_m}}});
     const auto state = std::make_unique<RollingFilter::State>();
     int inside = 0, outside = 0;
     for (std::size_t k = 0; k < truth.samples.size(); ++k) {

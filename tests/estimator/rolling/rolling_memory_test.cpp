@@ -117,7 +117,7 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
   start.reading.next = 1;
   pass.run(start, 200);
   EXPECT_EQ(pass.nodes(), path.size());
-  std::vector<double> out(pass.horizontal_m2().begin(), pass.horizontal_m2().end());
+  std::vector<double> out(pass.horizontal_variance_m2().begin(), pass.horizontal_variance_m2().end());
   const auto add = [&out](const auto& matrix) {
     for (const double entry : matrix.reshaped()) out.push_back(entry);
   };

@@ -40,7 +40,7 @@ TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
   const Eigen::Vector3d expected = kRepeated_s * (read - gravity * Eigen::Vector3d::UnitZ());
   const Gained railed = gained(Eigen::Vector3d::Zero(), read, kClipAccel);
   EXPECT_LT((railed.velocity_m_s - expected).norm(), 1e-12);
-  const double share = RollingParams{}.expert.rails.subsample_saturation_share;
+  const double share = RollingParams{}.expert.rails.subsample_saturation_ratio;
   EXPECT_NEAR(railed.hidden_m_s.z(), share * kRepeated_s * 57.0, 1e-12) << "and how much more is not known";
   EXPECT_LT((gained(Eigen::Vector3d::Zero(), read, 0).velocity_m_s - expected).norm(), 1e-12);
   // negative control: a force without a reading is not used

@@ -170,14 +170,14 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   plane.samples = {40, 40};
   plane.log_odds = 100.0;
   plane.covariance.diagonal() << 1e-6, 1e-6, 1e-7, 1e-7;
-  CalibratedRig before = known_before(nullptr, assumed_model());
+  CalibratedRig before = prior_rig_calibration(nullptr, assumed_model());
   before.gyro_planes_rad_s[1] = {-7.2, 7.4};
   before.gyro_planes_rad_s[2] = {-7.1, 7.5};
   SaturationLevels rails;
-  EXPECT_FALSE(with_rails(before, rails).has_value());
+  EXPECT_FALSE(calibration_with_rails(before, rails).has_value());
   rails.planes.element[0] = plane;
   rails.planes.element[1] = before.planes().element[1];  // as in the result of a run without clipping on this element
-  const std::optional<CalibratedRig> after = with_rails(before, rails);
+  const std::optional<CalibratedRig> after = calibration_with_rails(before, rails);
   ASSERT_TRUE(after);
   EXPECT_EQ(after->gyro_planes_rad_s[0][1], 7.3);
   EXPECT_EQ(after->rail[0], 7.3);
@@ -185,7 +185,7 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   EXPECT_EQ(after->gyro_planes_rad_s[1], before.gyro_planes_rad_s[1]);
   EXPECT_FALSE(after->gyro_planes_rad_s[2][0] || after->gyro_planes_rad_s[2][1]) << "the finder has dropped it";
   rails.planes.element[0]->log_odds = 5.0;
-  EXPECT_FALSE(with_rails(before, rails).has_value()) << "not sure";
+  EXPECT_FALSE(calibration_with_rails(before, rails).has_value()) << "not sure";
 }
 
 // The stream finds a delay of 10 ms in the accelerometer in the first tumble of a device, and knows it from the start
@@ -227,7 +227,7 @@ TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
     EXPECT_EQ(whole.health.at("calibration_at_prior"), 1.0) << name;
     ASSERT_NE(learning.found(), nullptr) << name;
     rig = *learning.found();
-    EXPECT_TRUE(rig->rails_alone) << name;
+    EXPECT_TRUE(rig->only_rails) << name;
   }
 
   sim::ImuRecord& imu = recording.sensors.imus.front();

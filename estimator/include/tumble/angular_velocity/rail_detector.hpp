@@ -26,29 +26,30 @@ struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings of a plateau
   /// Largest spread of the readings of a plateau, as a fraction of the saturation limit. Unsaturated readings have a
   /// larger spread because of sensor noise.
-  double spread_share = 2e-5;
-  /// A gyro plateau below `gyro_low_rad_s` needs twice as many readings, and a jump at its start or end.
-  double gyro_low_rad_s = 1.0;
-  double gyro_min_rad_s = 0.02;  ///< minimum rate of a gyro plateau
-  double accel_min_m_s2 = 15.0;  ///< minimum force of an accelerometer plateau; above gravity
+  double plateau_spread_ratio = 2e-5;
+  /// A gyro plateau below `low_gyro_plateau_rad_s` needs twice as many readings, and a jump at its start or end.
+  double low_gyro_plateau_rad_s = 1.0;
+  double gyro_plateau_min_rad_s = 0.02;  ///< minimum rate of a gyro plateau
+  double accel_plateau_min_m_s2 = 15.0;  ///< minimum force of an accelerometer plateau; above gravity
   /// Minimum jump of the readings at the start or end of a low plateau, in steps of the sensor's resolution. The
   /// resolution is the smallest observed change between two readings.
-  double jump_digits = 8.0;
+  double jump_min_digits = 8.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.samples, {"plateau_samples", "1", 2, 1000, "number of equal readings in a row that form a plateau"});
-    visit(p.spread_share, {"plateau_spread_share", "1", 0.0, 0.01,
-                           "maximum spread of the readings of a plateau, as a share of the plateau's level"});
-    visit(p.gyro_low_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
-                             "a gyro plateau below this rate needs twice as many readings and a jump"});
-    visit(p.gyro_min_rad_s, {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0,
-                             "a gyro plateau below this rate does not count as a saturation limit"});
-    visit(p.accel_min_m_s2,
+    visit(p.plateau_spread_ratio, {"plateau_spread_share", "1", 0.0, 0.01,
+                                   "maximum spread of the readings of a plateau, as a share of the plateau's level"});
+    visit(p.low_gyro_plateau_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
+                                     "a gyro plateau below this rate needs twice as many readings and a jump"});
+    visit(p.gyro_plateau_min_rad_s, {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0,
+                                     "a gyro plateau below this rate does not count as a saturation limit"});
+    visit(p.accel_plateau_min_m_s2,
           {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
            "an accelerometer plateau below this force does not count as a saturation limit; must be above gravity"});
-    visit(p.jump_digits, {"plateau_jump_digits", "1", 1.0, 1000.0,
-                          "minimum jump at the start or end of a low plateau, in steps of the reading's resolution"});
+    visit(p.jump_min_digits,
+          {"plateau_jump_digits", "1", 1.0, 1000.0,
+           "minimum jump at the start or end of a low plateau, in steps of the reading's resolution"});
   }
 };
 
@@ -68,9 +69,9 @@ struct RailDetectorParams {
   /// data sheet or the user.
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  double enter_share = 0.003;        ///< a reading within this fraction of the saturation limit starts clipping
-  double leave_share = 0.02;         ///< neighbours of a clipped reading are clipped within this fraction
-  double disagreement_share = 0.02;  ///< minimum relative difference that contradicts the stated range
+  double clip_enter_ratio = 0.003;          ///< a reading within this fraction of the saturation limit starts clipping
+  double clip_leave_ratio = 0.02;           ///< neighbours of a clipped reading are clipped within this fraction
+  double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -78,14 +79,15 @@ struct RailDetectorParams {
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.enter_share,
-          {"enter_share", "1", 0.0, 0.1,
+    visit(p.clip_enter_ratio,
+          {"clip_enter_ratio", "1", 0.0, 0.1,
            "a reading within this distance of the saturation limit counts as clipped, as a share of the limit"});
-    visit(p.leave_share, {"leave_share", "1", 0.0, 0.5,
-                          "a neighbour of a clipped reading within this distance of the saturation limit also counts "
-                          "as clipped, as a share of the limit"});
-    visit(p.disagreement_share,
-          {"disagreement_share", "1", 1e-6, 1.0,
+    visit(p.clip_leave_ratio,
+          {"clip_leave_ratio", "1", 0.0, 0.5,
+           "a neighbour of a clipped reading within this distance of the saturation limit also counts "
+           "as clipped, as a share of the limit"});
+    visit(p.range_contradiction_ratio,
+          {"range_contradiction_ratio", "1", 1e-6, 1.0,
            "maximum accepted difference between stated and measured saturation limit, as a share of the stated limit"});
     visit.group("", p.expert);
   }

@@ -49,11 +49,11 @@ class RailPlaneFinder {
     /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes that the saturation
     /// limit is not far below the stated range.
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_share = 0.02;     ///< prior deviation of the offset and between elements, as a fraction of r
-    int samples_min = 4;            ///< minimum number of samples on the plane of one sign
-    double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
-    double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
-    double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
+    double offset_sigma_ratio = 0.02;  ///< prior deviation of the offset and between elements, as a fraction of r
+    int samples_min = 4;               ///< minimum number of samples on the plane of one sign
+    double log_odds_before = -6.0;     ///< prior log odds of saturation for each element and sign
+    double log_odds_min = 1.0;         ///< minimum log odds for accepting a plane
+    double log_odds_keep = -3.0;       ///< minimum log odds for keeping an accepted plane
     /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
     /// of a run until readings contradict the planes. Saturation planes of one device change by a fraction of a percent
     /// between runs. A new plane near a known plane has a higher prior probability.
@@ -68,9 +68,10 @@ class RailPlaneFinder {
       visit(p.slope_max, {"slope_max", "1", 0.0, 0.3, "steepest slope searched"});
       visit(p.distance_min_rad_s, {"distance_min_rad_s", "rad/s", 0.01, 1000.0,
                                    "lower end of the search for saturation limits; in m/s^2 for an accelerometer"});
-      visit(p.offset_share, {"offset_share", "1", 1e-4, 0.2,
-                             "prior standard deviation of the offset of a saturation limit and of the differences "
-                             "between elements, as a share of the range"});
+      visit(p.offset_sigma_ratio,
+            {"offset_sigma_ratio", "1", 1e-4, 0.2,
+             "prior standard deviation of the offset of a saturation limit and of the differences "
+             "between elements, as a share of the range"});
       visit(p.samples_min, {"samples_min", "1", 2, 1000, "minimum number of samples at a saturation limit, per sign"});
       visit(p.log_odds_before, {"log_odds_before", "1", -100.0, 100.0,
                                 "prior log odds of a tilted saturation limit, per element and sign"});

@@ -103,7 +103,7 @@ class RateStream {
   void update_delay(State& state) const;
   void apply_delay(double delay_s, bool found, State& state) const;
   void refine_delay(State& state) const;
-  void consider_errors(const arrow::BorderVector& rig_step, State& state) const;
+  void add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const;
   Eigen::Matrix3d device_covariance(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
   double change_before_window(const Knot& oldest, const State& state) const;

@@ -17,7 +17,7 @@ namespace tumble {
 struct ClippedReadings {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
   std::vector<ClipSigns> signs;                        ///< one entry per sample
-  std::vector<std::uint8_t> near;                      ///< one entry per sample: bits of may_meet_rails()
+  std::vector<std::uint8_t> near;                      ///< one entry per sample: bits of possible_partial_saturation()
 
   ClippedElements clipped() const { return {rows, signs}; }
 

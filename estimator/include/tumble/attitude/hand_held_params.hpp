@@ -14,7 +14,8 @@ struct HandMotionParams {
   double position_leak_s = 10.0;       ///< time constant with which the hand's position returns to zero
   double hand_noise_adaptation = 0.8;  ///< weight of the measured acceleration power, 0 to 1
   double hand_window_s = 2.0;          ///< averaging time of the measured acceleration power
-  double hand_floor = 1.0;             ///< minimum acceleration density, as a fraction of the density for `hand_m_s2`
+  double hand_noise_floor_ratio =
+      1.0;  ///< minimum acceleration density, as a fraction of the density for `hand_sigma_m_s2`
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -30,30 +31,30 @@ struct HandMotionParams {
                                     FieldRank::basic});
     visit(p.hand_window_s,
           {"hand_window_s", "s", 0.01, 1e3, "time window over which the power of the motion is measured"});
-    visit(p.hand_floor,
-          {"hand_floor", "1", 1e-3, 1e3, "minimum ratio of the adapted acceleration to the assumed acceleration"});
+    visit(p.hand_noise_floor_ratio, {"hand_noise_floor_ratio", "1", 1e-3, 1e3,
+                                     "minimum ratio of the adapted acceleration to the assumed acceleration"});
   }
 };
 
 /// HandHeldReadingParams describes the errors of IMU readings other than white noise.
 struct HandHeldReadingParams {
-  double tilt_share = 0.02;             ///< error of an unclipped element, per saturation deficit of a clipped element
+  double deficit_error_ratio = 0.02;    ///< error of an unclipped element, per saturation deficit of a clipped element
   double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation limit
-  double accel_error_share = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
+  double accel_error_ratio = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
   double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
   double recovered_sigma_rad_s = 1.0;   ///< clipped rates with a smaller standard deviation count as recovered
   double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
-  double recovered_scale_share = 6e-3;  ///< scale error of measured rates near recovered rates
+  double recovered_scale_sigma = 6e-3;  ///< scale error of measured rates near recovered rates
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_share,
-          {"tilt_share", "1", 0.0, 1.0,
+    visit(p.deficit_error_ratio,
+          {"deficit_error_ratio", "1", 0.0, 1.0,
            "error that the saturation deficit of one clipped element causes on an unclipped element, per deficit",
            FieldRank::basic});
     visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the saturation limit"});
-    visit(p.accel_error_share,
-          {"accel_error_share", "1", 0.0, 1.0,
+    visit(p.accel_error_ratio,
+          {"accel_error_ratio", "1", 0.0, 1.0,
            "additional noise of the specific force, per m/s^2 of difference between the force and gravity"});
     visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
                                    "angle random walk per rad/s of rate, caused by scale errors", FieldRank::basic});
@@ -62,8 +63,8 @@ struct HandHeldReadingParams {
                                     "otherwise the rate is reported as bounded",
                                     FieldRank::basic});
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
-    visit(p.recovered_scale_share,
-          {"recovered_scale_share", "1", 0.0, 1.0,
+    visit(p.recovered_scale_sigma,
+          {"recovered_scale_sigma", "1", 0.0, 1.0,
            "standard deviation of the gyro's scale error in samples next to recovered rates, as a share of the rate"});
   }
 };
@@ -125,7 +126,7 @@ struct HandHeldParams {
   double accel_bias_sigma_m_s2 = 0.02;
   double lever_arm_sigma_m = 0.03;
   double jerk_rad_s3_sqrts = 200.0;  ///< square root of the power spectral density of the angular jerk
-  double hand_m_s2 = 5.0;            ///< standard deviation of the hand's acceleration
+  double hand_sigma_m_s2 = 5.0;      ///< standard deviation of the hand's acceleration
   double velocity_m_s = 1.0;         ///< standard deviation of the hand's velocity
   double position_m = 1.0;           ///< standard deviation of the hand's position
 
@@ -149,8 +150,8 @@ struct HandHeldParams {
            FieldRank::basic});
     visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
                                 "root power spectral density of the angular jerk", FieldRank::basic});
-    visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "standard deviation of the hand-held point's acceleration",
-                        FieldRank::basic});
+    visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 1e-3, 1e3,
+                              "standard deviation of the hand-held point's acceleration", FieldRank::basic});
     visit(p.velocity_m_s,
           {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity", FieldRank::basic});
     visit(p.position_m,

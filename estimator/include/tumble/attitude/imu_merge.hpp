@@ -81,7 +81,7 @@ struct ImuMergeParams {
 /// ImuMerge treats an IMU whose reading is not finite as absent. An IMU is frozen if its gyro or accelerometer repeats
 /// one reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
 /// while the direction of gravity rotates. ImuMerge excludes a frozen IMU until its readings have changed for
-/// `thawed_after_s`. ImuMerge permanently excludes an IMU that disagrees for long (scale, axes, unit of measurement),
+/// `unfreeze_after_s`. ImuMerge permanently excludes an IMU that disagrees for long (scale, axes, unit of measurement),
 /// as long as two other IMUs remain. Repeated readings of a body at rest do not count as frozen.
 ///
 /// ImuMerge assumes that all clocks have the same rate, and does not detect an error that all IMUs share.

@@ -18,10 +18,11 @@ namespace tumble {
 /// ImuPlausibilityParams contains the parameters of ImuPlausibility.
 struct ImuPlausibilityParams {
   double gravity_m_s2 = 9.80665;
-  double window_s = 0.2;          ///< window over which rotations of force and gyro are compared
-  double reading_s = 0.02;        ///< averaging time of the readings
-  double steady_share = 0.12;     ///< maximum relative change of the force's magnitude in a window
-  double near_share = 0.25;       ///< maximum relative difference of force and gravity for comparing directions
+  double window_s = 0.2;                     ///< window over which rotations of force and gyro are compared
+  double reading_s = 0.02;                   ///< averaging time of the readings
+  double magnitude_change_ratio_max = 0.12;  ///< maximum relative change of the force's magnitude in a window
+  double gravity_difference_ratio_max =
+      0.25;                       ///< maximum relative difference of force and gravity for comparing directions
   double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
   double gap_max_s = 0.1;         ///< a longer gap restarts the window
 
@@ -34,11 +35,12 @@ struct ImuPlausibilityParams {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
     visit(p.window_s, {"window_s", "s", 0.02, 10.0, "length of the windows in which force and rotation are compared"});
     visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
-    visit(p.steady_share,
-          {"steady_share", "1", 1e-12, 1.0,
+    visit(p.magnitude_change_ratio_max,
+          {"magnitude_change_ratio_max", "1", 1e-12, 1.0,
            "maximum change of the force's magnitude within a window with steady force, as a share of the force"});
-    visit(p.near_share, {"near_share", "1", 1e-12, 1e6,
-                         "rotations are compared only if force and gravity differ by less than this share of gravity"});
+    visit(p.gravity_difference_ratio_max,
+          {"gravity_difference_ratio_max", "1", 1e-12, 1e6,
+           "rotations are compared only if force and gravity differ by less than this share of gravity"});
     visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-3, 1e6,
                                "windows are compared only if the rate of each axis is below this value"});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "maximum time between two samples of one window"});
@@ -79,7 +81,7 @@ class ImuPlausibility {
   /// Repetition describes how long a gyro or accelerometer has repeated one reading.
   struct Repetition {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double repeated_s = 0.0, longest_s = 0.0, changing_s = 0.0;
+    double repeated_s = 0.0, longest_s = 0.0, changing_duration_s = 0.0;
     double frozen_s = 0.0;  ///< duration for which the sensor was frozen; 0: never frozen
     bool operator==(const Repetition&) const = default;
   };
@@ -96,7 +98,8 @@ class ImuPlausibility {
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each possible assignment of axis labels
     double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which the force rotated
     double rotated_windows = 0.0;                                ///< number of windows in which the force rotated
-    double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;  ///< sums over the windows in which force or gyro rotated
+    double total_force_rotation_rad2 = 0.0,
+           total_gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which force or gyro rotated
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

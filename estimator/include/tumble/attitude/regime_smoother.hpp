@@ -25,8 +25,9 @@ class RegimeSmoother {
     RateSmoother::Params rate;
     RegimeEvidence::Params evidence;
     HandHeldSmoother::Params hand_held;
-    double carried_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldSmoother runs
-    double near_s = 0.1;        ///< clipped samples closer together than this form one segment
+    double hand_held_probability_min =
+        0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
+    double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -34,11 +35,11 @@ class RegimeSmoother {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
-      visit(p.carried_min,
-            {"carried_min", "1", 0.0, 1.0,
+      visit(p.hand_held_probability_min,
+            {"hand_held_probability_min", "1", 0.0, 1.0,
              "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
-      visit(p.near_s,
-            {"near_s", "s", 0.0, 10.0, "clipped samples that are less than this time apart belong to one segment"});
+      visit(p.segment_gap_max_s, {"segment_gap_max_s", "s", 0.0, 10.0,
+                                  "clipped samples that are less than this time apart belong to one segment"});
     }
   };
   struct Report {
@@ -68,8 +69,8 @@ class RegimeSmoother {
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
-  std::vector<double> hand_held_by_segment(std::span<const RegimeProbabilities> probabilities, const RateReport& report,
-                                           std::span<const RateState> rates) const;
+  std::vector<double> segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
+                                                    const RateReport& report, std::span<const RateState> rates) const;
 
   Params params_;
   RateSmoother rate_;

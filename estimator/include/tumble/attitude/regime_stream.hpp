@@ -21,8 +21,8 @@ namespace tumble {
 /// probabilities depend on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
 /// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
 /// RateStream resets its calibration in more than half of the steps of its lag, clipped samples do not change the
-/// probabilities. HandHeldStream pauses while the probability of hand-held motion is below `carried_min`, and then
-/// restarts. RegimeStream reports RateStream's rate for each unclipped sample.
+/// probabilities. HandHeldStream pauses while the probability of hand-held motion is below `hand_held_probability_min`,
+/// and then restarts. RegimeStream reports RateStream's rate for each unclipped sample.
 ///
 /// RateStream fits angular accelerations to the measured force, which can wrongly explain gravity in gentle hand-held
 /// motion. RegimeStream therefore estimates the probabilities with the time derivative of the rates instead of
@@ -32,9 +32,9 @@ class RegimeStream {
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
-    HandHeldStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
-    double carried_min = 0.02;         ///< minimum probability of hand-held motion for which HandHeldStream runs
-    double near_s = 0.1;               ///< clipped samples closer together than this form one segment
+    HandHeldStream::Params hand_held;         ///< `rate` overrides `period_s` and `lag_s`
+    double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldStream runs
+    double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -42,11 +42,11 @@ class RegimeStream {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
-      visit(p.carried_min,
-            {"carried_min", "1", 0.0, 1.0,
+      visit(p.hand_held_probability_min,
+            {"hand_held_probability_min", "1", 0.0, 1.0,
              "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
-      visit(p.near_s,
-            {"near_s", "s", 0.0, 10.0, "clipped samples that are less than this time apart belong to one segment"});
+      visit(p.segment_gap_max_s, {"segment_gap_max_s", "s", 0.0, 10.0,
+                                  "clipped samples that are less than this time apart belong to one segment"});
     }
   };
   /// ReportedProbability is the probability of hand-held motion at the time of a reported sample.
@@ -66,8 +66,8 @@ class RegimeStream {
     std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
     double resets = 0.0;               ///< resets of RateStream's calibration, decaying over its lag
     bool hand_held_running = false;    ///< whether HandHeldStream is running
-    /// Samples that may determine the smallest probability of hand-held motion within the last `near_s`. The oldest
-    /// entry of `near` has the smallest probability.
+    /// Samples that may determine the smallest probability of hand-held motion within the last `segment_gap_max_s`. The
+    /// oldest entry of `near` has the smallest probability.
     std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample

@@ -31,16 +31,17 @@ struct RegimeProbabilities {
 /// rotation do not change the probabilities.
 ///
 /// RegimeEvidence does not use the attitude, so its probabilities are available before HandHeldSmoother runs.
-/// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_m_s2` acts on the body.
+/// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_force_sigma_m_s2` acts on
+/// the body.
 class RegimeEvidence {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    double flight_m_s2 = 0.3;          ///< standard deviation of the residual force in flight: drag, bandwidth
-    double flight_share = 0.05;        ///< additional standard deviation, as a fraction of the lever arm's force
-    double hand_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
-    double grip_m = 0.05;              ///< distance of the IMU from the hand
-    double contact_max_m_s2 = 1000.0;  ///< largest contact force; the smallest contact force is 1 m/s^2
+    double flight_force_sigma_m_s2 = 0.3;    ///< standard deviation of the residual force in flight: drag, bandwidth
+    double flight_share = 0.05;              ///< additional standard deviation, as a fraction of the lever arm's force
+    double hand_sigma_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
+    double hand_distance_m = 0.05;           ///< distance of the IMU from the hand
+    double contact_force_max_m_s2 = 1000.0;  ///< largest contact force; the smallest contact force is 1 m/s^2
     double memory_s = 0.05;
     double rest_rate_rad_s = 0.5;  ///< readings with a lower rate do not change the probabilities
     double contacts_hz = 5.0;      ///< mean number of changes between flight and contact per second
@@ -51,16 +52,17 @@ class RegimeEvidence {
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
       visit(
-          p.flight_m_s2,
-          {"flight_m_s2", "m/s^2", 1e-3, 10.0,
+          p.flight_force_sigma_m_s2,
+          {"flight_force_sigma_m_s2", "m/s^2", 1e-3, 10.0,
            "standard deviation of the force in flight that the model does not explain, caused by drag and bandwidth"});
       visit(p.flight_share, {"flight_share", "1", 0.0, 1.0,
                              "additional standard deviation of the force in flight, as a share of the force that the "
                              "rotation causes at the lever arm"});
-      visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
-      visit(p.grip_m, {"grip_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
-      visit(p.contact_max_m_s2,
-            {"contact_max_m_s2", "m/s^2", 10.0, 1e6,
+      visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
+      visit(p.hand_distance_m,
+            {"hand_distance_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
+      visit(p.contact_force_max_m_s2,
+            {"contact_force_max_m_s2", "m/s^2", 10.0, 1e6,
              "maximum contact force; the model assumes contact forces between 1 m/s^2 and this value"});
       visit(p.memory_s,
             {"memory_s", "s", 1e-3, 10.0, "time within which readings count as one independent observation"});
@@ -97,6 +99,6 @@ class RegimeEvidence {
 
 /// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The combined rate has
 /// the mean of the more probable estimate and the covariance of the mixture of both estimates.
-RateState mix_rates(const RateState& first, const RateState& second, double share);
+RateState mix_rate_states(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

@@ -82,7 +82,7 @@ struct TumbleAttitudeParams {
 /// TumbleAttitude pauses its corrections for at most `slip_timeout_s`.
 ///
 /// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
-/// In a gap longer than `gap_least_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
+/// In a gap longer than `gap_min_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
 /// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. After a
 /// long gap, a coarse alignment estimates the tilt in parallel to the Kalman filter. Until the coarse alignment

@@ -25,27 +25,27 @@ struct PlaneFit {
 /// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// Neighbours are collinear if l1 is below the fraction collinear_share of l2. Collinear neighbours would give a
+  /// Neighbours are collinear if l1 is below the fraction collinear_ratio_max of l2. Collinear neighbours would give a
   /// wrong normal, for example on one ring of a lidar at rest.
-  double collinear_share = 0.03;
+  double collinear_ratio_max = 0.03;
   double rough_share = 0.1;  ///< neighbours are not a plane if l0 exceeds this fraction of l1
   /// Minimum number of neighbours outside the most frequent scan line. With fewer neighbours outside, the fitted plane
   /// could be the plane of a lidar ring instead of the surface. For example, a lidar ring around a pillar or through a
   /// room's corner is in its own plane.
-  int off_line_min = 2;
+  int off_line_neighbours_min = 2;
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});
-    visit(p.collinear_share,
-          {"collinear_share", "1", 0.0, 1.0,
+    visit(p.collinear_ratio_max,
+          {"collinear_ratio_max", "1", 0.0, 1.0,
            "minimum ratio of the middle to the largest eigenvalue; below this ratio, the neighbours form a line"});
     visit(p.rough_share,
           {"rough_share", "1", 0.0, 1.0,
            "maximum ratio of the smallest to the middle eigenvalue; above this ratio, the neighbours form no plane"});
-    visit(p.off_line_min,
-          {"off_line_min", "1", 0, 32, "minimum number of neighbours that are not on the most frequent scan line"});
+    visit(p.off_line_neighbours_min, {"off_line_neighbours_min", "1", 0, 32,
+                                      "minimum number of neighbours that are not on the most frequent scan line"});
   }
 };
 

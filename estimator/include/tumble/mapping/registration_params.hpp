@@ -18,14 +18,14 @@ struct RegistrationExpertParams {
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
   /// Factor below 1 on the weight of each point, because neighbouring lidar returns share the map's errors.
   double correlation_discount = 0.1;
-  double cluster_m = 1.0;          ///< edge of a cube whose points have correlated errors
-  double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
+  double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
+  double match_ratio_min = 0.1;  ///< minimum number of matches as a fraction of the points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
-  /// `matched_share_min`. The large default of agreeing_min disables the exception for agreeing registrations.
-  std::size_t agreeing_min = 1'000'000'000;
+  /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
+  std::size_t agreeing_matches_needed = 1'000'000'000;
   /// Minimum fraction of matches whose residual is within three standard deviations. A registration with a smaller
   /// fraction of fitting matches is rejected.
-  double fitting_share_min = 0.6;
+  double inlier_ratio_min = 0.6;
   PlaneBounds plane;
 
   template <class Self, class Visitor>
@@ -39,12 +39,12 @@ struct RegistrationExpertParams {
           {"correlation_discount", "1", 1e-6, 1.0,
            "weight of the information of one point; below 1, because neighbouring returns are correlated"});
     visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "edge length of the cube whose points count as correlated"});
-    visit(p.matched_share_min,
-          {"matched_share_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
-    visit(p.agreeing_min,
-          {"agreeing_min", "1", 1, 1e9, "minimum number of matches for a result that agrees with the prior"});
-    visit(p.fitting_share_min, {"fitting_share_min", "1", 0.0, 1.0,
-                                "minimum share of matches within three standard deviations in an accepted result"});
+    visit(p.match_ratio_min,
+          {"match_ratio_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
+    visit(p.agreeing_matches_needed, {"agreeing_matches_needed", "1", 1, 1e9,
+                                      "minimum number of matches for a result that agrees with the prior"});
+    visit(p.inlier_ratio_min, {"inlier_ratio_min", "1", 0.0, 1.0,
+                               "minimum share of matches within three standard deviations in an accepted result"});
     visit.group("plane_", p.plane);
   }
 };
@@ -55,8 +55,8 @@ struct RegistrationParams {
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
   int iterations_max = 30;
-  double range_sigma_m = 0.02;  ///< minimum range noise; at far range, range_sigma_share times the range
-  double range_sigma_share = 0.0015;
+  double range_sigma_m = 0.02;  ///< minimum range noise; at far range, range_sigma_ratio times the range
+  double range_sigma_ratio = 0.0015;
   double skew_sigma_m_s = 0.25;   ///< growth rate of a point's standard deviation during the sweep; 0: none
   std::size_t matches_min = 100;  ///< minimum number of matches
   double correction_max_m = 15.0;
@@ -74,8 +74,8 @@ struct RegistrationParams {
                                "maximum distance between a point and its matches in the map", FieldRank::basic});
     visit(p.iterations_max, {"iterations_max", "1", 1, 200, "maximum number of iterations"});
     visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
-    visit(p.range_sigma_share,
-          {"range_sigma_share", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
+    visit(p.range_sigma_ratio,
+          {"range_sigma_ratio", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});

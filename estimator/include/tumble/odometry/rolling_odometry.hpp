@@ -106,7 +106,8 @@ class RollingOdometry {
         Eigen::Vector3d::Zero();  ///< angular velocity of the sphere, in sphere axes
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain
+    bool uncertain =
+        false;  ///< an event (RollingModeParams::event_sigma_growth_m) or a restart made the position uncertain
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

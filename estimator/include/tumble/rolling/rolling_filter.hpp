@@ -72,7 +72,7 @@ class RollingFilter {
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< slow rotation about the contact point; no gyro bias update
-    bool uncertain = false;       ///< an event increased the position's standard deviation by more than uncertain_m
+    bool uncertain = false;  ///< an event increased the position's standard deviation by more than event_sigma_growth_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;

@@ -34,7 +34,7 @@ struct RollingEstimate {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::uncertain_m)
+  bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::event_sigma_growth_m)
 };
 
 /// RollingNominal contains the trajectory and the constants about which the filter linearises its errors.
@@ -73,7 +73,7 @@ struct RollingIntegrals {
   Eigen::Vector3d subsample_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of force lost to saturation shorter than a sample
   // Duration of a gap, and the variances that the gap adds to the angle, to rate times time, and to the velocity.
-  double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
+  double gap_s = 0.0, gap_angle_variance_rad2 = 0.0, gap_rate_variance_rad2_s = 0.0, gap_speed_variance_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingIntegrals&) const = default;
 };

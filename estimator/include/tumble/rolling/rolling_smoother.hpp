@@ -37,7 +37,7 @@ class RollingSmoother {
     RollingParams filter = {};
     /// Process noise of the smoother, as a fraction of the process noise of RollingFilter. The reported covariance uses
     /// the full process noise of RollingFilter.
-    double path_noise = 0.65;
+    double final_pass_noise_ratio = 0.65;
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
     double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
@@ -50,8 +50,8 @@ class RollingSmoother {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
-      visit(p.path_noise,
-            {"path_noise", "1", 1e-6, 1.0, "process noise of the last pass, as a share of the filter's process noise"});
+      visit(p.final_pass_noise_ratio, {"final_pass_noise_ratio", "1", 1e-6, 1.0,
+                                       "process noise of the last pass, as a share of the filter's process noise"});
       visit(p.lag_s,
             {"lag_s", "s", 1e-3, 1e9,
              "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
@@ -84,7 +84,7 @@ class RollingSmoother {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_variance_m2 = 0.0;                                ///< position variance at the start of the event
+    double event_start_variance_m2 = 0.0;                          ///< position variance at the start of the event
     Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< reported position while `position_constrained`
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
     TimeNs last_time_ns = 0;

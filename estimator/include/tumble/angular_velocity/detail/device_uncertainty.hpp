@@ -24,7 +24,7 @@ class DeviceUncertainty {
 
   /// Work contains the buffers of update(), which are too large for the stack of a robot's thread.
   struct Work {
-    SensorErrors::Matrix system, about_corrected;
+    SensorErrors::Matrix system, corrected_covariance;
   };
 
   /// Constructs the prior, where `uncalibrated` is the prior probability of an uncalibrated device.
@@ -54,7 +54,7 @@ class DeviceUncertainty {
 
  private:
   SensorErrors::Vector data_sheet_sigma_, uncalibrated_sigma_;  ///< standard deviations
-  double uncalibrated_;
+  double uncalibrated_prior_;
 };
 
 }  // namespace tumble

@@ -43,16 +43,16 @@ class FlightSignCheck {
     Body body = Body::may_be_hand_held;
     /// Lever arm from the centre of mass to the IMU, in IMU axes.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
-    double gyro_range_rad_s = 0.0;            ///< range from the data sheet; 0: unknown
-    double reading_s = 0.01;                  ///< averaging time of readings
-    double force_min_m_s2 = 2.5;              ///< minimum force of free flight at the lever arm
-    double share = 0.25;                      ///< tolerance as a fraction of the force of free flight
-    double run_s = 0.02;                      ///< minimum duration of agreement
-    double alternative_flight_s = 0.1;        ///< minimum total flight time of an alternative sensor
-    double half_scale_flight_s = 0.3;         ///< minimum total flight time of a half-scale gyro
-    double alternative_evidence_ratio = 4.0;  ///< minimum ratio of an alternative's to the true sensor's flight time
-    double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is not hand-held
-    double gap_max_s = 0.1;                   ///< a longer gap resets the current run
+    double gyro_range_rad_s = 0.0;          ///< range from the data sheet; 0: unknown
+    double reading_s = 0.01;                ///< averaging time of readings
+    double force_min_m_s2 = 2.5;            ///< minimum force of free flight at the lever arm
+    double share = 0.25;                    ///< tolerance as a fraction of the force of free flight
+    double run_s = 0.02;                    ///< minimum duration of agreement
+    double alternative_flight_min_s = 0.1;  ///< minimum total flight time of an alternative sensor
+    double half_scale_flight_min_s = 0.3;   ///< minimum total flight time of a half-scale gyro
+    double alternative_ratio_min = 4.0;     ///< minimum ratio of an alternative's to the true sensor's flight time
+    double thrown_ratio_min = 2.0;          ///< minimum ratio for a body that is not hand-held
+    double gap_max_s = 0.1;                 ///< a longer gap resets the current run
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -69,18 +69,18 @@ class FlightSignCheck {
                       "maximum difference between the measured force and the force predicted for flight, as a share of "
                       "the predicted force"});
       visit(p.run_s, {"run_s", "s", 0.0, 10.0, "minimum duration of a flight; shorter flights are ignored"});
-      visit(p.alternative_flight_s,
-            {"alternative_flight_s", "s", 0.0, 1e3,
+      visit(p.alternative_flight_min_s,
+            {"alternative_flight_min_s", "s", 0.0, 1e3,
              "minimum flight time that another sensor orientation must explain before a fault is reported"});
-      visit(p.half_scale_flight_s,
-            {"half_scale_flight_s", "s", 0.0, 1e3,
+      visit(p.half_scale_flight_min_s,
+            {"half_scale_flight_min_s", "s", 0.0, 1e3,
              "minimum flight time that twice the measured rate must explain before a fault is reported"});
-      visit(p.alternative_evidence_ratio,
-            {"alternative_evidence_ratio", "1", 0.0, 1e6,
+      visit(p.alternative_ratio_min,
+            {"alternative_ratio_min", "1", 0.0, 1e6,
              "minimum ratio for a fault: flight time that the other orientation explains, divided by the flight time "
              "that the stated orientation explains"});
-      visit(p.thrown_evidence_ratio,
-            {"thrown_evidence_ratio", "1", 0.0, 1e6, "minimum ratio for a fault if the body is not hand-held"});
+      visit(p.thrown_ratio_min,
+            {"thrown_ratio_min", "1", 0.0, 1e6, "minimum ratio for a fault if the body is not hand-held"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "maximum time between two samples of one flight"});
     }
   };

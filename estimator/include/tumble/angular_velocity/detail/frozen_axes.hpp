@@ -24,18 +24,18 @@ namespace tumble {
 /// A working axis may repeat one reading because it is saturated. FrozenAxes treats a reading as saturated if the
 /// device flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts
 /// as saturated above 0.5 of the stated range. A saturated axis is frozen if all other axes of the IMU indicate rest
-/// for `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a
-/// saturated axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
-/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. The rate of a frozen
-/// or constantly saturated axis is unknown. FrozenAxes mistakes an even spin about a saturated axis for a frozen axis
-/// if no other axis changes.
+/// for `rail_stationary_min_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a
+/// saturated axis is frozen after `rail_repetition_max_s` while another axis of the same sensor changes. A repetition
+/// of `rail_repetition_max_s` means that the axis is frozen, or that the range is too small for the spin. The rate of a
+/// frozen or constantly saturated axis is unknown. FrozenAxes mistakes an even spin about a saturated axis for a frozen
+/// axis if no other axis changes.
 class FrozenAxes {
  public:
   struct Params {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
-    double frozen_s = 0.5;           ///< longest repetition of a working axis while the body moves
-    double rail_stationary_s = 1.5;  ///< duration of rest on all other axes while an axis is saturated
-    double rail_repeated_s = 5.0;    ///< longest saturated repetition of a working axis in motion
+    double frozen_s = 0.5;               ///< longest repetition of a working axis while the body moves
+    double rail_stationary_min_s = 1.5;  ///< duration of rest on all other axes while an axis is saturated
+    double rail_repetition_max_s = 5.0;  ///< longest saturated repetition of a working axis in motion
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -48,25 +48,25 @@ class FrozenAxes {
             {"frozen_s", "s", 1e-3, 1e4,
              "duration after which an axis counts as frozen, if it repeats one reading while the body moves"});
       visit(
-          p.rail_stationary_s,
-          {"rail_stationary_s", "s", 1e-3, 1e4,
+          p.rail_stationary_min_s,
+          {"rail_stationary_min_s", "s", 1e-3, 1e4,
            "duration after which an axis at its saturation limit counts as frozen, if all other axes are stationary"});
-      visit(p.rail_repeated_s, {"rail_repeated_s", "s", 1e-3, 1e4,
-                                "duration after which an axis counts as frozen, if it repeats one reading at its "
-                                "saturation limit while other axes move"});
+      visit(p.rail_repetition_max_s, {"rail_repetition_max_s", "s", 1e-3, 1e4,
+                                      "duration after which an axis counts as frozen, if it repeats one reading at its "
+                                      "saturation limit while other axes move"});
     }
   };
   /// State of one axis of the gyro or of the accelerometer.
   struct Axis {
     double reading = 0.0;
-    TimeNs since_ns = 0;           ///< first sample with the current reading
-    double repeated_s = 0.0;       ///< duration of the current reading
-    bool device_flagged = false;   ///< flagged by the device during the current reading
-    bool frozen = false;           ///< frozen at the current reading
-    bool ever_frozen = false;      ///< frozen at the current or an earlier reading
-    double longest_s = 0.0;        ///< longest earlier repetition of a working axis
-    double changing_s = 0.0;       ///< total time with changing readings
-    double smallest_change = 0.0;  ///< smallest observed change; 0: none yet
+    TimeNs since_ns = 0;               ///< first sample with the current reading
+    double repeated_s = 0.0;           ///< duration of the current reading
+    bool device_flagged = false;       ///< flagged by the device during the current reading
+    bool frozen = false;               ///< frozen at the current reading
+    bool ever_frozen = false;          ///< frozen at the current or an earlier reading
+    double longest_s = 0.0;            ///< longest earlier repetition of a working axis
+    double changing_duration_s = 0.0;  ///< total time with changing readings
+    double smallest_change = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
     /// Minimum, maximum and number of changes of the two other axes of the same sensor, during the repetition of one
     /// reading.

@@ -25,9 +25,9 @@ struct CalibratedRig {
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// Delay, g-sensitivity and scale errors of the device; empty if not estimated.
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
-  /// True if the run estimated only saturation limits (with_rails) or an accelerometer delay; all other values are then
-  /// the prior. A saved calibration does not contain the flag rails_alone.
-  bool rails_alone = false;
+  /// True if the run estimated only saturation limits (calibration_with_rails) or an accelerometer delay; all other
+  /// values are then the prior. A saved calibration does not contain the flag only_rails.
+  bool only_rails = false;
 
   /// Returns the saturation planes of the gyro or accelerometer, for saturation detection in the next run.
   RailPlanes planes(Triad triad = Triad::gyro) const;
@@ -43,7 +43,7 @@ CalibratedRig learnt(const RateReport& report);
 /// Returns the calibration `before` with the certain saturation limits of a run that could not estimate the constants.
 /// The function replaces old limits only if the run found better limits, and removes limits that readings contradict.
 /// Returns empty if no saturation plane is certain.
-std::optional<CalibratedRig> with_rails(const CalibratedRig& before, const SaturationLevels& rails);
+std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails);
 
 /// Applies a calibration to the next run: constants, saturation planes of the gyro, and sensor errors. The lowest
 /// saturation limit of a sensor becomes the sensor's range. The covariance of the constants is multiplied by `trust`
@@ -53,11 +53,11 @@ void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& pa
 /// Sets the priors of the next run from a saved calibration. Lever arm and inertia get four times their saved
 /// covariance, but at most the default prior. The function also applies the saturation limits. The function ignores
 /// saved biases, because biases change at every switch-on. RateStream also uses the saved sensor errors.
-void start_from_calibration(const CalibratedRig& rig, RateSmoother::Params& params);
-void start_from_calibration(const CalibratedRig& rig, RateStream::Params& params);
+void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& params);
+void apply_saved_calibration(const CalibratedRig& rig, RateStream::Params& params);
 
 /// Returns the calibration before a run: `given`, or the prior in `model` if `given` is null.
-CalibratedRig known_before(const CalibratedRig* given, const RateModelParams& model);
+CalibratedRig prior_rig_calibration(const CalibratedRig* given, const RateModelParams& model);
 
 /// Returns the calibration to save after a run that started from `given` (null: none). If the run did not estimate the
 /// constants, the result is `given` or the prior of `model`, with the certain saturation limits of the run. Returns
@@ -74,7 +74,7 @@ std::optional<CalibratedRig> learnt(const RateStream& stream, const RateStream::
 /// Returns the distance between two calibrations: the larger of the Mahalanobis distances of lever arm and inertia,
 /// each divided by the square root of its dimension. Two runs on an unchanged rig gave 0.14 to 1.0 in 18 pairs. An
 /// inertia error of 30 % gave at least 2.3. The covariance of `before` is multiplied by four, as in
-/// start_from_calibration().
-double distance_of_rigs(const RigCalibration& before, const RigCalibration& now);
+/// apply_saved_calibration().
+double calibration_distance(const RigCalibration& before, const RigCalibration& now);
 
 }  // namespace tumble

@@ -13,17 +13,17 @@ class MinSaturationLevels {
   void add(const Eigen::Vector3d& rate_rad_s);
   /// Returns whether a reading of element `axis` is certainly below the saturation limit for its sign. The margin
   /// covers the tilt and the noise of saturation planes.
-  bool rules_out(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
+  bool is_below_min_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;
 
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit) {
-    visit("least_rails", s.rad_s_);
+    visit("least_rails", s.min_levels_rad_s_);
   }
 
  private:
-  std::array<Eigen::Vector3d, 2> rad_s_{Eigen::Vector3d::Zero(),
-                                        Eigen::Vector3d::Zero()};  // negative side, positive side
+  std::array<Eigen::Vector3d, 2> min_levels_rad_s_{Eigen::Vector3d::Zero(),
+                                                   Eigen::Vector3d::Zero()};  // negative side, positive side
 };
 
 }  // namespace tumble

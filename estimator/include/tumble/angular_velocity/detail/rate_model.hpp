@@ -101,7 +101,7 @@ class RateModel {
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
   /// Returns the rate at the time of the gyro's reading, which is earlier than the sample by the age of the reading.
-  RateKnot at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
+  RateKnot knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
   /// Returns the gyro's reading, corrected for known sensor errors.
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
   /// Returns flight_factor() with the known accelerometer errors. The argument `jacobian_delay` is passed to

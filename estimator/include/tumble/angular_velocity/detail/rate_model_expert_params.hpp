@@ -66,7 +66,7 @@ struct RateContactParams {
   /// Angular acceleration about the direction of a contact force, as a fraction of the angular acceleration across the
   /// direction. Several contacts, or a contact that moves within a sample, cause torque about the direction of the
   /// contact force.
-  double twist_share = 0.3;
+  double twist_ratio = 0.3;
   /// Standard deviation of the unknown contact force, as a fraction of the force; the mean is zero. A prior that is
   /// flat in the logarithm of the force has force_share 0.58. If force_share is 0, the prior is disabled.
   double force_share = 1.0;
@@ -79,11 +79,11 @@ struct RateContactParams {
                            "the standard deviations of rates fitted through an impact are multiplied by this factor"});
     visit(p.lever_rad_m, {"contact_lever_rad_m", "rad/m", 0.0, 1e3,
                           "largest angular acceleration perpendicular to a contact force, per force"});
-    visit(p.twist_share,
-          {"contact_twist_share", "1", 0.0, 1.0,
+    visit(p.twist_ratio,
+          {"contact_twist_ratio", "1", 0.0, 1.0,
            "angular acceleration about the contact force, as a share of the angular acceleration perpendicular to it"});
     visit(p.force_share,
-          {"contact_force_share", "1", 0.0, 1e3,
+          {"contact_force_sigma_ratio", "1", 0.0, 1e3,
            "standard deviation of the unknown contact force, as a share of the force; 0: no assumption"});
   }
 };
@@ -96,7 +96,7 @@ struct RateModelExpertParams {
   /// Standard deviation of the rate from zero at rest, independent for each sample. The standard deviation
   /// rest_sigma_rad_s covers vibration and false detections of rest.
   double rest_sigma_rad_s = 0.01;
-  SensorErrorPriors error_sizes = {};  ///< uncertainty of RateModelParams::errors
+  SensorErrorPriors error_priors = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};
   RateFlightParams flight = {};
   RateContactParams contact = {};
@@ -108,7 +108,7 @@ struct RateModelExpertParams {
     visit(p.model_error_s,
           {"model_error_s", "s", 1e-6, 1.0, "correlation time of the model errors of force, torque and rate"});
     visit.group("", p.readings);
-    visit.group("error_sizes_", p.error_sizes);
+    visit.group("error_sizes_", p.error_priors);
     visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-9, 10.0, "standard deviation of the rate at rest"});
   }
 };

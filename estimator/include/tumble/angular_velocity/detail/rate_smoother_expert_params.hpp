@@ -11,9 +11,9 @@ namespace tumble {
 /// RateDescentParams contains the parameters of the Gauss-Newton solver that finds the most likely rates.
 struct RateDescentParams {
   int iterations_max = 15;
-  double tolerance_rad_s = 2e-3;  ///< converged if every rate changes by less than this
-  double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
-  double widen_first = 8.0;       ///< factor on the contact threshold in the first iteration, then halved
+  double tolerance_rad_s = 2e-3;          ///< converged if every rate changes by less than this
+  double step_max_rad_s = 10.0;           ///< longest step of a rate in one iteration
+  double initial_threshold_factor = 8.0;  ///< factor on the contact threshold in the first iteration, then halved
   /// Number of iterations after convergence in which samples in contact use truncated distributions instead of hard
   /// lower bounds. The additional iterations make the covariance of samples in contact consistent.
   int bound_iterations = 3;
@@ -25,8 +25,8 @@ struct RateDescentParams {
     visit(p.tolerance_rad_s, {"tolerance_rad_s", "rad/s", 1e-12, 1.0,
                               "change of the rates in one iteration, below which the optimisation stops"});
     visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of a rate in one iteration"});
-    visit(p.widen_first,
-          {"widen_first", "1", 1.0, 1000.0,
+    visit(p.initial_threshold_factor,
+          {"initial_threshold_factor", "1", 1.0, 1000.0,
            "factor on the contact threshold in the first iteration; each later iteration halves the factor"});
     visit(
         p.bound_iterations,

@@ -46,11 +46,11 @@ struct RateStreamExpertParams {
   /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
-  double widen_first = 8.0;      ///< factor on the contact threshold of a new clipped sample, then halved
-  double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
-  int bound_age = 3;             ///< number of steps until the lower bounds of a sample in contact become soft
-  double bound_damping = 0.5;    ///< weight of a new lower bound in each step
-  int flight_run_min = 6;        ///< minimum number of consecutive flight samples that update the calibration
+  double initial_threshold_factor = 8.0;  ///< factor on the contact threshold of a new clipped sample, then halved
+  double step_max_rad_s = 10.0;           ///< longest step of a rate at one sample
+  int bound_hard_steps = 3;               ///< number of steps until the lower bounds of a sample in contact become soft
+  double bound_damping = 0.5;             ///< weight of a new lower bound in each step
+  int flight_run_min = 6;                 ///< minimum number of consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
   /// Prior probability of an uncalibrated device. If `uncalibrated` is 0, the device is assumed to match its data
   /// sheet.
@@ -61,12 +61,13 @@ struct RateStreamExpertParams {
     visit.group("planes_", p.planes);
     visit.group("accel_planes_", p.accel_planes);
     visit.group("rests_", p.rests);
-    visit(p.widen_first, {"widen_first", "1", 1.0, 1000.0,
-                          "factor on the contact threshold of a new clipped sample; each step halves the factor"});
+    visit(p.initial_threshold_factor,
+          {"initial_threshold_factor", "1", 1.0, 1000.0,
+           "factor on the contact threshold of a new clipped sample; each step halves the factor"});
     visit(p.step_max_rad_s,
           {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of the rate of one sample in one step"});
-    visit(p.bound_age,
-          {"bound_age", "1", 0, 4096,
+    visit(p.bound_hard_steps,
+          {"bound_hard_steps", "1", 0, 4096,
            "number of steps after which the bounds of a contact sample become truncated normal distributions"});
     visit(p.flight_run_min,
           {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that calibrate the rig"});

@@ -21,8 +21,8 @@ struct SubsampleSaturation {
 /// p of the window is clipped, the reading is m = c - (1-p)^2 D/2. The saturation deficit is p^2 D/2, and the neighbour
 /// reads m + p^2 D/2 - D. The fraction p follows from (c - m) / (m - neighbour) in closed form. The saturation deficit
 /// is zero if the reading is at the saturation limit or within noise of the neighbour. The saturation deficit is also
-/// zero if more than kShareMax of the window is clipped. The argument `neighbour_rad_s` is the smaller of the
-/// neighbours' readings, with a sign for which the saturation limit is positive. The standard deviation sigma_rad_s
+/// zero if more than kSaturatedFractionMax of the window is clipped. The argument `neighbour_rad_s` is the smaller of
+/// the neighbours' readings, with a sign for which the saturation limit is positive. The standard deviation sigma_rad_s
 /// covers a change of slope within the two windows (measured on impacts of tumbling bodies).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);

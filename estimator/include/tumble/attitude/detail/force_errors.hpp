@@ -34,9 +34,9 @@ class ForceErrors {
     double bias_sigma_m_s2 = 0.05;                ///< prior of the bias; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
     double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
-    double noise_m_s2 = 0.06;          ///< noise of one force difference, averaged over kSpan_s; bound (0, 1e3]
-    double acceleration_share = 0.02;  ///< additional noise, as a fraction of a x r; bound [0, 1]
-    double gate_sigmas = 5.0;          ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
+    double noise_m_s2 = 0.06;                ///< noise of one force difference, averaged over kSpan_s; bound (0, 1e3]
+    double acceleration_noise_ratio = 0.02;  ///< additional noise, as a fraction of a x r; bound [0, 1]
+    double gate_sigmas = 5.0;                ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();

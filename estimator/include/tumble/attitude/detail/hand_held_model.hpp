@@ -67,17 +67,17 @@ struct NodeReadings {
 
 /// ReadingNoise contains the standard deviations that determine the weights of the residuals.
 struct ReadingNoise {
-  double gyro_rad_s = 0.0;    ///< standard deviation of one gyro reading
-  double window_rad_s = 0.0;  ///< difference between a window's mean and the rate at its centre
-  double tilt_share = 0.0;    ///< error of an unclipped element, per saturation deficit of a clipped element
-  double rail_rad_s = 0.0;    ///< standard deviation of a saturation limit
-  double bound = 1.0;         ///< weight of the gyro's lower bounds, as a fraction of full information
-  double force_bound = 1.0;   ///< weight of the accelerometer's lower bounds, as a fraction
-  double accel_m_s2 = 0.0;    ///< standard deviation of one force reading
-  double accel_share = 0.0;   ///< additional force noise per m/s^2 of difference from gravity
-  double rest_rad_s = 0.0;    ///< standard deviation of the rate at rest, per node
-  double rest_m_s = 0.0;      ///< standard deviation of the velocity at rest
-  double rest_m_s2 = 0.0;     ///< standard deviation of the acceleration at rest
+  double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
+  double window_rate_sigma_rad_s = 0.0;  ///< difference between a window's mean and the rate at its centre
+  double deficit_error_ratio = 0.0;      ///< error of an unclipped element, per saturation deficit of a clipped element
+  double rail_rad_s = 0.0;               ///< standard deviation of a saturation limit
+  double bound = 1.0;                    ///< weight of the gyro's lower bounds, as a fraction of full information
+  double force_bound = 1.0;              ///< weight of the accelerometer's lower bounds, as a fraction
+  double accel_m_s2 = 0.0;               ///< standard deviation of one force reading
+  double force_noise_ratio = 0.0;        ///< additional force noise per m/s^2 of difference from gravity
+  double rest_rad_s = 0.0;               ///< standard deviation of the rate at rest, per node
+  double rest_m_s = 0.0;                 ///< standard deviation of the velocity at rest
+  double rest_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
 };
 
 /// Adds the residuals of the gyro readings of one node, one residual per sensing element. Row i of `rows` is the
@@ -104,7 +104,7 @@ class Motion {
     double step_s = 0.01;
     double jerk_rad_s3_sqrts = 0.0;     ///< square root of the density of the angular jerk
     double rotation_error_sqrts = 0.0;  ///< random walk of the attitude per rad/s of rotation: scale, misalignment
-    double hand_m_s2 = 0.0, hand_tau_s = 0.0;
+    double hand_sigma_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
     double position_m = 0.0, position_tau_s = 0.0, position_leak_s = 10.0;
   };

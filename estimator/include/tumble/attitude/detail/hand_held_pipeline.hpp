@@ -58,7 +58,7 @@ class HandHeldPipeline {
   void classify_window(const ImuSample& next, State& state) const;
 
   HandHeldStream stream_;
-  StreamingClippingFinder watch_;
+  StreamingClippingFinder clipping_finder_;
 };
 
 }  // namespace tumble

@@ -11,9 +11,9 @@ struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< maximum difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< maximum difference from the median
-  /// A reading above the fraction subsample_saturation_share of the range may have been saturated during a part of its
+  /// A reading above the fraction subsample_saturation_ratio of the range may have been saturated during a part of its
   /// sample.
-  double subsample_saturation_share = 0.15;
+  double subsample_saturation_ratio = 0.15;
   double hidden_force_m_s2 = 3.0;  ///< largest force difference that partial saturation explains
 
   template <class Self, class Visitor>
@@ -21,12 +21,12 @@ struct ImuOutlierParams {
     visit(p.rate_rad_s, {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3,
                          "maximum accepted difference between an IMU's rate and the median of all IMUs"});
     visit(p.rate_share,
-          {"rate_tolerance_share", "1", 0.0, 1.0,
+          {"rate_tolerance_ratio", "1", 0.0, 1.0,
            "additional accepted difference between an IMU's rate and the median, as a share of the rate"});
     visit(p.force_m_s2, {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4,
                          "maximum accepted difference between an IMU's force and the median of all IMUs"});
-    visit(p.subsample_saturation_share,
-          {"subsample_saturation_share", "1", 1e-12, 1.0,
+    visit(p.subsample_saturation_ratio,
+          {"subsample_saturation_ratio", "1", 1e-12, 1.0,
            "above this share of the range, a reading may contain saturation within its sample period"});
     visit(p.hidden_force_m_s2,
           {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
@@ -41,8 +41,8 @@ struct FrozenImuParams {
   double after_s = 0.1;
   double rate_rad_s = 0.03;  ///< minimum change of the rates of other IMUs
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all IMUs repeat readings
-  double thawed_after_s = 0.5;  ///< duration of changing readings after which an IMU is used again
+  double turned_rad = 1.0;        ///< minimum rotation of gravity, also if all IMUs repeat readings
+  double unfreeze_after_s = 0.5;  ///< duration of changing readings after which an IMU is used again
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -56,8 +56,8 @@ struct FrozenImuParams {
     visit(p.turned_rad,
           {"frozen_turned_rad", "rad", 1e-12, 1e3,
            "rotation of the IMUs after which an accelerometer that repeats one reading counts as frozen"});
-    visit(p.thawed_after_s,
-          {"thawed_after_s", "s", 1e-12, 1e3, "duration of changing readings after which a frozen IMU is used again"});
+    visit(p.unfreeze_after_s, {"unfreeze_after_s", "s", 1e-12, 1e3,
+                               "duration of changing readings after which a frozen IMU is used again"});
   }
 };
 
@@ -75,7 +75,7 @@ struct DisagreeingImuParams {
           {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
            "difference of an IMU's mean rate over 0.5 s from the median of all IMUs, above which the IMU disagrees"});
     visit(p.rate_share,
-          {"disagree_rate_share", "1", 0.0, 1.0,
+          {"disagree_rate_ratio", "1", 0.0, 1.0,
            "additional accepted difference between an IMU's mean rate and the median, as a share of the rate"});
     visit(p.force_m_s2,
           {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,

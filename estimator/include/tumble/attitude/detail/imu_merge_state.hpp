@@ -56,13 +56,13 @@ struct ImuMergeState {
   std::array<ImuMergeUnit, kImus> units{};
   ForceErrors::State forces;
   RateRecovery::State recovery;
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged mean rate over the last window
-  Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< merged mean rate over the window before the last
-  double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
-  double window_s = 0.0;                                        ///< length of the current window
-  double length_s = 0.0, length_before_s = 0.0;                 ///< lengths of the last two windows
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();           ///< merged mean rate over the last window
+  Eigen::Vector3d previous_rate_rad_s = Eigen::Vector3d::Zero();  ///< merged mean rate over the window before the last
+  double rotation_rate_rad_s = 0.0;                               ///< mean of the rate over half a second
+  double window_s = 0.0;                                          ///< length of the current window
+  double length_s = 0.0, previous_length_s = 0.0;                 ///< lengths of the last two windows
   double lever_arm_correlation = 0.0, lever_arm_effect_m2_s3 = 0.0;  ///< sums for lever_arm_agreement()
-  UnitSignCheck senses;
+  UnitSignCheck sign_check;
   std::int64_t samples = 0, windows = 0;
   int unclipped_windows =
       kAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most kAccelerationWindows

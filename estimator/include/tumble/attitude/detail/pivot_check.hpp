@@ -16,21 +16,21 @@ namespace tumble {
 /// Parameters of PivotCheck.
 struct PivotCheckParams {
   double gravity_m_s2 = 9.80665;
-  double accel_range_m_s2 = 0.0;    ///< range from the data sheet; 0: unknown
-  double reading_s = 0.01;          ///< averaging time of readings
-  double segment_s = 2.0;           ///< duration of a motion segment; the minimum is half of segment_s
-  double rotation_least_rad = 1.0;  ///< minimum rotation within a segment
-  double explains_m_s = 0.3;        ///< rms velocity below which gyro rates explain a segment
-  double noise_m_s = 0.03;          ///< rms velocity below which two alternatives explain a segment equally well
-  double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares
-  double evidence_of_each = 0.6;    ///< minimum mean of the log ratio per segment
-  double segments_least = 6.0;      ///< minimum number of better explained segments; segments overlap by half
-  double better_over_worse = 4.0;   ///< minimum ratio of better to worse explained segments
-  double arm_most_m = 0.25;         ///< maximum pivot distance of segments that determine the scale
-  double scale_off = 0.025;         ///< minimum difference of the scale from 1, in addition to five standard deviations
-  double scale_deviations = 5.0;
-  double scale_segments_least = 10.0;  ///< minimum number of segments that determine the scale
-  double scale_share_least = 0.5;
+  double accel_range_m_s2 = 0.0;        ///< range from the data sheet; 0: unknown
+  double reading_s = 0.01;              ///< averaging time of readings
+  double segment_s = 2.0;               ///< duration of a motion segment; the minimum is half of segment_s
+  double rotation_min_rad = 1.0;        ///< minimum rotation within a segment
+  double explained_rms_m_s = 0.3;       ///< rms velocity below which gyro rates explain a segment
+  double noise_m_s = 0.03;              ///< rms velocity below which two alternatives explain a segment equally well
+  double evidence_min = 5.0;            ///< minimum sum over the segments of the log ratio of squares
+  double mean_evidence_min = 0.6;       ///< minimum mean of the log ratio per segment
+  double better_segments_min = 6.0;     ///< minimum number of better explained segments; segments overlap by half
+  double better_worse_ratio_min = 4.0;  ///< minimum ratio of better to worse explained segments
+  double pivot_distance_max_m = 0.25;   ///< maximum pivot distance of segments that determine the scale
+  double scale_error_min = 0.025;  ///< minimum difference of the scale from 1, in addition to five standard deviations
+  double scale_error_min_sigmas = 5.0;
+  double scale_segments_min = 10.0;  ///< minimum number of segments that determine the scale
+  double scale_segment_fraction_min = 0.5;
   double gap_max_s = 0.1;  ///< a longer gap ends a segment
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -41,29 +41,31 @@ struct PivotCheckParams {
           {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
     visit(p.segment_s, {"segment_s", "s", 0.1, 100.0, "duration of one segment of motion"});
-    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 0.0, 1e3, "minimum rotation within a segment"});
-    visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3,
-                           "maximum rms velocity of the pivot in a segment that counts as explained"});
+    visit(p.rotation_min_rad, {"rotation_min_rad", "rad", 0.0, 1e3, "minimum rotation within a segment"});
+    visit(p.explained_rms_m_s, {"explained_rms_m_s", "m/s", 1e-3, 1e3,
+                                "maximum rms velocity of the pivot in a segment that counts as explained"});
     visit(p.noise_m_s, {"noise_m_s", "m/s", 1e-6, 1e3, "noise floor of the rms velocity"});
-    visit(p.evidence_least,
-          {"evidence_least", "1", 0.0, 1e6,
-           "minimum evidence for another orientation or scale of the gyro, summed over all segments"});
-    visit(p.evidence_of_each, {"evidence_of_each", "1", 0.0, 1e3,
-                               "minimum evidence for another orientation or scale of the gyro, mean per segment"});
-    visit(p.segments_least,
-          {"segments_least", "1", 1.0, 1e6, "minimum number of segments that the other orientation explains better"});
-    visit(p.better_over_worse,
-          {"better_over_worse", "1", 0.0, 1e6,
+    visit(p.evidence_min, {"evidence_min", "1", 0.0, 1e6,
+                           "minimum evidence for another orientation or scale of the gyro, summed over all segments"});
+    visit(p.mean_evidence_min, {"mean_evidence_min", "1", 0.0, 1e3,
+                                "minimum evidence for another orientation or scale of the gyro, mean per segment"});
+    visit(p.better_segments_min, {"better_segments_min", "1", 1.0, 1e6,
+                                  "minimum number of segments that the other orientation explains better"});
+    visit(p.better_worse_ratio_min,
+          {"better_worse_ratio_min", "1", 0.0, 1e6,
            "minimum ratio of segments that the other orientation explains better to segments that it explains worse"});
-    visit(p.arm_most_m, {"arm_most_m", "m", 1e-3, 1e3,
-                         "maximum distance between sensor and pivot in a segment that measures the gyro's scale"});
-    visit(p.scale_off, {"scale_off", "1", 1e-4, 1.0, "largest accepted difference of the gyro's scale from 1"});
-    visit(p.scale_deviations, {"scale_deviations", "1", 0.1, 1e6,
-                               "minimum difference of the gyro's scale from 1 for a fault, in standard deviations"});
-    visit(p.scale_segments_least,
-          {"scale_segments_least", "1", 2.0, 1e6, "minimum number of segments for a measurement of the gyro's scale"});
-    visit(p.scale_share_least, {"scale_share_least", "1", 0.0, 1.0,
-                                "minimum share of the explained segments that measure the gyro's scale"});
+    visit(p.pivot_distance_max_m,
+          {"pivot_distance_max_m", "m", 1e-3, 1e3,
+           "maximum distance between sensor and pivot in a segment that measures the gyro's scale"});
+    visit(p.scale_error_min,
+          {"scale_error_min", "1", 1e-4, 1.0, "largest accepted difference of the gyro's scale from 1"});
+    visit(p.scale_error_min_sigmas,
+          {"scale_error_min_sigmas", "1", 0.1, 1e6,
+           "minimum difference of the gyro's scale from 1 for a fault, in standard deviations"});
+    visit(p.scale_segments_min,
+          {"scale_segments_min", "1", 2.0, 1e6, "minimum number of segments for a measurement of the gyro's scale"});
+    visit(p.scale_segment_fraction_min, {"scale_segment_fraction_min", "1", 0.0, 1.0,
+                                         "minimum share of the explained segments that measure the gyro's scale"});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "maximum time between two samples of one segment"});
   }
 };

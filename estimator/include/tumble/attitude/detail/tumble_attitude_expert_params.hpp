@@ -50,7 +50,7 @@ struct AttitudeRollingParams {
 
 /// AttitudeGapParams contains the parameters of motion during a gap of the readings.
 struct AttitudeGapParams {
-  double least_s = 0.05;  ///< a longer time between two samples is a gap
+  double duration_min_s = 0.05;  ///< a longer time between two samples is a gap
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
   /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
@@ -60,8 +60,8 @@ struct AttitudeGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.least_s, {"gap_least_s", "s", 1e-6, 1e4,
-                      "maximum time between two samples; a longer time counts as a gap of the IMU data"});
+    visit(p.duration_min_s, {"gap_min_s", "s", 1e-6, 1e4,
+                             "maximum time between two samples; a longer time counts as a gap of the IMU data"});
     visit(p.rate_walk_rad_s_sqrts,
           {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
     visit(p.velocity_walk_m_s_sqrts,

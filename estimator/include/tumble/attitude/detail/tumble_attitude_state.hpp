@@ -42,7 +42,7 @@ struct TumbleAttitudeState {
   bool at_rest = false;
   // State of a rolling sphere.
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, minus the bias
-  double slip_s = 0.0, grip_s = 0.0;
+  double slip_duration_s = 0.0, grip_duration_s = 0.0;
   bool slipping = false;
   TimeNs last_time_ns = 0;
   bool started = false;

@@ -18,7 +18,7 @@ struct InertialNoiseParams {
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
   /// Rotation error as a fraction of the rotation angle, due to scale, misalignment, and rate changes within a sample.
-  double rotation_share = 0.001;
+  double rotation_noise_ratio = 0.001;
   /// Velocity error as a fraction of the integral of the specific force. The velocity error is important at impacts.
   double force_share = 0.03;
   /// Random walks of velocity and rate over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
@@ -36,11 +36,12 @@ struct InertialNoiseParams {
                         "standard deviation of the attitude after 0.1 s of inertial prediction", FieldRank::basic});
     visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3,
                         "standard deviation of the velocity after 0.1 s of inertial prediction", FieldRank::basic});
-    visit(p.rotation_share, {"rotation_sigma_share", "1", 0.0, 1.0,
-                             "standard deviation of the attitude after inertial prediction, as a share of the rotation",
-                             FieldRank::basic});
+    visit(
+        p.rotation_noise_ratio,
+        {"rotation_sigma_ratio", "1", 0.0, 1.0,
+         "standard deviation of the attitude after inertial prediction, as a share of the rotation", FieldRank::basic});
     visit(p.force_share,
-          {"force_sigma_share", "1", 0.0, 1.0,
+          {"force_sigma_ratio", "1", 0.0, 1.0,
            "standard deviation of the velocity after inertial prediction, as a share of the integrated force",
            FieldRank::basic});
     visit(p.gap_velocity_walk_m_s_sqrt_s,
@@ -69,8 +70,8 @@ struct SaturatedImuParams {
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
-  double deficit_carry_max = 3.0;    ///< maximum growth of the saturation deficit across a sweep boundary
-  double deficit_knot_share = 0.05;  ///< standard deviation between adjacent knots, as a fraction
+  double deficit_carry_max = 3.0;  ///< maximum growth of the saturation deficit across a sweep boundary
+  double knot_sigma_ratio = 0.05;  ///< standard deviation between adjacent knots, as a fraction
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -89,9 +90,9 @@ struct SaturatedImuParams {
           {"deficit_time_s", "s", 1e-3, 1e3, "correlation time of the saturation deficit", FieldRank::basic});
     visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
                                 "maximum growth factor of the saturation deficit from one sweep to the next"});
-    visit(p.deficit_knot_share, {"deficit_knot_share", "1", 1e-6, 1.0,
-                                 "standard deviation of the difference between neighbouring knots of the saturation "
-                                 "deficit, as a share of the deficit's standard deviation"});
+    visit(p.knot_sigma_ratio, {"knot_sigma_ratio", "1", 1e-6, 1.0,
+                               "standard deviation of the difference between neighbouring knots of the saturation "
+                               "deficit, as a share of the deficit's standard deviation"});
   }
 };
 

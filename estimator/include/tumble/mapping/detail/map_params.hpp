@@ -36,14 +36,14 @@ struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< tilt error at the start: accelerometer bias of 2 mg
   /// Measured drift per sweep where surfaces do not constrain a direction, as a fraction of the standard deviation in
   /// the weakest direction.
-  double drift_share = 0.1;
+  double drift_ratio = 0.1;
   double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation for computing the drift
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tilt_sigma_rad,
           {"tilt_sigma_rad", "rad", 0.0, 1.0, "reported standard deviation of the tilt after initial levelling"});
-    visit(p.drift_share, {"drift_share", "1", 0.0, 1.0,
+    visit(p.drift_ratio, {"drift_ratio", "1", 0.0, 1.0,
                           "standard deviation of the map's drift per sweep, as a share of the standard deviation of "
                           "the least constrained direction"});
     visit(p.drift_sigma_max_m,

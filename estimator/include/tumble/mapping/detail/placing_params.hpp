@@ -64,7 +64,7 @@ struct RegistrationStagesParams {
   double coarse_rematch_m = 0.2;        ///< motion of a point after which its plane is searched again
   double coarse_step_m = 5e-3;          ///< converged if a step is below coarse_step_m and coarse_step_rad
   double coarse_step_rad = 2e-3;
-  double coarse_fitting_share_min = 0.2;  ///< minimum fraction of coarse matches within three standard deviations
+  double coarse_inlier_ratio_min = 0.2;  ///< minimum fraction of coarse matches within three standard deviations
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -82,8 +82,8 @@ struct RegistrationStagesParams {
           {"coarse_step_m", "m", 1e-12, 1.0, "coarse start: position step below which the registration has converged"});
     visit(p.coarse_step_rad, {"coarse_step_rad", "rad", 1e-12, 1.0,
                               "coarse start: rotation step below which the registration has converged"});
-    visit(p.coarse_fitting_share_min, {"coarse_fitting_share_min", "1", 0.0, 1.0,
-                                       "coarse start: minimum share of matches within three standard deviations"});
+    visit(p.coarse_inlier_ratio_min, {"coarse_inlier_ratio_min", "1", 0.0, 1.0,
+                                      "coarse start: minimum share of matches within three standard deviations"});
   }
 };
 

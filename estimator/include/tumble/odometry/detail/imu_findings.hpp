@@ -31,13 +31,14 @@ struct CheckedImu {
 /// ImuFinding is one implausible property of the readings.
 struct ImuFinding {
   enum class Kind : std::uint8_t {
-    rate_unit,       ///< rates are possibly not in rad/s
-    rest_force,      ///< the force at rest differs from gravity (RestGravity)
-    gravity_turn,    ///< gravity does not rotate as the gyro measures, or a sensor is frozen (ImuPlausibility)
-    flight,          ///< forces in flight contradict lever arm, axes or signs (FlightSignCheck)
-    turn_at_rests,   ///< the rates do not rotate gravity correctly between rests (RestGravity)
-    turn_at_pivots,  ///< the rates do not rotate the body correctly about pivots (PivotCheck)
-    frozen_axis,     ///< `axis` repeats one reading (FrozenAxes)
+    rate_unit,                  ///< rates are possibly not in rad/s
+    rest_force,                 ///< the force at rest differs from gravity (RestGravity)
+    gravity_rotation_mismatch,  ///< gravity does not rotate as the gyro measures, or a sensor is frozen
+                                ///< (ImuPlausibility)
+    flight,                     ///< forces in flight contradict lever arm, axes or signs (FlightSignCheck)
+    rest_rotation_mismatch,     ///< the rates do not rotate gravity correctly between rests (RestGravity)
+    pivot_rotation_mismatch,    ///< the rates do not rotate the body correctly about pivots (PivotCheck)
+    frozen_axis,                ///< `axis` repeats one reading (FrozenAxes)
   };
   Kind kind = Kind::rate_unit;
   Status status;        ///< implausible quantity, its value and the violated limit
@@ -48,7 +49,7 @@ struct ImuFinding {
 /// ImuFindings contains findings about an IMU, and the measured quantities of the checks that ran.
 struct ImuFindings {
   struct Readings {
-    double rest_force_share = 1.0;  ///< RestGravity::magnitude_error_ratio
+    double rest_force_ratio = 1.0;  ///< RestGravity::magnitude_error_ratio
     double force_ratio = 1.0;       ///< the following members: see ImuPlausibility
     double unexplained_rotation_ratio = 0.0;
     double rotation_slope = 1.0, rotation_agreement = 1.0;

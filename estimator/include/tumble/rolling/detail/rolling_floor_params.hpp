@@ -10,13 +10,13 @@ namespace tumble {
 /// RollingContactParams contains the accuracy of the rolling constraint and the properties of floors.
 struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
-  double grip_sigma_share = 1.5e-3;  ///< additional standard deviation, as a fraction of the rolling speed
+  double grip_sigma_ratio = 1.5e-3;  ///< additional standard deviation, as a fraction of the rolling speed
   double vertical_sigma_m_s = 8e-3;
   double rough_share = 0.055;               ///< additional standard deviation on a rough floor, as a fraction
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
   double slope_sigma = 0.15;                ///< standard deviation of the slope's sines when a slope begins
   double slope_walk_sqrts = 0.02;
-  double impact_share = 0.06;  ///< error of timing and direction of an impact, as a fraction of its size
+  double impact_sigma_ratio = 0.06;  ///< error of timing and direction of an impact, as a fraction of its size
   /// Mean velocity change of an impact per node while rolling. A sphere that stays on the floor has no strong impacts.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
@@ -27,8 +27,8 @@ struct RollingContactParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
                              "standard deviation of the contact velocity while gripping", FieldRank::basic});
-    visit(p.grip_sigma_share,
-          {"grip_sigma_share", "1", 1e-12, 1e3, "additional standard deviation, as a share of the rolling speed"});
+    visit(p.grip_sigma_ratio,
+          {"grip_sigma_ratio", "1", 1e-12, 1e3, "additional standard deviation, as a share of the rolling speed"});
     visit(p.vertical_sigma_m_s,
           {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of the vertical velocity while rolling"});
     visit(p.rough_share,
@@ -39,8 +39,8 @@ struct RollingContactParams {
                                         "random walk of the effective rolling radius on a rough floor"});
     visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope at its start"});
     visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
-    visit(p.impact_share,
-          {"impact_share", "1", 0.0, 1e3,
+    visit(p.impact_sigma_ratio,
+          {"impact_sigma_ratio", "1", 0.0, 1e3,
            "standard deviation of an impact's timing and direction, as a share of the impact's velocity change"});
     visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
                                      "mean velocity change per node that impacts cause and the model does not explain, "
@@ -64,8 +64,8 @@ struct RollingModeParams {
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
   /// The position is uncertain after an event that increases the horizontal standard deviation by more than
-  /// uncertain_m.
-  double uncertain_m = 0.03;
+  /// event_sigma_growth_m.
+  double event_sigma_growth_m = 0.03;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -89,9 +89,10 @@ struct RollingModeParams {
           {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from rough to smooth floor"});
     visit(p.event_shortest_s,
           {"event_shortest_s", "s", 0.0, 10.0, "minimum duration of a slip or bump", FieldRank::basic});
-    visit(p.uncertain_m, {"uncertain_m", "m", 1e-12, 1e3,
-                          "growth of the horizontal standard deviation during an event, above which the event is "
-                          "reported as uncertain"});
+    visit(p.event_sigma_growth_m,
+          {"event_sigma_growth_m", "m", 1e-12, 1e3,
+           "growth of the horizontal standard deviation during an event, above which the event is "
+           "reported as uncertain"});
   }
 };
 

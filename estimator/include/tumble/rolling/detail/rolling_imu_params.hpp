@@ -48,7 +48,8 @@ struct RollingImuNoiseParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
   double rate_error_sqrts = 6e-4;         ///< angle random walk per rad/s of rotation
   double velocity_walk_m_s_sqrts = 6e-3;
-  double spin_force_sqrts = 4e-5;  ///< additional velocity random walk per (rad/s)^2: errors of large forces
+  double velocity_walk_per_rate2_sqrts =
+      4e-5;  ///< additional velocity random walk per (rad/s)^2: errors of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
   double accel_bias_walk_m_s2_sqrts = 2e-3;
 
@@ -57,8 +58,8 @@ struct RollingImuNoiseParams {
     visit(p.attitude_walk_rad_sqrts, {"attitude_walk_rad_sqrts", "rad/sqrt(s)", 1e-12, 1e3, "angle random walk"});
     visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 1e-12, 1e3, "angle random walk per rad/s of rate"});
     visit(p.velocity_walk_m_s_sqrts, {"velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 1e3, "velocity random walk"});
-    visit(p.spin_force_sqrts,
-          {"spin_force_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
+    visit(p.velocity_walk_per_rate2_sqrts,
+          {"velocity_walk_per_rate2_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
            "additional velocity random walk per (rad/s)^2 of rate, caused by sensor errors under large forces"});
     visit(p.gyro_bias_walk_rad_s_sqrts,
           {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro bias"});
@@ -77,7 +78,7 @@ struct RollingRailParams {
   /// Standard deviation of the force that saturation shorter than a sample removes, as a fraction of the force. A short
   /// impact may saturate the accelerometer within a sample although the mean stays below the range. The full standard
   /// deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
-  double subsample_saturation_share = 0.25;
+  double subsample_saturation_ratio = 0.25;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -88,24 +89,25 @@ struct RollingRailParams {
            "standard deviation of a clipped rate that was recovered from several IMUs; 0: no recovery"});
     visit(p.clipped_force_sigma_m_s2, {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3,
                                        "standard deviation of the force beyond the saturation limit"});
-    visit(p.subsample_saturation_share,
-          {"subsample_saturation_share", "1", 0.0, 10.0,
+    visit(p.subsample_saturation_ratio,
+          {"subsample_saturation_ratio", "1", 0.0, 10.0,
            "standard deviation of the mean force of an impact within one sample, as a share of this force"});
   }
 };
 
-/// RollingGapParams contains the parameters of gaps in the readings. If two readings are further apart than gap_from_s,
-/// the force between the readings is unknown. RollingFilter interpolates the rate linearly, with the uncertainty of an
-/// angular acceleration of gap_acceleration_rad_s2.
+/// RollingGapParams contains the parameters of gaps in the readings. If two readings are further apart than
+/// gap_min_duration_s, the force between the readings is unknown. RollingFilter interpolates the rate linearly, with
+/// the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
 struct RollingGapParams {
-  double gap_from_s = 0.06;
+  double gap_min_duration_s = 0.06;
   double gap_max_s = 1.0;  ///< a longer gap ends the run
   double gap_acceleration_rad_s2 = 15.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_from_s, {"gap_from_s", "s", 1e-9, 1.0,
-                         "if two readings are farther apart than this, the force between the readings is unknown"});
+    visit(p.gap_min_duration_s,
+          {"gap_min_duration_s", "s", 1e-9, 1.0,
+           "if two readings are farther apart than this, the force between the readings is unknown"});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap ends the run with an error"});
     visit(p.gap_acceleration_rad_s2,
