@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs one peer over a recording: adapt.py ADAPTER RECORDING OUTPUT [ARGUMENT...], or adapt.py --version ADAPTER PACKAGE.
+"""Runs one published estimator on a recording: adapt.py ADAPTER RECORDING OUTPUT [ARGUMENT...].
+Prints its version with adapt.py --version ADAPTER PACKAGE.
 
-ADAPTER is a file of the folder adapters with a function `run(recording, *arguments)` that returns stamps and poses, or
-attitudes. Those are levelled (poses.py) and left as a TUM file."""
+ADAPTER is a file of the folder adapters. Its function `run(recording, *arguments)` returns time stamps with poses or
+attitudes. The script levels them (poses.py) and writes a TUM file."""
 import hashlib
 import importlib
 import importlib.metadata
@@ -17,7 +18,7 @@ import recording  # noqa: E402
 
 
 def version(adapter: str, package: str) -> str:
-    """The package's version, and a digest of what stands between it and us."""
+    """Returns the version of the package, and a digest of the adapter's files."""
     digest = hashlib.sha256()
     for file in ("adapt.py", "frames.py", "poses.py", "recording.py", f"adapters/{adapter}.py"):
         digest.update((HERE / file).read_bytes())

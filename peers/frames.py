@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Odometry that is given a sweep at a time with the time of each return, as KISS-ICP takes it and what was made after it."""
+"""Runs odometry with the interface of KISS-ICP, which takes one sweep per call with the time of each return."""
 import numpy as np
 
 from poses import Track
@@ -7,8 +7,8 @@ from recording import Recording
 
 
 def followed(odometry, sensors: Recording) -> Track:
-    """Poses of the lidar by `register_frame(points, seconds)` and `last_pose`, each at its sweep's last point, which the sweep
-    is deskewed to."""
+    """Returns the poses of the lidar from `register_frame(points, seconds)` and `last_pose`. Each sweep is deskewed to
+    its last point, so this point's time is the time of the pose."""
     track = Track([], [], "lidar")
     for sweep in sensors.sweeps:
         odometry.register_frame(sweep.points_L_m, sweep.offset_ns * 1e-9)

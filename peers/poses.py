@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From a peer's poses to ours: a world with z up, a TUM file."""
+"""Converts the poses of an external estimator to a world with z up, and writes a TUM file."""
 import dataclasses
 import os
 
@@ -7,20 +7,20 @@ import numpy as np
 
 from recording import Recording
 
-REST_S = 1.0   # every scenario of the rig rests at least so long at its beginning (scenarios/catalogue)
-LATE_S = 1.5   # a peer that begins later than that has missed something
+REST_S = 1.0   # in every scenario of the rig, the rig rests at least this long at the start (scenarios/catalogue)
+LATE_S = 1.5   # if the first pose is later, the estimator has missed a part of the motion
 
 
 @dataclasses.dataclass
 class Track:
-    """Poses of the lidar or of the IMU in a world of the peer's own, whose axes may point anywhere."""
+    """Poses of the lidar or the IMU in the world frame of the external estimator, which has arbitrary axes."""
     time_ns: list
     T_WA: list   # 4 x 4
     frame: str   # "lidar" or "imu", as in the peer's YAML
 
 
 def up_in(frame: str, sensors: Recording) -> np.ndarray:
-    """Unit vector up in the axes of a sensor: the mean specific force of the first second, at rest."""
+    """Returns the up direction in sensor axes, from the mean specific force of the first second, at rest."""
     resting = sensors.time_ns <= sensors.time_ns[0] + int(REST_S * 1e9)
     up = sensors.accel_I_m_s2[resting].mean(axis=0)
     if frame == "lidar":
@@ -29,15 +29,15 @@ def up_in(frame: str, sensors: Recording) -> np.ndarray:
 
 
 def turning(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The smallest rotation that takes the unit vector a to b. They must not be opposite."""
+    """Returns the smallest rotation that maps the unit vector a to b. The vectors must not be opposite."""
     v, c = np.cross(a, b), float(a @ b)
     cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
     return np.eye(3) + cross + cross @ cross / (1.0 + c)
 
 
 def levelled(track: Track, sensors: Recording) -> Track:
-    """The same way, begun at the origin with z up: of all that a peer says, its first pose alone is replaced. Until it
-    has begun it stands where it begins, which is at rest; one that begins after LATE_S is left as it is."""
+    """Returns the trajectory in a world with z up, whose origin is the first pose. If the first pose is at most LATE_S
+    late, this pose is also used for the start of the recording, because the rig is at rest then."""
     if not track.time_ns:
         raise SystemExit("the peer gave no pose")
     level = np.eye(4)
@@ -52,7 +52,7 @@ def levelled(track: Track, sensors: Recording) -> Track:
 
 
 def quaternion_xyzw(R: np.ndarray) -> np.ndarray:
-    """Hamilton quaternion of a rotation; of the four forms the one with the largest divisor."""
+    """Returns the Hamilton quaternion of a rotation, as the eigenvector of the largest eigenvalue (Bar-Itzhack, 2000)."""
     k = np.array([[R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0],
                   [R[0, 1] + R[1, 0], R[1, 1] - R[0, 0] - R[2, 2], 0, 0],
                   [R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], R[2, 2] - R[0, 0] - R[1, 1], 0],
@@ -62,7 +62,8 @@ def quaternion_xyzw(R: np.ndarray) -> np.ndarray:
 
 
 def write_tum(path: str, track: Track) -> None:
-    """`t x y z qx qy qz qw` a line, seconds from the start of the recording. Written beside and renamed."""
+    """Writes lines `t x y z qx qy qz qw`, with t in seconds from the start of the recording. The file gets its name
+    when complete."""
     with open(path + ".part", "w") as out:
         for time_ns, T in zip(track.time_ns, track.T_WA):
             seconds, rest = divmod(int(time_ns), 1_000_000_000)

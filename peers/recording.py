@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sensors of a recording as numpy arrays: SI, int64 nanoseconds from its start, frames as in docs/design.md."""
+"""Reads the sensors of a recording as numpy arrays: SI units, int64 nanoseconds from its start, frames as in docs/design.md."""
 import dataclasses
 
 import h5py
 import numpy as np
 
-# The cage around the rig's lidar, in its axes [m]: the box that the project's own mapper takes returns of itself to lie
-# in (estimator/include/tumble/mapping/lidar_inertial_odometry.hpp). No peer is shown those.
+# Box of the rig's cage, in lidar axes [m]. The mapper of this project removes returns within this box
+# (estimator/include/tumble/mapping/lidar_inertial_odometry.hpp), and so does this script for all external estimators.
 OWN_BODY_L_M = np.array([[-0.5, -0.4, -0.27], [0.5, 0.4, 0.23]])
 SEQUENCE_NS = 50_000  # all rings of the RS-16 fire once in it (models/sensors/rs16.yaml)
 
 
 @dataclasses.dataclass
 class Sweep:
-    """One turn of the lidar: N returns, nothing deskewed, none of the robot itself."""
+    """One turn of the lidar with N raw returns, not deskewed. Returns from the robot itself are removed."""
     start_ns: int
-    end_ns: int            # of the period, whether or not a return falls there
+    end_ns: int            # end of the sweep period, which may be later than the last return
     points_L_m: np.ndarray  # (N, 3) float64
     offset_ns: np.ndarray   # (N,) int64 since start_ns
     ring: np.ndarray        # (N,) int, from bottom to top
     intensity: np.ndarray   # (N,) float32
 
     def organised(self, rings: int, columns: int) -> np.ndarray:
-        """Index of the return in each cell of rings x columns, -1 where there is none."""
+        """Returns the index of the return in each cell of rings x columns; -1 for an empty cell."""
         cells = np.full((rings, columns), -1)
         column = np.minimum(self.offset_ns // SEQUENCE_NS, columns - 1)
         cells[self.ring, column] = np.arange(len(self.ring))
@@ -43,12 +43,12 @@ class Recording:
     sweeps: list[Sweep]
 
     def until(self, end_ns: int, begun: int) -> int:
-        """Number of samples up to a time, not fewer than `begun`: what has come when a sweep is complete."""
+        """Returns the number of IMU samples until end_ns, but at least `begun`. At this time, a sweep is complete."""
         return max(begun, int(np.searchsorted(self.time_ns, end_ns, side="right")))
 
 
 def read_sweeps(lidar) -> list[Sweep]:
-    """All sweeps with a return."""
+    """Returns all sweeps that have returns."""
     first = lidar["sweep_first"][:].astype(int)
     starts, period_ns = lidar["sweep_start_ns"][:], int(lidar.attrs["sweep_period_ns"])
     points = lidar["position_L_m"][:].astype(float)
@@ -64,7 +64,7 @@ def read_sweeps(lidar) -> list[Sweep]:
 
 
 def read(path: str) -> Recording:
-    """Reads a recording (scenarios/recordings/FORMAT.md), its truth apart."""
+    """Reads a recording (scenarios/recordings/FORMAT.md) without its truth."""
     with h5py.File(path) as file:
         imu = file["sensors/imus/0"]
         T_IL, sweeps = np.eye(4), []

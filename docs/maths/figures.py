@@ -32,7 +32,7 @@ def schematic(axes, title):
 
 
 def rate_smoother():
-    """Factor graph of four samples, and the blocks of the normal matrix (R26)."""
+    """Draws the factor graph of four samples, and the blocks of the normal matrix (R26)."""
     figure, (graph, matrix) = panels(2)
     schematic(graph, "factors of four samples")
     graph.set(xlim=(-0.8, 4.3), ylim=(-1.15, 2.6))
@@ -80,7 +80,7 @@ def rate_smoother():
 
 
 def rails():
-    """Readings of a gyro with tilted rails (R50, R51), and the mean of a window that meets a rail (R69)."""
+    """Plots readings of a gyro with tilted saturation limits (R50, R51), and the mean of a partly clipped window (R69)."""
     figure, (plane, window) = panels(2)
     rows = np.array([[1.0, 0.06], [-0.05, 1.0]])
     rail = 10.0
@@ -119,7 +119,7 @@ def rails():
 
 
 def rate_stream():
-    """The sliding window, and the parabola that a saturated run hides (R99)."""
+    """Plots the sliding window, and the parabola of the true rate during saturation (R99)."""
     figure, (window, run) = panels(2)
     schematic(window, "sliding window")
     window.set(xlim=(-0.3, 10.3), ylim=(-1.0, 2.3))
@@ -160,7 +160,7 @@ def rate_stream():
 
 
 def carried():
-    """Rates that differ by whole revolutions (C28), and the likelihoods of the regimes (C32 to C35)."""
+    """Plots rates that differ by whole revolutions (C28), and the likelihoods of the regimes (C32 to C35)."""
     figure, (turns, regimes) = panels(2)
     rail, span = 10.0, 0.6
     t = np.linspace(-0.2, span + 0.2, 400)
@@ -206,7 +206,7 @@ def rotation(angle):
 
 
 def flight_arc():
-    """Paths over a gap with a constant rate about y, and the error of A10 with the trapezoid rule against A11."""
+    """Plots paths over a gap with a constant rate about y, and the error of A10 by the trapezoid rule compared with A11."""
     figure, (paths, errors) = panels(2)
     gravity, rate, lever = np.array([0.0, -9.81]), 12.0, np.array([0.12, 0.0])
     start, velocity = np.array([0.0, 1.0]), np.array([2.0, 2.5])
@@ -242,7 +242,7 @@ def flight_arc():
 
 
 def saave():
-    """Geometry of S1, and the sensitivity S4."""
+    """Plots the geometry of S1, and the sensitivity S4."""
     figure, (geometry, sensitivity) = panels(2)
     schematic(geometry, "lever arm and rotation axis")
     geometry.set(xlim=(-0.6, 2.9), ylim=(-0.4, 2.3), aspect="equal")
@@ -272,7 +272,7 @@ def saave():
 
 
 def sample_clock():
-    """S1 to S3 on stamps with jitter, started with the true line of 32 stamps."""
+    """Plots S1 to S3 for time stamps with jitter, started with the true line of 32 time stamps."""
     figure, axes = panels(1, width=7.0)
     generator = np.random.default_rng(1)
     period, memory, count, start = 0.01, 2.0, 800, 32

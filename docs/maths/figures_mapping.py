@@ -31,7 +31,7 @@ def bare(axes):
 
 
 def mapping_deficit():
-    """Saturated rate with a deficit at three knots; point-to-plane residual of a deskewed return."""
+    """Plots a saturated rate with its deficit at three knots, and the point-to-plane residual of a deskewed return."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.2), gridspec_kw={"width_ratios": [1.25, 1]})
     duration, rail = 0.1, 35.0
     time = np.linspace(0.0, duration, 201)
@@ -77,7 +77,7 @@ def mapping_deficit():
 
 
 def rolling_contact():
-    """Geometry of the sphere, and the densities of the moving modes."""
+    """Plots the geometry of the sphere, and the probability densities of the modes of motion."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.2, 3.3), gridspec_kw={"width_ratios": [1, 1.2]})
     centre, radius = np.array([0.0, 1.0]), 1.0
     left.add_patch(plt.Circle(centre, radius, fill=False, color="k", lw=1.4))
@@ -118,7 +118,7 @@ def rolling_contact():
 
 
 def attitude_growth():
-    """Growth of velocity and displacement from a tilt error; variance of a correlated rate error (A10)."""
+    """Plots how a tilt error increases velocity and displacement, and the variance of a correlated rate error (A10)."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.2, 3.0))
     time = np.linspace(0.0, 3.0, 200)
     tilt = np.radians(2.0)
@@ -142,7 +142,7 @@ def attitude_growth():
 
 
 def imu_merge_rigid_body():
-    """Four units on a rotating body; the difference of two forces as a measurement of the rate."""
+    """Plots four IMUs on a rotating body, and the rate that follows from the difference of two specific forces."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.2, 3.1))
     units = np.array([[1.0, 0.75], [-1.0, 0.75], [-1.0, -0.75], [1.0, -0.75]])
     left.add_patch(plt.Rectangle((-1.3, -1.05), 2.6, 2.1, fill=False, color=GREY, lw=1.4))
@@ -172,7 +172,7 @@ def imu_merge_rigid_body():
 
 
 def statistics_sequential():
-    """Stopping bounds of the sequential sign test for 5 % risk, 20 looks and 400 pairs, by (S13) to (S15)."""
+    """Plots the stopping bounds of the sequential sign test for 5 % risk, 20 looks and 400 pairs, by (S13) to (S15)."""
     risk, looks, pairs = 0.05, 20, 400
     normal = NormalDist()
     going, low, spent, bounds = np.array([1.0]), 0, 0.0, []

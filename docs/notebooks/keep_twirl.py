@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes twirl.h5, so that the first notebook needs the package alone: keep_twirl.py [FILE.h5]
+"""Writes twirl.h5, so that the first notebook needs only the Python package: keep_twirl.py [FILE.h5]
 
-The first 12 s of `tumble record twirl --seed 1`, the truth at the IMU's 100 Hz instead of the physics' 2 kHz. Needs the program.
+The recording contains the first 12 s of `tumble record twirl --seed 1`. The truth has the rate of the IMU, 100 Hz,
+instead of the 2 kHz of the simulation. Needs the program.
 """
 import dataclasses
 import pathlib
@@ -14,7 +15,7 @@ SECONDS = 12
 
 
 def shortened(recording: tumble.Recording, count: int) -> tumble.Recording:
-    """Its first `count` samples, of one IMU, with the truth at their times."""
+    """Returns the first `count` samples of the first IMU, with the truth at the times of these samples."""
     imu, truth = recording.imus[0], recording.truth
     step = imu.period_ns // truth.period_ns
     of_samples = {field.name: value[:count] for field in dataclasses.fields(truth.imus[0])

@@ -25,7 +25,7 @@ def save(figure, name):
 
 
 def idea():
-    """The three measurements that recover a clipped rate, as three small plots."""
+    """Plots the three measurements that recover a clipped rate."""
     figure, (flight, rail, deficit) = plt.subplots(1, 3, figsize=(9.6, 2.9))
     t = np.linspace(0.0, 1.0, 400)
     rate = 9.0 + 7.0 * np.exp(-(((t - 0.5) / 0.2) ** 2))
@@ -72,7 +72,7 @@ def arrow(axis, start, end, text="", color=GREY, at=0.5, shift=(0.0, 0.12)):
 
 
 def data_flow():
-    """What TumblingOdometry and RollingOdometry do with the readings."""
+    """Draws the data flow in TumblingOdometry and RollingOdometry."""
     figure, axis = plt.subplots(figsize=(9.6, 4.3))
     axis.set_xlim(0, 12)
     axis.set_ylim(0, 5.4)
@@ -108,7 +108,7 @@ def data_flow():
 
 
 def factor_graph():
-    """Unknowns (circles) and factors (squares) of the rate smoother."""
+    """Draws the unknowns (circles) and factors (squares) of the rate smoother."""
     figure, axis = plt.subplots(figsize=(9.6, 3.6))
     axis.set_xlim(0, 12)
     axis.set_ylim(0, 4.6)

@@ -1,10 +1,10 @@
-# tumble_eigen_layout(OUT): the definitions that keep Eigen's matrices in memory as the flags of this build lay them out:
-# to how many bytes Eigen aligns at most, and whether it takes memory from malloc as it is. Both follow from the vector
-# instructions that the compiler may use, and from sanitizers.
+# tumble_eigen_layout(OUT) returns definitions that fix the memory layout of Eigen matrices to the layout of this build.
+# The layout is Eigen's largest alignment in bytes, and whether Eigen assumes that malloc aligns its memory. Both depend
+# on the vector instructions that the compiler may use, and on sanitizers.
 include_guard()
 include(CheckCXXSourceCompiles)
 
-# tumble_eigen_states(OUT CONDITION): whether Eigen's macros fulfil it
+# tumble_eigen_states(OUT CONDITION) checks whether Eigen's macros fulfil the condition
 function(tumble_eigen_states out condition)
   set(CMAKE_REQUIRED_LIBRARIES Eigen3::Eigen)
   set(CMAKE_REQUIRED_QUIET ON)

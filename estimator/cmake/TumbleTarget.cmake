@@ -1,4 +1,4 @@
-# What compiles and links in less time and gives the same. The settings of ccache stand in its launcher.
+# Compiles through ccache and links with mold, which saves time and gives the same result. The launcher sets up ccache.
 function(tumble_accelerate target)
   if(NOT TUMBLE_ACCELERATE)
     return()
@@ -14,20 +14,21 @@ function(tumble_accelerate target)
   endif()
 endfunction()
 
-# tumble_target(TARGET [LIGHT|COMPUTES]): the language level, warnings and instrumentation that every target of the project is
-# built with. LIGHT: optimised lightly, for what spends no time itself (command line, pages, tests): it compiles in two
-# thirds of the time, and gives the same bits. COMPUTES: what tests wait for; optimised fully with TUMBLE_LIGHT too.
-# Nothing is set globally, so that a project which embeds this one keeps its own flags.
+# tumble_target(TARGET [LIGHT|COMPUTES]) sets the language level, warnings and instrumentation of a target.
+# LIGHT: low optimisation, for code that needs little run time (command line, pages, tests). Compiling takes two thirds
+# of the time; results are bit-identical. COMPUTES: full optimisation even with TUMBLE_LIGHT, for code that tests wait
+# for.
+# The function sets no global flags, so that a project that embeds this one keeps its own flags.
 include_guard()
 
-option(TUMBLE_EIGEN_NAN "Initialise Eigen matrices to NaN, so that use before assignment shows" OFF)
-option(TUMBLE_WARNINGS "Ask the compiler for its warnings: who builds what others have read does without" ON)
+option(TUMBLE_EIGEN_NAN "Initialise Eigen matrices to NaN, to detect use before assignment" OFF)
+option(TUMBLE_WARNINGS "Enable compiler warnings; a build of a released version does not need them" ON)
 option(TUMBLE_WARNINGS_AS_ERRORS "Warnings fail the build" OFF)
-option(TUMBLE_PRECOMPILE "Parse the headers that nearly every file includes once per library, and once for all tests" OFF)
-option(TUMBLE_LIGHT "Every target as LIGHT, fast to compile, but those that say COMPUTES" OFF)
-option(TUMBLE_UNITY "Compile the sources of a target some at a time" OFF)
-option(TUMBLE_ACCELERATE "Compile through ccache and link with mold, where they are there" OFF)
-set(TUMBLE_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined,fuzzer-no-link (Clang alone) or thread")
+option(TUMBLE_PRECOMPILE "Precompile common headers, once per library and once for all tests" OFF)
+option(TUMBLE_LIGHT "Compile with low optimisation, except targets that are marked COMPUTES" OFF)
+option(TUMBLE_UNITY "Compile several sources of a target as one unit" OFF)
+option(TUMBLE_ACCELERATE "Compile through ccache and link with mold, if they are installed" OFF)
+set(TUMBLE_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined,fuzzer-no-link (only Clang) or thread")
 
 function(tumble_target target)
   cmake_parse_arguments(arg "LIGHT;COMPUTES" "" "" ${ARGN})
@@ -37,42 +38,42 @@ function(tumble_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   tumble_accelerate(${target})
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  if(TUMBLE_UNITY)  # what sources instantiate alike is instantiated once: no two of a target give one name to two things
+  if(TUMBLE_UNITY)  # common templates are instantiated once per unit; names must therefore be unique within a target
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
     if(arg_LIGHT)
       set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
     endif()
-    # what is private to a source looks to GCC as if it stood in a header
+    # GCC treats private types of a joined source as if they were in a header, and warns
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
-  # -Wrestrict of GCC 12 cries wolf at every concatenation of strings (GCC bug 105329)
-  # no contraction into fused multiply-add: the same source gives the same bits on every x86-64
+  # -Wrestrict of GCC 12 reports false positives for every concatenation of strings (GCC bug 105329)
+  # Without fused multiply-add, results are bit-identical on every x86-64 processor
   target_compile_options(${target} PRIVATE
     $<$<BOOL:${TUMBLE_WARNINGS}>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual>
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
     -ffp-contract=off
     $<$<CONFIG:Release>:$<IF:$<BOOL:${arg_LIGHT}>,-O1,-O3>>)
-  # GCC collects its garbage beyond 128 MiB by itself, which costs sources of templates time and saves memory that is
-  # there (`time` of their lines in compile_commands.json with and without it)
+  # By default, GCC collects garbage when it uses more than 128 MiB, which makes sources with many templates slow. This
+  # limit needs more memory, but less time (measured by `time` of their commands in compile_commands.json)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>)
   if(TUMBLE_WARNINGS_AS_ERRORS)
-    # but where GCC takes Eigen's storage, which begins as it is, for a value that is read
+    # GCC reports false maybe-uninitialized warnings for the storage of Eigen matrices
     target_compile_options(${target} PRIVATE -Werror $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>)
   endif()
   if(TUMBLE_EIGEN_NAN)
     target_compile_definitions(${target} PUBLIC EIGEN_INITIALIZE_MATRICES_BY_NAN)
   endif()
   if(TUMBLE_SANITIZE)
-    # without what the address sanitizer or the processor stops at anyhow, and what asks for RTTI of others: half of the
-    # time that a source of Eigen takes to compile
+    # The excluded checks are redundant, because the address sanitizer or the processor detects the same faults, or need
+    # RTTI of other libraries. Without them, a source with Eigen compiles in half the time
     target_compile_options(${target} PUBLIC -fsanitize=${TUMBLE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
       -fno-sanitize=null,alignment,vptr,object-size,nonnull-attribute,returns-nonnull-attribute,pointer-overflow)
     target_link_options(${target} PUBLIC -fsanitize=${TUMBLE_SANITIZE})
   endif()
 endfunction()
 
-# Without the first ccache keeps nothing, of Clang as of GCC. The others: GCC 12 forgets that what it precompiled were
-# system headers, and warns of std::string there.
+# ccache needs the first flag of each compiler. The other flags suppress false warnings about std::string, because GCC
+# 12 does not treat precompiled headers as system headers.
 function(tumble_precompiled_flags target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
@@ -82,8 +83,9 @@ function(tumble_precompiled_flags target)
   endif()
 endfunction()
 
-# tumble_precompile(TARGET HEADER...): the files of TARGET begin with what these headers left, parsed once. Saves time
-# alone: every file includes what it uses, which the debug build, without this, shows.
+# tumble_precompile(TARGET HEADER...) precompiles headers for all files of a target. Precompiled headers only save time:
+# every file still includes the headers that it uses. The debug build has no precompiled headers, so it detects missing
+# includes.
 function(tumble_precompile target)
   if(NOT TUMBLE_PRECOMPILE)
     return()
@@ -92,7 +94,7 @@ function(tumble_precompile target)
   tumble_precompiled_flags(${target})
 endfunction()
 
-# tumble_precompile_as(TARGET OTHER): with the headers that were precompiled for OTHER, which has the same flags.
+# tumble_precompile_as(TARGET OTHER) uses the precompiled headers of OTHER, which must have the same flags.
 function(tumble_precompile_as target other)
   if(NOT TUMBLE_PRECOMPILE)
     return()

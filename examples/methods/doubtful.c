@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The gyro as it is, with a statement of how sure that is: doubtful READINGS.csv RATES.csv.
- * cc -O2 -o doubtful doubtful.c -lm; doubtful.yaml makes it a method. */
+ * Returns the unchanged gyro readings, with a large variance for clipped readings: doubtful READINGS.csv RATES.csv.
+ * Compile with cc -O2 -o doubtful doubtful.c -lm. doubtful.yaml describes the method. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { kLineMax = 4096, kColumnsMax = 64 };
-static const double kAtRail = 0.98;        /* of the largest reading of an axis */
-static const double kFree_rad_s = 0.01;    /* standard deviation where nothing is clipped */
-static const double kClipped_rad_s = 5.0;  /* and where the axis is at its rail */
+static const double kAtRail = 0.98;        /* a reading is clipped above this share of the axis's largest reading */
+static const double kFree_rad_s = 0.01;    /* standard deviation of an unclipped reading */
+static const double kClipped_rad_s = 5.0;  /* standard deviation of a clipped reading */
 
-/* Column of each name that is wanted, by the header. */
+/* Finds the column of each name in the header. */
 static int columns_of(char* header, const char* const* names, int count, int* columns) {
   int column = 0, found = 0;
   for (char* word = strtok(header, ",\r\n"); word != NULL; word = strtok(NULL, ",\r\n"), ++column)
@@ -20,7 +20,7 @@ static int columns_of(char* header, const char* const* names, int count, int* co
   return found == count;
 }
 
-/* Numbers of a line by column. */
+/* Reads the numbers of a line, by column. */
 static int cells_of(char* line, double* cells) {
   int count = 0;
   for (char* word = strtok(line, ",\r\n"); word != NULL && count < kColumnsMax; word = strtok(NULL, ",\r\n"))

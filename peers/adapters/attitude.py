@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Filters of attitude from gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony, extended Kalman filter), imufusion (x-io).
+"""Attitude filters for gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony, extended Kalman
+filter), imufusion (x-io).
 
-Settings: each package's defaults at the IMU's rate (of the Kalman filter the frame too: its "NED" has the specific force at rest along
-z, which is up here; its "ENU" has it against z); the filters of ahrs begin at the attitude that gravity gives, the others as they do
-by themselves (imufusion with a high gain over its first 3 s). Attitudes are of the IMU, W with z up."""
+Each package has its default settings, and the rate of the IMU. The Kalman filter uses the frame "NED", in which the
+specific force at rest points along z; in its "ENU", the specific force points against z. The filters of ahrs start at
+the attitude from gravity. The other filters start as their packages do; imufusion has a high gain in its first 3 s.
+Attitudes are those of the IMU, W with z up."""
 import numpy as np
 
 from poses import Track, quaternion_xyzw, turning, up_in
@@ -11,7 +13,7 @@ from recording import Recording
 
 
 def rotations(q_wxyz: np.ndarray) -> list:
-    """Rotation matrices of Hamilton quaternions, body to world."""
+    """Converts Hamilton quaternions to rotation matrices, body to world."""
     w, x, y, z = (q_wxyz / np.linalg.norm(q_wxyz, axis=1, keepdims=True)).T
     R = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
                   [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Any pipeline of evalio (Potokar, Kaess 2025, PyPI evalio): DLIO, LIO-SAM, CT-ICP, MAD-ICP, LOAM, FORM.
+"""Runs any pipeline of evalio (Potokar, Kaess 2025, PyPI evalio): DLIO, LIO-SAM, CT-ICP, MAD-ICP, LOAM, FORM.
 
-Settings: evalio's defaults, which are those of the pipelines' authors, and what a peer's YAML names beside them as KEY=VALUE. The
-order of calls is that of evalio's Experiment.setup. Its poses are of the IMU.
-MAD-ICP: deskewing on, since points have times; `realtime` off, which cuts work short by the clock.
+Settings are evalio's defaults, which are those of the pipelines' authors, and the additional KEY=VALUE of a peer's
+YAML. The calls have the order of evalio's Experiment.setup. The poses are those of the IMU. MAD-ICP deskews, because
+points have times. Its option `realtime` is off, because it limits the computing time.
 
-`shift_s=T` is ours: what a pipeline's stamps are off by, where the sweep's start that they state is not the instant of the pose. Each was
-measured on `stroll`, where the error is least. A pose that repeats the last one to the bit is left out: LIO-SAM passes over
-sweeps that come within its mappingProcessInterval."""
+`shift_s=T` is an option of this adapter. It corrects time stamps of a pipeline that states the start of a sweep,
+although its pose belongs to another time. Each shift is the one with the smallest error on `stroll`. A pose that is
+identical to the previous one is left out, because LIO-SAM skips sweeps within its mappingProcessInterval."""
 import numpy as np
 from evalio import pipelines, types
 from evalio._cpp import helpers
@@ -15,7 +15,7 @@ from evalio._cpp import helpers
 from poses import Track
 from recording import SEQUENCE_NS, Recording, Sweep
 
-ORIGIN_NS = 1_000_000_000_000  # its clock is unsigned
+ORIGIN_NS = 1_000_000_000_000  # the times of the package are unsigned
 SWEEP_NS = 100_000_000
 RINGS, COLUMNS = 16, SWEEP_NS // SEQUENCE_NS
 FIELDS = np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("t", "u4"), ("range", "u4"), ("ring", "u2")])
@@ -23,12 +23,12 @@ TYPES = {"f4": "FLOAT32", "u4": "UINT32", "u2": "UINT16"}
 
 
 def value(text: str, like):
-    """A parameter from its text, of the type that its default has."""
+    """Converts the text of a parameter to the type of its default."""
     return text == "true" if isinstance(like, bool) else type(like)(text)
 
 
 def cloud(sweep: Sweep) -> types.LidarMeasurement:
-    """A dense row-major cloud: cells without a return are zero."""
+    """Returns a dense row-major cloud, in which cells without a return are zero."""
     cells = sweep.organised(RINGS, COLUMNS)
     there = cells >= 0
     k = cells[there]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GenZ-ICP (Lee et al., RA-L 2025), PyPI genz-icp. Lidar alone.
+"""GenZ-ICP (Lee et al., RA-L 2025), PyPI genz-icp. Uses only the lidar.
 
-Settings: the authors' pretuned file for `indoor` (of a room) or `outdoor` (of a hill), packaged with it; deskewing on, since points
-have times."""
+Settings are the authors' tuned files in the package: `indoor` for a room, `outdoor` for a hill. Deskewing is on,
+because points have times."""
 import pathlib
 
 from genz_icp.config import load_config

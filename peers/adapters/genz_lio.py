@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GenZ-LIO (PyPI genz-lio, GPL-2: an installed program, nothing of it is copied). Lidar and IMU.
+"""GenZ-LIO (PyPI genz-lio, GPL-2: an installed program, from which no code is copied). Uses lidar and IMU.
 
-Settings: the authors' default/robosense.yaml, which is for 16 rings at 10 Hz, with the rig's extrinsics. Its poses are of the IMU."""
+Settings are the authors' default/robosense.yaml for 16 rings at 10 Hz, with the rig's extrinsics. The poses are those
+of the IMU."""
 import pathlib
 
 import genz_lio

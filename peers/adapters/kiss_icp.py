@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""KISS-ICP (Vizzo et al., RA-L 2023), PyPI kiss-icp. Lidar alone.
+"""KISS-ICP (Vizzo et al., RA-L 2023), PyPI kiss-icp. Uses only the lidar.
 
-Settings: the package's defaults (max_range 100 m, deskewing, threshold adaptive), with max_range / 100 as voxel as
-its load_config takes it. A sweep is deskewed to its last point, whose pose it gives (cpp Preprocessing.cpp)."""
+Settings are the package's defaults: max_range 100 m, deskewing, adaptive threshold, and a voxel size of max_range / 100
+as in its load_config. A sweep is deskewed to its last point, and the pose belongs to this time (cpp
+Preprocessing.cpp)."""
 from kiss_icp.config import KISSConfig
 from kiss_icp.kiss_icp import KissICP
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pelorus (University of Osnabrueck, PyPI pelorus, MIT or Apache-2.0). Lidar and IMU.
+"""Pelorus (University of Osnabrueck, PyPI pelorus, MIT or Apache-2.0). Uses lidar and IMU.
 
-Settings: the default configuration that is built into the package, with the rig's extrinsics and points that have times in
-nanoseconds (its vendor Ouster). Its poses are of the lidar."""
+Settings are the package's default configuration with the rig's extrinsics, and the vendor Ouster, whose points have
+times in nanoseconds. The poses are those of the lidar."""
 import tempfile
 import time
 
@@ -12,7 +12,7 @@ import pelorus
 from poses import Track
 from recording import Recording
 
-ORIGIN_S = 1000  # its clock is unsigned
+ORIGIN_S = 1000  # the times of the package are unsigned
 PATIENCE_S = 2.0
 CONFIGURATION = """lidar {{
   vendor = Ouster

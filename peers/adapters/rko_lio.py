@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""RKO-LIO (Malladi et al., RA-L 2026), PyPI rko-lio. Lidar and IMU.
+"""RKO-LIO (Malladi et al., RA-L 2026), PyPI rko-lio. Uses lidar and IMU.
 
-Settings: the package's defaults, with the phase of initialisation that levels its world and takes the gyro's bias from the rest
-before the motion (the documentation's advice where the robot begins at rest). Its poses are of the base, here the IMU, at the last
-point of a sweep."""
+Settings are the package's defaults with the initialisation phase, which levels the world and estimates the gyro bias at
+rest. The documentation recommends this phase for robots that start at rest. The poses are those of the base, here the
+IMU, at the last point of a sweep."""
 import numpy as np
 from rko_lio.config import LIOConfig
 from rko_lio.lio import LIO
@@ -22,7 +22,7 @@ def run(sensors: Recording) -> Track:
         fed = upto
         try:
             odometry.register_scan(sweep.points_L_m, sweep.start_ns + sweep.offset_ns, sensors.T_IL)
-        except Exception as error:  # its own pipeline drops such a scan and goes on
+        except Exception as error:  # the package skips such a sweep, too
             print(f"sweep at {sweep.start_ns} ns dropped: {error}")
             continue
         track.time_ns.append(sweep.start_ns + int(sweep.offset_ns.max()))

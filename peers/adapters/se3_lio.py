@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SE(3)-LIO (ICRA 2026), PyPI se3-lio. Lidar and IMU.
+"""SE(3)-LIO (ICRA 2026), PyPI se3-lio. Uses lidar and IMU.
 
-Settings: the package's defaults (SE3LIOConfig). It takes the lidar's place in the IMU and a sweep with the samples that span it;
-its poses are of the IMU and bear stamps of their own."""
+Settings are the package's defaults (SE3LIOConfig). Inputs are the lidar's pose in IMU axes, and each sweep with the IMU
+samples within its duration. The poses are those of the IMU, with the package's own time stamps."""
 import numpy as np
 from se3_lio.config import SE3LIOConfig
 from se3_lio.se3_lio import SE3LIO

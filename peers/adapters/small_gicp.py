@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""small_gicp (Koide, JOSS 2024), PyPI small_gicp. Lidar alone; a registration, no odometry: sweeps to a map of Gaussian voxels, from
-the last change of pose, as in the scan-to-model example of its authors (kitti_odometry.py there).
+"""small_gicp (Koide, JOSS 2024), PyPI small_gicp. Uses only the lidar. The package is a registration library, so this
+adapter follows the authors' scan-to-model example (kitti_odometry.py): it registers each sweep to a map of Gaussian
+voxels, with a constant-motion start.
 
-Settings: those of the example (voxels of 0.25 m of a sweep and 1 m of the map, 10 neighbours); nothing is deskewed."""
+Settings are those of the example: voxels of 0.25 m for a sweep and 1 m for the map, 10 neighbours. Sweeps are not
+deskewed."""
 import numpy as np
 import small_gicp
 
@@ -23,7 +25,7 @@ def run(sensors: Recording) -> Track:
             change = np.linalg.inv(T_WL) @ result.T_target_source
             T_WL = np.array(result.T_target_source)
         voxels.insert(cloud, T_WL)
-        # nothing is deskewed: the rigid sweep stands for its middle
+        # the sweep is not deskewed, so its pose belongs to its middle
         track.time_ns.append(sweep.start_ns + (sweep.end_ns - sweep.start_ns) // 2)
         track.T_WA.append(T_WL.copy())
     return track

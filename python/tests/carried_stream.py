@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares HandHeldStream with the batch smoother, RegimeStream and the gyro: median and 90 % quantile of the error where the gyro clips, rad/s.
 
-    python carried_stream.py SEED...     of `twirl`; calls the program
+    python carried_stream.py SEED...     SEED: seeds of the scenario `twirl`; the script calls the program
 """
 import pathlib
 import sys

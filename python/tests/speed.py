@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares the processor time for whole recordings in Python with the same method in the program: speed.py [RUNS]
+"""Compares the processor time for a whole recording in Python with the time of the same method in the program: speed.py
+[RUNS]
 
 The time of the program is its metric estimate_cpu_s, for the estimate alone. The time of Python is that of the call that receives the
 recording's arrays. Each result is the smallest of RUNS (5). Run this script by hand; no test asserts computing times.

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Rule {
-  std::string folder;                  // sources below this folder of the tree
+  std::string folder;                  // applies to sources in this folder of the tree
   std::vector<std::string> forbidden;  // regular expressions on the text of an include
 };
 
@@ -219,9 +219,9 @@ TEST(Architecture, PublicSimHeadersDoNotBringTheEngine) {
 
 /// Links names patterns that the undefined symbols of a library must not match.
 struct Links {
-  const char* library;  // below the build folder
+  const char* library;  // path in the build folder
   const char* forbidden;
-  const char* control;  // a symbol that the pattern must find
+  const char* control;  // a symbol that the pattern must find (negative control)
 };
 
 const std::array kLinks = {
@@ -256,7 +256,7 @@ TEST(Architecture, EveryLibraryLinksAsTheTableSays) {
     const std::string control = "                 U " + std::string(links.control) + "\n";
     EXPECT_TRUE(std::regex_search(control, forbidden)) << "negative control of " << links.library;
     const fs::path library = build_dir() / links.library;
-    if (!fs::exists(library)) continue;  // a build of some targets
+    if (!fs::exists(library)) continue;  // this build has only some targets
     ++looked_at;
     const std::string undefined = output_of("nm -C --undefined-only " + library.string());
     ASSERT_NE(undefined.find("U "), std::string::npos) << "nm printed nothing to judge";

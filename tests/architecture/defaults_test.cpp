@@ -53,9 +53,9 @@ std::set<double> distinctive(const std::vector<std::string>& numbers) {
 
 struct Known {
   std::set<double> numbers;
-  std::vector<std::vector<double>> places;  ///< of sensors and parts
-  std::regex names;                         ///< of the devices that the robots carry
-  std::regex draws;                         ///< "hill 3004"
+  std::vector<std::vector<double>> places;  ///< positions of sensors and parts
+  std::regex names;                         ///< names of the devices on the robots
+  std::regex draws;                         ///< for example "hill 3004"
 };
 
 Known known() {

@@ -14,10 +14,10 @@
 namespace {
 
 struct Registry {
-  std::string header, returns;  ///< functions of this result
-  std::string arguments;        ///< and of these arguments: one that takes more makes entries for others
-  std::string list;             ///< the source that has to name each of them
-  std::size_t least;            ///< so many there are at least, or they are not found
+  std::string header, returns;  ///< functions with this return type
+  std::string arguments;        ///< functions with these arguments; others create entries for other lists
+  std::string list;             ///< the source that must name each function
+  std::size_t least;            ///< lower bound of the number of functions, so that the search cannot fail silently
 };
 
 std::vector<std::string> declared(const std::string& text, const std::string& returns, const std::string& arguments) {

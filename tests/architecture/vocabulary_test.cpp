@@ -67,7 +67,7 @@ std::set<std::string> words_of(const std::string& name) {
   return out;
 }
 
-enum class Text { prose, script, source };  ///< a script's strings are its comments too
+enum class Text { prose, script, source };  ///< strings of a script count like its comments
 
 /// Replaced names in a text. A replaced word counts only as a part of a name, because in comments and strings it is a
 /// plain word.

@@ -87,7 +87,7 @@ struct Run {
   bool clips = false;
 };
 
-/// Of all draws.
+/// Statistics of all draws.
 struct Pool {
   std::string name;
   std::vector<Run> runs;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// flight_senses SCENARIO FIRST LAST [HARM]: for how long the flights of draws look like those of the sensor as it says,
-// and of the other sensor that they look most like (FlightSignCheck, of a body that nobody holds). A line a draw. Not a
-// test: a second a draw.
+// flight_senses SCENARIO FIRST LAST [HARM]: prints, per draw, how long the flights agree with the stated axis signs of
+// the sensor, and with the most similar other signs (FlightSignCheck of a thrown body). This program is not a test; it
+// takes 1 s per draw.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

@@ -1,13 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far a body's velocity and rate go while its IMU is silent, by the truth of recordings of simulations.
+"""Measures how much velocity and angular rate change during a gap in the IMU data, from the truth of simulated
+recordings.
 
     gap_walks.py RECORDING.h5...
 
-While the body turns (from the first sample beyond 2 rad/s to the last) and for gaps of 0.05 to 0.5 s: root mean square, per
-axis, of the change of velocity over the root of the gap [m/s/sqrt(s)], and over the gap [m/s^2]; of the rate in the middle
-less the mean of both ends, over half of the root of the gap, which is the walk of a Brownian bridge [rad/s/sqrt(s)]. These
-are what gap_velocity_walk_m_s_sqrt_s and gap_rate_walk_rad_s_sqrt_s stand for: docs/maths/mapping.md (R44), (R43).
+The script uses the samples while the body rotates (from the first to the last sample above 2 rad/s), and gaps of 0.05
+to 0.5 s. It prints these root mean squares per axis:
+
+    change of velocity divided by the square root of the gap [m/s/sqrt(s)]
+    change of velocity divided by the gap [m/s^2]
+    rate in the middle minus the mean rate of both ends, divided by half the square root of the gap [rad/s/sqrt(s)]: the
+    random walk of a Brownian bridge
+
+The parameters gap_velocity_walk_m_s_sqrt_s and gap_rate_walk_rad_s_sqrt_s have these units: docs/maths/mapping.md
+(R44), (R43).
 """
 import sys
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `tumble import` says of a recording whose gyro, mounting or clock is not what the bag states.
+"""Tests the warnings of `tumble import` for a recording with a wrong gyro, mounting or clock.
 
     import_variants.py PROGRAM RECORDING.h5
 
-Writes the recording as MCAP with one thing changed at a time (senses and order of the gyro's axes, its unit, the lidar's
-mounting, the lidar's clock), imports it, and prints the sentence in which the import compares the gyro with the lidar, or
-"nothing said". Needs the package `tumble` and numpy. Behind the figures of the changelog: `stroll`, seeds 98001 and 98002.
+The script writes the recording as MCAP with one change at a time: signs and order of the gyro axes, gyro unit, lidar
+mounting or lidar clock. It imports each file, and prints the sentence that compares the gyro with the lidar, or
+"nothing said". Needs the package `tumble` and numpy. The numbers in the changelog are from `stroll`, seeds 98001 and
+98002.
 """
 import pathlib
 import subprocess

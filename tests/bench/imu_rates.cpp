@@ -36,14 +36,14 @@ namespace scenarios = tumble::scenarios;
 namespace sim = tumble::sim;
 using scenarios::Kind;
 
-constexpr double kPoseNees = 20.06 / 6.0;  // 99.73 % of chi-square with six degrees, per degree
+constexpr double kPoseNees = 20.06 / 6.0;  // 99.73 % quantile of chi-square with six degrees of freedom, per degree
 
 struct Request {
   std::string scenario;
   std::uint64_t first = 0, last = 0;
   std::vector<std::string> methods;
   std::vector<double> rates_hz = {50, 100, 125, 250, 500, 1000, 2000, 4000, 8000};
-  std::vector<std::pair<std::string, double>> changes;  ///< of the numbers of the IMUs whose rate changes
+  std::vector<std::pair<std::string, double>> changes;  ///< changed values of the IMUs whose rate changes
   std::filesystem::path keep;
   bool draws = false;
 };
@@ -118,7 +118,7 @@ Metrics metrics_of(Kind kind) {
 
 /// Pool contains the results of one method at one rate, over the simulated runs.
 struct Pool {
-  std::map<std::uint64_t, double> error_of;  ///< by seed: of the draws that have one
+  std::map<std::uint64_t, double> error_of;  ///< by seed, for draws with an error
   std::vector<double> coverage;
   double cpu_s = 0.0, length_s = 0.0;
   int failed = 0;

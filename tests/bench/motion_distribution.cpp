@@ -27,7 +27,7 @@ using tumble::scenarios::MotionSummary;
 struct Spread {
   std::vector<MotionSummary> draws;
   std::vector<double> cpu_s;
-  std::map<std::string, int> touching;  ///< draws that touch a kind of surface
+  std::map<std::string, int> touching;  ///< number of draws that touch a kind of surface
   int rejected = 0;
 };
 

@@ -45,7 +45,7 @@ def drawn(distribution, dice):
 
 
 def second_scenario(text, seed):
-    """The scenario with every number of the motion drawn anew, and 5.5 s long."""
+    """Returns the scenario with new random numbers for the motion, and a length of 5.5 s."""
     dice = random.Random(f"second run {seed}")
     out, inside = [], False
     for line in text.splitlines():
@@ -98,7 +98,7 @@ def turned(yaw, p):
 
 
 def true_pose(recording, time_ns):
-    """Pose of the first IMU in the world of the simulation."""
+    """Returns the pose of the first IMU in the simulated world."""
     with h5py.File(recording) as file:
         truth = file["truth"]
         k = min(int(round(time_ns / truth.attrs["period_ns"])), len(truth["p_WB_m"]) - 1)
@@ -113,14 +113,14 @@ def end_of_rest_ns(recording):
 
 
 def sweeps_of(folder):
-    """Time and pose at the end of each sweep of an estimate."""
+    """Returns time and pose at the end of each sweep of an estimate."""
     rows = np.genfromtxt(folder / "sweeps.csv", delimiter=",", names=True)
     return [(int(r["pose_time_ns"]), transform(rotation(np.array([r["qx"], r["qy"], r["qz"], r["qw"]])),
                                                np.array([r["px_m"], r["py_m"], r["pz_m"]]))) for r in rows]
 
 
 def make_map(tumble, folder, recording):
-    """The points of a run's map (position, normal, sigma), and the pose of the world of the simulation in the map."""
+    """Returns the points of a run's map (position, normal, sigma), and the pose of the simulated world in the map."""
     estimate = folder / (recording.stem + "_estimate")
     if not (estimate / "estimate.json").exists():
         command(tumble, "estimate", recording, "--method", "slam/tumble_lag", "--quiet", "-o", estimate)
@@ -129,7 +129,7 @@ def make_map(tumble, folder, recording):
     time_ns, pose = sweeps_of(estimate)[0]
     T_MS = pose @ np.linalg.inv(true_pose(recording, time_ns))
     yaw = math.atan2(T_MS[1, 0] - T_MS[0, 1], T_MS[0, 0] + T_MS[1, 1])
-    level = turned(yaw, np.zeros(3))  # the map is levelled, so that an error of the tilt is an error of the map
+    level = turned(yaw, np.zeros(3))  # the map is level, so a tilt error belongs to the map
     level[:3, 3] = pose[:3, 3] - level[:3, :3] @ true_pose(recording, time_ns)[:3, 3]
     return points, level
 
@@ -154,7 +154,7 @@ def write_ply(path, points, T):
 
 
 def localise(tumble, folder, recording, points, T_MS, seed):
-    """Outcome of a run in a map: time of localisation after the rest, or None, with the first and the last error."""
+    """Returns the result of a run in a map: time of localisation after the rest, or None, with the first and the last error."""
     dice = random.Random(f"frame {seed}")
     X = turned(dice.uniform(-3.1, 3.1), np.array([dice.uniform(-100, 100), dice.uniform(-100, 100), dice.uniform(-10, 10)]))
     write_ply(folder / "prior.ply", points, X)

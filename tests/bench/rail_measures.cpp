@@ -56,7 +56,7 @@ Readings simulated(const std::string& file) {
 
 /// The import omits repeated readings, and the file states their number.
 Readings real(const std::string& file) {
-  constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // columns
+  constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // indices of columns
   std::ifstream stream(file);
   std::vector<std::string> accel, gyro;
   std::string line;
@@ -83,8 +83,9 @@ Readings real(const std::string& file) {
 /// Plane is the plane of the readings of one sign at the saturation level of `axis`.
 struct Plane {
   std::size_t readings = 0;
-  double before = std::nan(""), after = std::nan("");  ///< standard deviation of the axis, about its mean and the plane
-  double slope_1 = std::nan(""), slope_2 = std::nan("");  ///< against the next axis and the one after
+  double before = std::nan(""), after = std::nan("");  ///< against the next two axes
+  double slope_1 = std::nan(""),
+         slope_2 = std::nan("");  ///< slopes relative to the next axis, and to the axis after it
 };
 
 Plane fit(const std::vector<Vector3d>& readings, int axis) {
@@ -154,7 +155,8 @@ void print_both_signs(const std::vector<Vector3d>& gyro, int axis, double rail_r
 }
 
 void print(const std::string& file, const Readings& readings, int axis, double rail_rad_s) {
-  constexpr double kNear_rad_s = 0.3;  // elements' scale, offset and tilt move the rail by about so much
+  // scale, offset and tilt of the elements move the saturation limit by about this much
+  constexpr double kNear_rad_s = 0.3;
   std::vector<double> rates, segments_s;
   std::vector<Vector3d> inside[2];
   std::size_t at_rail = 0, run = 0;

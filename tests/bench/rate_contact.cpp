@@ -44,7 +44,7 @@ Matrix3d inertia_per_mass(const sim::Situation& situation) {
 }
 
 struct Wrench {
-  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();  // per mass
+  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();  // divided by the mass
 };
 
 // Returns the mean wrench over the physics samples (first, last].
@@ -75,7 +75,7 @@ Vector3d best_point(const std::vector<Wrench>& wrenches) {
 
 struct Shares {
   std::vector<double> across, last_point, one_point, arm_m;
-  std::vector<double> length;  // samples of contact in a row that hold a clipped one
+  std::vector<double> length;  // lengths of contacts in samples, for contacts with a clipped sample
   std::size_t clipped = 0, clipped_contact = 0;
 };
 

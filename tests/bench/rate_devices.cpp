@@ -38,7 +38,7 @@ using bench::RatePool;
 
 struct Row {
   std::string title, scenario;
-  std::vector<std::pair<std::string, double>> changes;  ///< of the primary IMU's numbers
+  std::vector<std::pair<std::string, double>> changes;  ///< changed values of the primary IMU
 };
 
 const std::vector<Row>& rows() {

@@ -32,7 +32,7 @@ class RatePool {
     std::uint64_t seed = 0;
     double clipped_mean_rad_s = 0.0, free_mean_rad_s = 0.0, noise_rad_s = 0.0;
     std::size_t clipped = 0;
-    bool converged = true;  ///< of every descent that says so
+    bool converged = true;  ///< every optimisation that reports convergence has converged
   };
 
   explicit RatePool(std::string name) : name_(std::move(name)) {}

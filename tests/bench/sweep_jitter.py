@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stamps of sweeps that jitter cost a map: a real lidar's sweeps do not follow each other to the nanosecond.
+"""Measures the map error caused by jitter of the sweeps' time stamps. Sweeps of a real lidar have such jitter.
 
     sweep_jitter.py PROGRAM RECORDING.h5 [METHOD]...
 
-Begins each sweep earlier by a random part of 0, 20 ns, 50 us, 3 ms, and counts its points' times from there, so that each
-point keeps its own time and sweeps overlap; maps with slam/tumble, slam/tumble_lag, or the methods named, and prints status
-and end error by the recording's own truth. Needs the package `tumble` and numpy. Recordings whose sweeps abut: `tumble record
-stroll --seed 98001`, say.
+The script moves the start of each sweep to a random earlier time, by up to 0, 20 ns, 50 us and 3 ms. The points keep
+their times, so the sweeps overlap. It maps with slam/tumble and slam/tumble_lag, or the named methods, and prints
+status and end error relative to the truth. Needs the package `tumble` and numpy. The sweeps of RECORDING must have no
+gaps, as those of `tumble record stroll --seed 98001`.
 """
 import json
 import pathlib
@@ -23,7 +23,7 @@ METHODS = ("slam/tumble", "slam/tumble_lag")
 
 
 def begin_earlier(lidar, most_ns, draws):
-    """The first sweep stays where it is: a recording starts there. The period has room for the points of all."""
+    """Returns the recording with jitter, except of the first sweep. The sweep period is increased to contain all points."""
     lidar.sweep_period_ns += most_ns
     by_ns = draws.integers(0, most_ns + 1, len(lidar.sweep_start_ns))
     by_ns[0] = 0

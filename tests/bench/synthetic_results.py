@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes results databases of any size out of a small real one, to measure what merge, report and compare take.
+"""Generates results databases of any size from a small real database, to measure the time of merge, report and compare.
 
     synthetic_results.py SMALL.db FOLDER --outcomes N [--shards K]
 
-Rows of SMALL.db are repeated with new seeds, their values multiplied by a number between 0.5 and 2, until there are N
-outcomes; the seeds are dealt in contiguous parts to FOLDER/shard_1.db ... shard_K.db, as `tumble sweep --shard` does.
-Schema, notes and certificates are those of SMALL.db. Nothing of it is a result.
+The script repeats rows of SMALL.db with new seeds until there are N outcomes. It multiplies each value by a number
+between 0.5 and 2. It distributes contiguous parts of the seeds to FOLDER/shard_1.db ... shard_K.db, as `tumble sweep
+--shard` does. Schema, notes and certificates are copied from SMALL.db. The scores are artificial.
 """
 import argparse
 import pathlib
@@ -17,7 +17,7 @@ DIGEST = "%032x"
 
 
 def read(small):
-    """(key of a draw, values of its motion, outcomes with their scores), draw by draw."""
+    """Returns (key, values of the motion, outcomes with their scores) of each draw."""
     values, outcomes = {}, {}
     for scenario, seed, metric, value in small.execute(
             "SELECT scenario, seed, metric, value FROM draw_values WHERE varied = ''"):
@@ -71,7 +71,7 @@ def main():
     parser.add_argument("--shards", type=int, default=1)
     arguments = parser.parse_args()
     small = sqlite3.connect(f"file:{arguments.small}?mode=ro", uri=True)
-    # a seed has the draws of one seed of the small one, over all scenarios
+    # a new seed has the draws of one seed of SMALL.db, for all scenarios
     by_seed = {}
     for draw in read(small):
         by_seed.setdefault(draw[0][1], []).append(draw)

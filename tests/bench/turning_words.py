@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How often `tumble score` finds fault with attitudes that are as stated, however wrong: must be never.
+"""Counts false warnings of `tumble score` about the attitude convention of trajectories whose convention is correct.
+Must print 0.
 
     turning_words.py PROGRAM [FIRST LAST]
 
-Draws FIRST to LAST (98302 to 98305) of five scenarios, four methods of `slam` on each, the trajectory whole and thinned
-twentyfold; prints what was said, then trajectories scored and how many of them a word was said of. Behind the changelog's
-figure. A quarter of an hour of one core.
+The script runs four `slam` methods on seeds FIRST to LAST (98302 to 98305) of five scenarios, and scores each
+trajectory twice: complete, and with every 20th pose. It prints each warning, then the numbers of trajectories and of
+warnings. The changelog contains this number. Takes 15 min on one core.
 """
 import json
 import pathlib
@@ -23,7 +24,7 @@ def call(*words):
 
 
 def said(program, recording, folder, thinned):
-    """The caution on a trajectory; "" where there is none."""
+    """Returns the warning about a trajectory, or "" without a warning."""
     frame = json.loads((folder / "estimate.json").read_text())["frame"]
     rows = [row for row in open(folder / "trajectory.tum") if not row.startswith("#")]
     thin = folder / "thinned.tum"

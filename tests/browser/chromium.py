@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A headless Chromium that is spoken to through pipes (Chrome DevTools Protocol, --remote-debugging-pipe): JSON messages
-that end in a zero byte. It draws in software and needs no display."""
+"""Controls a headless Chromium through pipes (Chrome DevTools Protocol, --remote-debugging-pipe). A message is JSON
+text that ends in a zero byte. Chromium renders in software and needs no display."""
 import base64
 import json
 import os
@@ -17,7 +17,7 @@ FLAGS = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsa
 class Chromium:
     def __init__(self, program: str):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        # it reads from its descriptor 3 and writes to 4
+        # Chromium reads from its descriptor 3 and writes to 4
         read_here, write_there = os.pipe()
         read_there, self.to = os.pipe()
         high_read, high_write = os.dup2(read_there, 103, True), os.dup2(write_there, 104, True)
@@ -37,7 +37,7 @@ class Chromium:
         self.profile.cleanup()
 
     def receive(self, seconds: float) -> None:
-        """What comes within the time joins the events."""
+        """Waits at most this time for a message, and appends it to the events."""
         if not select.select([self.answers], [], [], max(seconds, 0.0))[0]:
             return
         chunk = os.read(self.answers, 1 << 20)
@@ -63,7 +63,7 @@ class Chromium:
 
 
 class Page:
-    """A page in a window of its own: what it says, asks for and looks like."""
+    """A page in a separate window. Returns its console messages, requests and screenshots."""
 
     def __init__(self, browser: Chromium, path: pathlib.Path, address: str, size: tuple[int, int], dark: bool):
         self.browser = browser
@@ -96,7 +96,7 @@ class Page:
                 if event.get("sessionId") == self.session and event.get("method") == method]
 
     def console(self) -> list[str]:
-        """Everything that reaches a console: words of the page, errors nobody caught, the browser's own complaints."""
+        """Returns all console messages: from the page, of uncaught errors, and from the browser."""
         said = [" ".join(str(word.get("value", word.get("description"))) for word in one["args"])
                 for one in self.mine("Runtime.consoleAPICalled")]
         said += [str(one["exceptionDetails"].get("exception", {}).get("description", one["exceptionDetails"]["text"]))
@@ -104,7 +104,7 @@ class Page:
         return said + [one["entry"]["text"] for one in self.mine("Log.entryAdded")]
 
     def fetched(self) -> list[str]:
-        """Addresses that it asked for, but its own and those that carry what they name."""
+        """Returns the addresses that the page requested, except its own address and data URLs."""
         own = self.address.split("#")[0]
         asked = [one["request"]["url"] for one in self.mine("Network.requestWillBeSent")]
         return [url for url in asked if url.split("#")[0] not in (own, "about:blank") and not url.startswith("data:")]

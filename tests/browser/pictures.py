@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of a browser: PNG of 8 bits a channel, RGB or RGBA, read without further packages."""
+"""Reads screenshots without additional packages: PNG with 8 bits per channel, RGB or RGBA."""
 import struct
 import zlib
 
 
 def read_png(data: bytes) -> tuple[int, int, list[bytes]]:
-    """Width, height and per row its pixels as RGB triples (PNG specification, third edition, 9: filters)."""
+    """Returns width, height, and the RGB pixels of each row (PNG specification, third edition, 9: filters)."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n", "no PNG"
     at, packed = 8, b""
     width = height = channels = 0
@@ -61,7 +61,7 @@ class Picture:
         self.width, self.height, self.rows = read_png(png)
 
     def pixels(self, left: float, top: float, right: float, bottom: float):
-        """RGB triples within shares of the picture."""
+        """Yields the RGB pixels within a box, whose borders are shares of the picture's width and height."""
         for row in self.rows[int(top * self.height):int(bottom * self.height)]:
             for x in range(int(left * self.width), int(right * self.width)):
                 yield row[3 * x], row[3 * x + 1], row[3 * x + 2]
@@ -74,7 +74,7 @@ class Picture:
         return sum(found) / len(found)
 
     def difference(self, other: "Picture", *box: float) -> float:
-        """Share of pixels that differ clearly."""
+        """Returns the share of pixels that differ by more than 24 of 255 in a channel."""
         pairs = [max(abs(a - b) for a, b in zip(mine, theirs))
                  for mine, theirs in zip(self.pixels(*box), other.pixels(*box))]
         return sum(step > 24 for step in pairs) / len(pairs)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The replay page in headless Chromium with software rendering: it draws, says nothing on the console and asks the
-network nothing, with truth and without, and every check refuses a page that is broken on purpose.
+"""Tests the replay page in headless Chromium with software rendering, with and without truth. The page must draw, write
+nothing to the console, and make no network requests. As negative controls, every check must fail for a damaged page.
 
     replay_test.py PROGRAM WORK_FOLDER
 """
@@ -22,7 +22,7 @@ PROGRAM = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 2 else None
 WORK = pathlib.Path(sys.argv.pop(1)) if PROGRAM else None
 CHROMIUM = shutil.which("chromium")
 SKIPPED = 77
-SCENE = (0.34, 0.02, 0.85, 0.75)   # of the window: right of the panel, above the controls, left of the clock
+SCENE = (0.34, 0.02, 0.85, 0.75)   # box in the window: right of the panel, above the controls, left of the clock
 STRIP = (0.05, 0.86, 0.99, 0.97)
 HOSTILE = "<img src=x onerror=alert(1)>.tum"
 AT_REST = "document.documentElement.dataset.state === 'drawn' && document.documentElement.dataset.moving === 'false'"
@@ -43,14 +43,14 @@ class ReplayPage(unittest.TestCase):
         recording = run / "recording.h5"
         cls.page = WORK / "replay.html"
         tumble("replay", recording, run / "estimates/slam-tumble", run / "estimates/rate-raw", "-o", cls.page)
-        # the same without its truth, and with a trajectory of somebody else's under a hostile name
+        # the same recording without truth, and with an external trajectory whose name contains HTML
         tumble("export", recording, "--format", "rosbag2", "-o", WORK / "bag")
         tumble("import", WORK / "bag", "-o", WORK / "real.h5")
         theirs = WORK / HOSTILE
         tumble("export", recording, "--format", "tum", "-o", theirs)
         cls.real = WORK / "real.html"
         tumble("replay", WORK / "real.h5", theirs, "--frame", "body", "-o", cls.real)
-        # poses and nothing else
+        # a recording that contains only poses
         tumble("import", theirs, "--format", "tum", "-o", WORK / "poses.h5")
         cls.poses = WORK / "poses.html"
         tumble("replay", WORK / "poses.h5", "-o", cls.poses)
@@ -63,7 +63,7 @@ class ReplayPage(unittest.TestCase):
         return page
 
     def complaints(self, page: Page, seconds: float = 60.0) -> list[str]:
-        """Why this is no replay that was drawn in silence; empty when it is one."""
+        """Returns the faults of the page: console messages, requests, or a missing picture. Empty for a correct page."""
         page.wait_for(OVER, seconds)
         found = [f"console: {line}" for line in page.console()] + [f"fetched: {url}" for url in page.fetched()]
         state = page.value("document.documentElement.dataset.state")
@@ -75,7 +75,7 @@ class ReplayPage(unittest.TestCase):
         return found
 
     def complains(self, page: Page, told, seconds: float = 60.0, drawn_s: float = 60.0) -> list[str]:
-        """The complaints, once one of them is what is told: a browser says some of it after the page has been drawn."""
+        """Waits for the expected fault and returns all faults. A browser may report faults after it has drawn the page."""
         found = self.complaints(page, drawn_s)
         deadline = time.monotonic() + seconds
         while not any(told(line) for line in found) and time.monotonic() < deadline:
@@ -130,7 +130,7 @@ class ReplayPage(unittest.TestCase):
         self.assertLess(black(self.drawn(self.page)[1]), 0.2, "negative control")
         for width in (400, 390, 320):
             phone, _ = self.drawn(self.page, size=(width, 800))
-            # the page does not scroll: what lies outside cannot be reached
+            # the page does not scroll, so controls outside of the window cannot be reached
             beyond = phone.value("[...document.querySelectorAll('footer button, footer select, footer input, footer canvas')]"
                                  f".filter((e) => e.getBoundingClientRect().right > {width}).map((e) => e.id)")
             self.assertEqual(beyond, [], width)

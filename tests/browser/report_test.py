@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report page in headless Chromium: its plots are drawn, its picture moves, its links lead somewhere, it says nothing on
-the console and asks the network nothing; in light and dark, on a phone, on paper, and under hostile names. Every check
-refuses a page that is broken on purpose.
+"""Tests the report page in headless Chromium: in light and dark, on a phone, on paper, and with names that contain
+HTML. The page must draw its plots and animations, have no broken links, write nothing to the console and make no
+network requests. As negative controls, every check must fail for a damaged page.
 
     report_test.py PROGRAM WORK_FOLDER
 """
@@ -43,7 +43,8 @@ def tumble(*arguments: object) -> None:
 
 
 def make_hostile(small: pathlib.Path, database: pathlib.Path) -> None:
-    """40 draws made out of four; a scenario, a method and messages bear names that would end an element."""
+    """Generates 40 draws from four. The names of a scenario and a method, and messages, contain text that ends an HTML
+    element."""
     subprocess.run([sys.executable, SYNTHETIC, small, WORK / "big", "--outcomes", "120"], check=True, stdout=subprocess.DEVNULL)
     shutil.copy(WORK / "big" / "shard_1.db", database)
     with sqlite3.connect(database) as rows:
@@ -77,7 +78,8 @@ class ReportPage(unittest.TestCase):
         return page
 
     def complaints(self, page: Page, seconds: float = 60.0) -> list[str]:
-        """Why this is no page of which every plot was drawn in silence; empty when it is one."""
+        """Returns the faults of the page: missing plots, console messages, requests, or broken links. Empty for a
+        correct page."""
         found = []
         if not page.wait_for(f"{STATE} === 'drawn'", seconds):
             found.append("state: not drawn")
@@ -92,7 +94,7 @@ class ReportPage(unittest.TestCase):
 
     @staticmethod
     def dead_links(page: Page) -> list[str]:
-        """Addresses of the page that lead nowhere."""
+        """Returns the links of the page that have no target."""
         dead = page.value("[...document.querySelectorAll('a[href^=\"#\"]')].map((a) => a.getAttribute('href')).filter("
                           "(to) => document.getElementById(decodeURIComponent(to.slice(1))) === null)") or []
         others = page.value("[...document.querySelectorAll('a:not([href^=\"#\"])')].map((a) => a.href)") or []
@@ -103,7 +105,7 @@ class ReportPage(unittest.TestCase):
         return dead
 
     def complains(self, page: Page, told) -> None:
-        """A browser says some of it after the page has been drawn."""
+        """Waits for the expected fault. A browser may report faults after it has drawn the page."""
         deadline = time.monotonic() + 60.0
         found = self.complaints(page, 4.0)
         while not any(told(line) for line in found) and time.monotonic() < deadline:
@@ -180,7 +182,7 @@ class ReportPage(unittest.TestCase):
 
     @staticmethod
     def cut_off(page: Page) -> list[str]:
-        """Titles of axes that reach out of their plot, or lie under its legend."""
+        """Returns the plots with an axis title that exceeds the plot or overlaps its legend."""
         return page.value("""[...document.querySelectorAll('.plot')].flatMap((plot) => {
           const frame = plot.getBoundingClientRect(), box = (name) => [...plot.querySelectorAll(name)].map((part) => part.getBoundingClientRect());
           const out = (b) => b.width > 0 && (b.top < frame.top - 1 || b.bottom > frame.bottom + 1 || b.left < frame.left - 1 || b.right > frame.right + 1);
@@ -213,10 +215,10 @@ class ReportPage(unittest.TestCase):
         self.assertNotEqual(self.in_other_colours(again), [], "negative control")
 
     def in_other_colours(self, path: pathlib.Path) -> list[str]:
-        """Plots that do not bear the page's ink when they are unfolded after a print."""
+        """Returns the plots without the text colour of the page, if they are unfolded after printing."""
         page = self.open(path, dark=True)
         self.assertTrue(page.wait_for(f"{STATE} === 'drawn'"))
-        # as other browsers fold: what is folded has no width
+        # in other browsers, a folded element has no width
         page.value("document.head.insertAdjacentHTML('beforeend',"
                    "'<style>details:not([open]) > :not(summary) { display: none }</style>')")
         page.value("dispatchEvent(new Event('beforeprint')); dispatchEvent(new Event('afterprint'));")

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The command of tools/parallel/README.md, one of whose three shards is killed at work: the same command again goes on, and
-# what is merged is what one undisturbed sweep gives. Needs GNU parallel (tools/setup --for cluster); 77 where it is not there.
+# Runs the command of tools/parallel/README.md and kills one of its three shards. The same command must resume the
+# shard, and the merged database must equal that of one undisturbed sweep. Needs GNU parallel (tools/setup --for
+# cluster); exits with 77 without it.
 #   parallel_test.sh SOURCE_TREE PROGRAM
 set -euo pipefail
 root=$1 program=$2
@@ -21,7 +22,7 @@ mkdir -p "$folder/settings" "$folder/shards"
 touch "$folder/settings/will-cite"
 same() { python3 "$root/tests/cluster/same_results.py" "$folder/whole.db" "$1" 18; }
 
-# draws of a sphere: a second each
+# draws of a rolling sphere, which take a second each
 words=(roll --seeds 1..18 --method rate/raw --method rolling --keep worst:2 --examples 0 --quiet)
 say "one sweep, undisturbed"
 "$program" sweep "${words[@]}" --jobs 2 --db "$folder/whole.db" >/dev/null
@@ -34,7 +35,7 @@ say "three shards, one of which is killed"
 shards > "$folder/first.out" 2>&1 & running=$!
 victim=''
 for _ in $(seq 600); do
-  # has stored something, and says who it is
+  # waits until the shard has stored an outcome, and its lock file contains the process id
   lock=$folder/shards/2.db.lock
   if [ -s "$lock" ] && python3 -c "
 import sqlite3, sys

@@ -1,4 +1,5 @@
-"""same_results.py WHOLE.db OTHER.db SEEDS: two results databases hold the same rows and scores, but for what they cost."""
+"""Checks that two results databases have the same rows and scores, except for time and memory: same_results.py WHOLE.db
+OTHER.db SEEDS"""
 import sqlite3
 import sys
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# tools/slurm/submit on three nodes of one machine, one of which dies with all that it runs: what comes out is what one
-# undisturbed sweep gives. Needs root, Debian's slurm-wlm and munge (tools/setup --for cluster); 77 where they are not there.
+# Runs tools/slurm/submit on three nodes of one machine and kills one node with all its processes. The result must equal
+# that of one undisturbed sweep. Needs root, Debian's slurm-wlm and munge (tools/setup --for cluster); exits with 77
+# without them.
 #   slurm_test.sh SOURCE_TREE PROGRAM
 set -euo pipefail
 root=$1 program=$2
@@ -14,7 +15,8 @@ declare -A node
 killed=0
 others=()
 say() { printf 'slurm_test: %s\n' "$*"; }
-# what a node runs says so in its environment; the step above it is of no parent that would tell
+# Prints the processes of a node. Their environment names the node, but the environment of their parent, slurmstepd,
+# does not
 processes_of() {
   local file pid parent said
   for file in /proc/[0-9]*/environ; do
@@ -26,7 +28,7 @@ processes_of() {
     [ "$(ps -o comm= -p "$parent")" != slurmstepd ] || echo "$parent"
   done
 }
-# a node with its daemon, its steps and all that they run
+# kills the daemon of a node, its steps and all processes of the steps
 kill_node() {
   local all
   all=$(processes_of "$1")
@@ -84,7 +86,7 @@ for name in n1 n2 n3; do slurmd -D -N "$name" > "$folder/slurmd_$name.out.log" 2
 for _ in $(seq 100); do [ "$(sinfo -h -t idle -o %D 2>/dev/null || true)" = 3 ] && break; sleep 0.3; done
 [ "$(sinfo -h -t idle -o %D)" = 3 ] || { say "the three nodes do not come up"; exit 1; }
 
-# draws of a sphere: a second each
+# draws of a rolling sphere, which take a second each
 words=(--seeds 1..18 --method rate/raw --method rolling --keep worst:2)
 export TUMBLE_CACHE=${TUMBLE_CACHE:-$folder/cache} TUMBLE_SLURM_EVERY_S=1
 say "one sweep, undisturbed"
@@ -94,7 +96,7 @@ say "three shards, a node of which dies"
 "$root/tools/slurm/submit" roll --db "$folder/out.db" --shards 3 --report "$folder/out.html" --program "$program" -- "${words[@]}"
 dead='' array=''
 for _ in $(seq 600); do
-  # a shard that has brought something home, and is not done
+  # finds a node whose shard has copied a part of its results and is not complete
   for part in "$folder"/out.db.shards/shard_*.part.db; do
     [ -f "$part" ] || continue
     task=${part##*shard_}; task=${task%.part.db}

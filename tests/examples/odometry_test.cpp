@@ -54,7 +54,7 @@ void write_messages(const sim::Sensors& sensors, const fs::path& file, std::int6
       const bridge::Sweep sweep = bridge::sweep(sensors.lidars.front(), next);
       if (sweep.end_ns > units.front()[k].time_ns) break;
       out << "sweep " << sweep.start_ns - early_ns << ' ' << sweep.end_ns << ' ' << sweep.points.size() << '\n';
-      out.precision(9);  // of single precision: all that it has
+      out.precision(9);  // enough digits for single precision
       for (const LidarPoint& p : sweep.points)
         out << p.position_L_m.transpose() << ' ' << p.offset_ns + early_ns << ' ' << p.ring << '\n';
       out.precision(17);

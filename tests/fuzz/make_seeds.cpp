@@ -39,7 +39,7 @@ sim::Recording small_recording(int samples) {
   out.sensors.lidars.clear();
   out.truth.lidars.clear();
   fixture::add_lidar(numbers, out, "lidar", 2, 4);
-  for (std::uint32_t& offset_ns : out.sensors.lidars[0].offset_ns) offset_ns *= 8000;  // 25 ms from point to point
+  for (std::uint32_t& offset_ns : out.sensors.lidars[0].offset_ns) offset_ns *= 8000;  // 25 ms between points
   sim::ImuRecord& imu = out.sensors.imus[0];
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
     const double angle_rad = 0.003 * static_cast<double>(k);
@@ -212,7 +212,7 @@ void write_texts(const path& folder) {
   std::string wand =
       "Time;Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;\n"
       "s;W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z\n";
-  for (int k = 0; k < 150; ++k) {  // it swings about x, and the readings belong to it
+  for (int k = 0; k < 150; ++k) {  // it swings about x, with consistent readings
     const double t = 0.01 * k, angle_rad = 0.5 * std::sin(6.0 * t);
     char line[256];
     std::snprintf(line, sizeof line, "%.3f;%.6f;%.6f;0;0;0.1;%.4f;%.4f;%.5f;0.01;0.02;0.1;0.2;0.3\n", t,

@@ -32,7 +32,7 @@ namespace tumble::fuzz {
 namespace {
 
 using std::filesystem::path;
-using namespace tumble::scenarios;  // the readers are all there
+using namespace tumble::scenarios;  // all readers are in this namespace
 
 void recording(const path& file) {
   read_info(file);
@@ -62,7 +62,7 @@ void repoimu(const path& file) {
   import_repoimu(file, false);
   try {
     import_repoimu(file, true);
-  } catch (const BadInput&) {  // too little motion to align by
+  } catch (const BadInput&) {  // the motion is too small for the alignment
   }
 }
 void airbrakes(const path& file) {
@@ -252,7 +252,7 @@ bool takes(const Reader& reader, std::string_view bytes, const path& folder) {
     return true;
   } catch (const BadInput&) {
     return false;
-  } catch (const sim::InvalidSituation&) {  // a number that the draw finds out of bounds
+  } catch (const sim::InvalidSituation&) {  // a number that is out of bounds in the draw
     return false;
   }
 }

@@ -11,9 +11,9 @@ namespace tumble::fuzz {
 
 /// Reader is a reader of one kind of file.
 struct Reader {
-  std::string_view name;                            ///< also the folder of its seeds
-  std::string_view file;                            ///< name that the file is given: some readers look at its ending
-  void (*read)(const std::filesystem::path& file);  ///< BadInput is a refusal; whatever else it throws is a defect
+  std::string_view name;                            ///< also the name of the folder with its seeds
+  std::string_view file;                            ///< file name, because some readers check its ending
+  void (*read)(const std::filesystem::path& file);  ///< may throw BadInput; any other exception is a defect
 };
 
 /// Returns all readers, in the order of registration; a new reader needs a function and a line in readers.cpp, and a

@@ -20,7 +20,7 @@ using Bytes = std::vector<std::byte>;
 /// Edits contains a letter for the class, then edits of six bytes each: what (modulo 5), where (4 bytes, little-endian,
 /// modulo the size), by which byte.
 struct Edits {
-  char letter = 0;                ///< the capital of what the file begins with
+  char letter = 0;                ///< first letter of the file, in upper case
   bool use_saved_params = false;  ///< use the parameters stored in the bytes, after the edits
   std::string text;
 

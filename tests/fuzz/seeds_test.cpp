@@ -120,7 +120,7 @@ TEST_P(Readers, BearSpoiledBytes) {
       refused += said == "refused";
     }
   }
-  // numbers and nothing else: any bytes are a cloud of KITTI
+  // a KITTI cloud consists only of numbers, so any bytes are valid
   if (GetParam().name != "kitti_cloud") {
     EXPECT_GT(refused, 0u) << "the spoiled bytes hurt nothing";
   }

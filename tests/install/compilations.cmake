@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Compilations of two build trees side by side, out of what CMake exports of them (compile_commands.json).
+# Compares the compiler arguments of two build trees (compile_commands.json).
 
-# read_compilations(BUILD FOLDER OUT): "FILE FLAGS" of each file below FOLDER that BUILD compiles, sorted. Flags are
-# those that change what comes out: definitions, optimisation, language, -f and -m. Not paths, warnings, instrumentation.
+# read_compilations(BUILD FOLDER OUT) returns "FILE FLAGS" of each file below FOLDER that BUILD compiles, sorted. The
+# flags are definitions, optimisation, language, -f and -m, which change results. Paths, warnings and instrumentation
+# are left out.
 function(read_compilations build folder out)
   file(READ ${build}/compile_commands.json json)
   string(JSON count LENGTH "${json}")
@@ -11,14 +12,14 @@ function(read_compilations build folder out)
   foreach(index RANGE ${last})
     string(JSON file GET "${json}" ${index} file)
     set(sources "${file}")
-    if(file MATCHES "/unity_[0-9]+_cxx\\.cxx$")  # several sources as one
+    if(file MATCHES "/unity_[0-9]+_cxx\\.cxx$")  # several sources in one unit
       file(STRINGS ${file} includes REGEX "^#include ")
       string(REGEX REPLACE "#include \"([^\"]*)\"" "\\1" sources "${includes}")
     endif()
     list(FILTER sources INCLUDE REGEX "^${folder}/")
     string(JSON command GET "${json}" ${index} command)
     string(REGEX MATCHALL " -(D|O|std=|f|m)[^ ]*" flags "${command}")
-    # alone the library states what its other flags imply: estimator/cmake/EigenLayout.cmake
+    # only the library alone has these definitions, which its other flags imply (estimator/cmake/EigenLayout.cmake)
     list(FILTER flags EXCLUDE REGEX "^ -DEIGEN_(MAX_ALIGN_BYTES|MALLOC_ALREADY_ALIGNED)=")
     list(FILTER flags EXCLUDE REGEX "^ -f(pch-preprocess|sanitize|no-omit-frame-pointer)")
     list(JOIN flags "" flags)
@@ -32,7 +33,7 @@ function(read_compilations build folder out)
   set(${out} "${found}" PARENT_SCOPE)
 endfunction()
 
-# compare_compilations(A B OUT): the first that is in one alone, or nothing.
+# compare_compilations(A B OUT) returns the first entry that is only in A or only in B; empty if there is none.
 function(compare_compilations a b out)
   set(${out} "" PARENT_SCOPE)
   foreach(side a b)

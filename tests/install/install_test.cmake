@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The library as somebody else has it: estimator/ configures alone, with the very compilations of the whole tree; what
-# the build tree installs is enough for a consumer outside of it, and so is the folder inside of a stranger's project.
-# Negative controls: the consumer must fail to configure where the package is not, a program that lays out memory
-# otherwise must not link, and a compilation with other flags is told from ours. With ALONE=ON a copy of the folder is
-# compiled and tests itself, and that is what is installed, as files, as a Debian package and from its source archive,
-# and the stranger's project is built and run: for the long suite, since it costs what a build costs.
+# Tests the library as users get it. estimator/ can be configured alone, with the same compiler arguments as in the
+# whole tree.
+# A project outside of the tree can use the installed library. Another project can contain the folder of the library.
+# Negative controls: without the package, the project must not configure. A program with another memory layout must not
+# link.
+# Other compiler flags must be detected.
+# With ALONE=ON, a copy of the folder is built and tested, then installed as files, as a Debian package and from its
+# source archive. The project that contains the folder is built and run. The test with ALONE=ON takes as long as a
+# build, so it belongs to the long suite.
 include(${CMAKE_CURRENT_LIST_DIR}/compilations.cmake)
 
 function(run expected)
@@ -30,21 +33,21 @@ read_compilations(${BUILD} ${SOURCE}/estimator/src whole)
 read_compilations(${WORK}/estimator ${SOURCE}/estimator/src alone)
 compare_compilations("${whole}" "${alone}" difference)
 if(NOT difference STREQUAL "")
-  message(FATAL_ERROR "alone the library is compiled otherwise than with the tree: ${difference}")
+  message(FATAL_ERROR "the library alone has other compiler arguments than in the whole tree: ${difference}")
 endif()
 list(TRANSFORM alone REPLACE " -O[0-9g]" " -O9" AT 0)
 compare_compilations("${whole}" "${alone}" difference)
 if(difference STREQUAL "")
-  message(FATAL_ERROR "negative control: another optimisation of one file went unnoticed")
+  message(FATAL_ERROR "negative control: another optimisation of one file was not detected")
 endif()
 
-# consume PREFIX OPTION...: the consumer project, outside of the tree, on what lies in PREFIX
+# consume PREFIX OPTION... builds and runs the consumer project outside of the tree, with the package in PREFIX
 function(consume prefix)
   file(REMOVE_RECURSE ${WORK}/present)
   run(passes ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/present ${common} -DCMAKE_PREFIX_PATH=${prefix} ${ARGN})
   run(passes ${CMAKE_COMMAND} --build ${WORK}/present --parallel)
   run(passes ${WORK}/present/consumer)
-  # half of the circumference is 0.4555 m; the filter ends within 1 % of it
+  # half of the circumference is 0.4555 m; the error of the filter is at most 1 %
   if(NOT output MATCHES "turned 3\\.14 rad, position 0\\.4[56] m")
     message(FATAL_ERROR "the consumer printed: ${output}")
   endif()
@@ -60,12 +63,13 @@ function(consume prefix)
   foreach(unlike EIGEN_MAX_STATIC_ALIGN_BYTES EIGEN_DONT_VECTORIZE EIGEN_MALLOC_ALREADY_ALIGNED _GLIBCXX_DEBUG)
     run(fails ${CMAKE_COMMAND} --build ${WORK}/present --target alike_${unlike})
     if(NOT output MATCHES "SameCompilerSettings<")
-      message(FATAL_ERROR "a program with ${unlike} did not link for another reason: ${output}")
+      message(FATAL_ERROR "a program with ${unlike} did not link, but for an unexpected reason: ${output}")
     endif()
   endforeach()
 endfunction()
 
-# embed FOLDER: a project with the estimator's folder in it; what its program must know of the library's layout
+# embed FOLDER configures a project that contains the estimator's folder. Its program must have the library's memory
+# layout
 function(embed folder)
   file(COPY ${SOURCE}/tests/install/embedded DESTINATION ${WORK})
   run(passes ${CMAKE_COMMAND} -S ${WORK}/embedded -B ${WORK}/robot ${common} -DESTIMATOR=${folder}
@@ -76,7 +80,7 @@ function(embed folder)
     list(APPEND layouts "${layout}")
     list(LENGTH layout stated)
     if(NOT stated EQUAL 2)
-      message(FATAL_ERROR "a program with the library's folder in it does not state its layout: ${command}")
+      message(FATAL_ERROR "the compiler arguments do not define the memory layout: ${command}")
     endif()
   endforeach()
   list(LENGTH commands compilations)
@@ -88,7 +92,7 @@ function(embed folder)
 endfunction()
 embed(${SOURCE}/estimator)
 
-# the folder that is given away alone bears the licence of the whole
+# the folder of the library has the licence of the whole project
 run(passes ${CMAKE_COMMAND} -E compare_files ${SOURCE}/LICENSE ${SOURCE}/estimator/LICENSE)
 
 if(NOT ALONE)
@@ -97,8 +101,8 @@ if(NOT ALONE)
   return()
 endif()
 
-# a copy of the folder, elsewhere: builds, tests itself, installs; its package laid into a clean root; its archive
-# builds the same once more. Through the compiler cache where the tree is: what was compiled alike is what it says
+# A copy of the folder is built, tested and installed. Its Debian package is unpacked to an empty folder. Its source
+# archive is built and compared. The compiler cache is used if the tree uses it
 list(APPEND OPTIONS -DTUMBLE_ACCELERATE=${ACCELERATE})
 file(COPY ${SOURCE}/estimator DESTINATION ${WORK}/copy)
 run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common} ${OPTIONS} -DTUMBLE_BUILD_TESTS=ON

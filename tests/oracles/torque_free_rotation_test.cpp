@@ -28,7 +28,7 @@ TEST(JacobiElliptic, DegeneratesToTheCircularFunctions) {
 
 TEST(JacobiElliptic, InvertsTheEllipticIntegralOfTheStandardLibrary) {
   for (double k : {0.1, 0.5, 0.9, 0.999, 0.9999999}) {
-    const double tolerance = 1e-13 + 1e-15 / (1.0 - k);  // rounding of k moves the period; measured a tenth of it
+    const double tolerance = 1e-13 + 1e-15 / (1.0 - k);  // rounding of k changes the period; measured a tenth of this
     for (double phi = -6.0; phi < 6.0; phi += 0.37) {
       const JacobiElliptic j = jacobi_elliptic(std::ellint_1(k, phi), k);
       EXPECT_NEAR(j.sn, std::sin(phi), tolerance) << k << " " << phi;
@@ -71,7 +71,7 @@ TEST(TorqueFreeRotation, StartsWhereItIsTold) {
   for (const Body& body : bodies()) {
     const TorqueFreeRotation motion(body.moments, body.rate, q0);
     EXPECT_LE((motion.rate(0.0) - body.rate).norm(), 2e-12 * body.rate.norm()) << body.rate.transpose();
-    EXPECT_LE(motion.attitude(0.0).angularDistance(q0), 2e-7);  // the square root of rounding, by acos in Eigen
+    EXPECT_LE(motion.attitude(0.0).angularDistance(q0), 2e-7);  // square root of rounding, by acos in Eigen
   }
 }
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Bags that tumble writes, read by other people's packages and by peers as they are started, and theirs read by tumble.
+"""External packages and estimators read bags that tumble writes, and tumble reads bags that external packages write.
 
-    bags.py TUMBLE WORK      TUMBLE the program, WORK a folder for the packages and the files
+    bags.py TUMBLE WORK      TUMBLE: the program; WORK: folder for the packages and the files
 
-The packages (requirements.txt, of the peers programs.txt, pinned with hashes) come from PyPI and are installed once into
-WORK. Where that cannot be done the test fails: what was not looked at has not passed.
+The packages come from PyPI, pinned with hashes (requirements.txt; for estimators, programs.txt), and are installed once
+to WORK. The test fails if they cannot be installed.
 """
 import hashlib
 import os
@@ -16,12 +16,12 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-# what is asked with them: its packages
+# file with the packages of each group of checks
 CHECKS = {"bags": "requirements.txt", "dialects": "requirements.txt", "programs": "programs.txt"}
 
 
 def packages(work, listed):
-    """The folder that the packages of a list are in; filled anew when what is asked for has changed."""
+    """Returns the folder with the listed packages. A changed list is installed to a new folder."""
     wanted = (HERE / listed).read_bytes()
     folder = work / ("packages-" + hashlib.sha256(wanted).hexdigest()[:12])
     done = folder / "complete"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bags.py runs with its packages in sight: bags_checks.py TUMBLE FOLDER"""
+"""Checks that bags.py runs with its packages on the path: bags_checks.py TUMBLE FOLDER"""
 import csv
 import pathlib
 import shutil
@@ -30,7 +30,7 @@ def tumble(*words):
 
 
 def make_files():
-    """A fall, an estimate of it, both in every kind of bag, and the same numbers as text."""
+    """Writes a recording of a fall and its estimate, in every bag format and as text."""
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     tumble("record", "hill", "--seed", 1001, "-o", FOLDER / "a.h5")
@@ -44,7 +44,7 @@ def make_files():
 
 
 def imu_rows(path):
-    """Stamp in ns, rates, specific forces of an IMU as text has them."""
+    """Yields time stamp in ns, rate and specific force of each IMU sample in the CSV file."""
     with open(path) as lines:
         for row in csv.DictReader(lines):
             yield (int(row["stamp_s"]) * 10**9 + int(row["stamp_ns"]),
@@ -60,7 +60,7 @@ def vector(xyz):
 
 
 def sweep_of_ply(path):
-    """A sweep as PLY has it, by field."""
+    """Returns the fields of a sweep in the PLY file."""
     raw = path.read_bytes()
     head, body = raw.split(b"end_header\n", 1)
     sizes = {"float": "<f4", "ushort": "<u2", "uint": "<u4", "uint16": "<u2", "uint32": "<u4", "float32": "<f4"}
@@ -69,7 +69,7 @@ def sweep_of_ply(path):
 
 
 class Reading(unittest.TestCase):
-    """By rosbags, each kind of bag: the same numbers as in the tables."""
+    """Tests that rosbags reads the same numbers from each bag format as from the text files."""
 
     def messages(self, form):
         found = {}
@@ -132,7 +132,7 @@ class Reading(unittest.TestCase):
             self.assertEqual([f.name for f in cloud.fields], ["x", "y", "z", "error_m"])
             self.assertEqual(cloud.header.frame_id, "world")
             errors.append(numpy.frombuffer(cloud.data.tobytes(), "<f4").reshape(-1, 4)[:, 3])
-        self.assertLess(numpy.median(errors[0]), 0.1)  # laid onto the truth at the start, before anything moves
+        self.assertLess(numpy.median(errors[0]), 0.1)  # the paths are aligned at the start, at rest
         self.assertTrue(all(numpy.isfinite(e).all() and (e >= 0).all() for e in errors))
 
     def check_clock(self, found):
@@ -151,7 +151,7 @@ class Reading(unittest.TestCase):
 
 
 class Definitions(unittest.TestCase):
-    """The types as the bags state them, held to rosbags' own."""
+    """Compares the message definitions in the bags with those of rosbags."""
 
     def test_ros1(self):
         store = get_typestore(Stores.ROS1_NOETIC)
@@ -191,7 +191,7 @@ class Definitions(unittest.TestCase):
 
 
 class McapFile(unittest.TestCase):
-    """By mcap, the reference implementation: structure, checksums, index."""
+    """Tests structure, checksums and index with mcap, the reference implementation."""
     path = property(lambda self: FOLDER / BAGS["mcap"])
 
     def test_every_checksum_holds(self):
@@ -275,7 +275,7 @@ class McapFile(unittest.TestCase):
 
 
 class Importing(unittest.TestCase):
-    """Files that mcap writes, whichever way: the same readings come out."""
+    """Tests that tumble imports the same readings from files that mcap writes with different options."""
 
     def rewritten(self, name, **how):
         path = FOLDER / name
@@ -311,6 +311,6 @@ if __name__ == "__main__":
     TUMBLE, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
     make_files()
     passed = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False).result.wasSuccessful()
-    if passed:  # some hundred MB
+    if passed:  # several hundred MB
         shutil.rmtree(FOLDER)
     sys.exit(0 if passed else 1)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bags.py runs with its packages in sight: dialects_checks.py TUMBLE FOLDER
+"""Checks that bags.py runs with its packages on the path: dialects_checks.py TUMBLE FOLDER
 
-`tumble export --for PEER`, read by rosbags: topics, types of messages, fields of points with their types, and each time
-in the peer's own unit against the recording's nanoseconds, which PLY brings apart from every bag.
+Reads the bags of `tumble export --for PEER` with rosbags. Checks topics, message types, and fields of points with their
+types. Compares each time in the peer's unit with the recording's nanoseconds, which are read from PLY files.
 """
 import json
 import pathlib
@@ -17,9 +17,9 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from program import run
 
 TUMBLE = FOLDER = None
-NUMBERS = {2: "<u1", 4: "<u2", 6: "<u4", 7: "<f4", 8: "<f8"}  # of sensor_msgs/PointField
+NUMBERS = {2: "<u1", 4: "<u2", 6: "<u4", 7: "<f4", 8: "<f8"}  # type codes of sensor_msgs/PointField
 
-# peer: bag, topic of the IMU, of the points, field of the times, its type, its unit in ns
+# peer: bag, topic of the IMU, topic of the points, field of the times, type of the field, unit of the field in ns
 WANTED = {"dlio": ("recording.bag", "/os_cloud_node/imu", "/os_cloud_node/points", "t", "<u4", 1),
           "fast-lio": ("recording.bag", "/imu/data", "/velodyne_points", "time", "<f4", 1e9),
           "glim": ("bag", "/os_cloud_node/imu", "/os_cloud_node/points", "t", "<u4", 1),
@@ -46,7 +46,7 @@ def make_files():
 
 
 def given_sweeps():
-    """Points of each sweep by PLY, in the order of their times."""
+    """Yields the points of each sweep in the PLY files, in order of time."""
     for path in sorted((FOLDER / "ply").glob("lidar_*.ply")):
         head, body = path.read_bytes().split(b"end_header\n", 1)
         kinds = {"float": "<f4", "ushort": "<u2", "uint": "<u4"}
@@ -69,7 +69,7 @@ def points_of(cloud):
 
 
 def worst_ns(peer, unit_ns):
-    """Largest distance of a time from the recording's, when it is read in that unit."""
+    """Returns the largest difference between the times in the bag, in the given unit, and the times of the recording."""
     bag, _, topic, time, kind, _ = WANTED[peer]
     worst = 0.0
     for cloud, given in zip(messages(FOLDER / peer / bag, topic), given_sweeps(), strict=True):
@@ -119,7 +119,7 @@ class Peers(unittest.TestCase):
 
 
 class Livox(unittest.TestCase):
-    """The CustomMsg, by the definition that the bag itself brings."""
+    """Reads CustomMsg with the definition that the bag contains."""
 
     def check(self, path, topic, msgtype):
         count = 0
@@ -155,6 +155,6 @@ if __name__ == "__main__":
     TUMBLE, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
     make_files()
     passed = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False).result.wasSuccessful()
-    if passed:  # some hundred MB
+    if passed:  # several hundred MB
         shutil.rmtree(FOLDER)
     sys.exit(0 if passed else 1)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bags.py runs with the packages of programs.txt in sight: programs_checks.py TUMBLE FOLDER
+"""Checks that bags.py runs with the packages of programs.txt on the path: programs_checks.py TUMBLE FOLDER
 
-Two peers as their users start them: in the folder that `tumble export stroll.h5 --for PEER --with-truth` wrote, by the
-command that its manifest states. Where they end is compared with `truth.tum`.
+Runs two external estimators in the folder that `tumble export stroll.h5 --for PEER --with-truth` writes, by the command
+in its manifest. Compares their last poses with `truth.tum`.
 """
 import json
 import pathlib
@@ -19,10 +19,11 @@ from program import run
 
 TUMBLE = FOLDER = None
 PACKAGES = pathlib.Path(numpy.__file__).resolve().parent.parent
-# 11 m of way in a hall; measured 0.051 m (kiss-icp 1.3.0) and 0.046 m (rko-lio 0.4.0): the order of their papers, 1 % of the way
-# and what the lidar's mounting, as given 1 cm and 1 deg off, adds
+# Bound of the end error on a path of 11 m in a hall. The measured errors are 0.051 m (kiss-icp 1.3.0) and 0.046 m
+# (rko-lio 0.4.0).
+# The papers report about 1 % of the path; the stated lidar mounting, with errors of 1 cm and 1 deg, increases the error
 BOUND_M = 0.3
-PEERS = {"kiss-icp": "lidar", "rko-lio": "body"}  # whose poses it gives
+PEERS = {"kiss-icp": "lidar", "rko-lio": "body"}  # frame of the estimated poses
 
 
 def tumble(*words):
@@ -42,7 +43,7 @@ def said(peer):
 
 
 def start(peer):
-    """The trajectory that the manifest's command leaves; None where it leaves none."""
+    """Runs the command of the manifest and returns the trajectory that it writes, or None."""
     shutil.rmtree(FOLDER / peer / "results", ignore_errors=True)
     program, *words = shlex.split(said(peer)["run"])
     ran = subprocess.run([sys.executable, PACKAGES / "bin" / program, *words], cwd=FOLDER / peer, capture_output=True, text=True)
@@ -69,12 +70,12 @@ def poses(path):
 
 
 def end_error_m(peer, trajectory, frame):
-    """Between the last pose as seen from the first one and the truth at the same stamps, of that frame."""
+    """Returns the position error of the last pose relative to the first pose, from the truth of `frame` at the same times."""
     T = said(peer)["extrinsics"]["T_body_lidar"]
     mounting = pose(T["p_m"], T["q_xyzw"]) if frame == "lidar" else numpy.eye(4)
     stamps, given = poses(trajectory)
     true_stamps, true = poses(FOLDER / peer / "truth.tum")
-    # both stamp a pose by the last point of its sweep
+    # both estimators use the time of the sweep's last point as the time of the pose
     ends = [true[numpy.abs(true_stamps - stamp).argmin()] @ mounting for stamp in (stamps[0], stamps[-1])]
     if len(given) < 150:
         raise AssertionError(f"{peer}: {len(given)} poses of 200 sweeps")
@@ -91,7 +92,7 @@ class Programs(unittest.TestCase):
                 error_m = end_error_m(peer, trajectory, frame)
                 print(f"{peer}: {error_m:.3f} m at the end, at most {BOUND_M}")
                 self.assertLess(error_m, BOUND_M)
-                # the comparison can fail
+                # negative control: the wrong frame exceeds the bound
                 self.assertGreater(end_error_m(peer, trajectory, {"lidar": "body", "body": "lidar"}[frame]), BOUND_M)
 
     def test_a_key_that_the_program_does_not_know_is_noticed(self):

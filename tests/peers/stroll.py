@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Three peers on one draw of `stroll`, each within a bound; and the same adapter with two axes of the points exchanged, beyond it.
+"""Tests that the errors of three external estimators on one draw of `stroll` are within a bound: stroll.py ROOT PROGRAM
+WORK.
 
-stroll.py ROOT PROGRAM WORK. Status 77 where the packages cannot be had."""
+Negative control: with two exchanged point axes, the error exceeds the bound. Exits with 77 if the packages cannot be
+installed."""
 import json
 import os
 import pathlib
@@ -9,8 +11,9 @@ import shutil
 import subprocess
 import sys
 
-# 12 m of way in a hall. The papers state 0.2 to 1 % of the way at the end: 0.12 m; and what the lidar's mounting, 1 cm and 1 deg off as
-# given, adds to that. Measured: 0.006 to 0.025 m.
+# Bound of the end error on a path of 12 m in a hall. The papers state errors of 0.2 to 1 % of the path, at most 0.12 m.
+# The stated lidar mounting, with errors of 1 cm and 1 deg, increases the error. The measured errors are 0.006 to 0.025
+# m.
 BOUND_M = 0.3
 SEED = 61003
 PEERS = ("kiss_icp", "rko_lio", "pelorus")
@@ -28,7 +31,7 @@ def make_environment(root: pathlib.Path) -> None:
 
 
 def end_error_m(program: str, recording: pathlib.Path, description: pathlib.Path, out: pathlib.Path) -> float:
-    """Of one method, as the program scores it; infinite where it gives no answer."""
+    """Returns the end error of one method, scored by the program; infinite if the method fails."""
     shutil.rmtree(out, ignore_errors=True)
     ran = subprocess.run([program, "estimate", recording, "--method", description, "-o", out], capture_output=True, text=True)
     if ran.returncode != 0:
@@ -43,7 +46,7 @@ def end_error_m(program: str, recording: pathlib.Path, description: pathlib.Path
 
 
 def find(node, metric: str) -> list[float]:
-    """Values of a metric wherever the program's JSON has them: under its name, or in a row whose first cell it is."""
+    """Returns all values of a metric in the program's JSON: with the metric as key, or as `metric` of an object with a value."""
     if isinstance(node, dict):
         found = [float(value) for key, value in node.items() if key == metric and isinstance(value, (int, float))]
         if node.get("metric") == metric:
@@ -53,7 +56,7 @@ def find(node, metric: str) -> list[float]:
 
 
 def mirrored(root: pathlib.Path, work: pathlib.Path) -> pathlib.Path:
-    """KISS-ICP behind a loop that exchanges x and y."""
+    """Writes a copy of the adapters in which KISS-ICP gets points with exchanged x and y."""
     folder = work / "mirrored"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(root / "peers", folder)

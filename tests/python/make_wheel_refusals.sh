@@ -3,13 +3,13 @@
 # Tests that python/make_wheel rejects invalid arguments before it writes or deletes anything: status 2 and one line with the reason.
 #   make_wheel_refusals.sh SOURCES
 set -euo pipefail
-export LC_ALL=C  # mkdir's words
+export LC_ALL=C  # English messages of mkdir
 make_wheel=$1/python/make_wheel
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# expects WHAT-IT-SAYS ARGUMENTS...
+# expects MESSAGE ARGUMENTS... checks that make_wheel rejects the arguments with this message
 expects() {
   local said=$1 status=0 text
   shift
@@ -18,7 +18,7 @@ expects() {
   printf 'make_wheel %s: status %s, must be 2 with "%s":\n%s\n' "$*" "$status" "$said" "$text" >&2
   exit 1
 }
-# an interpreter of this version that makes no environments
+# writes a fake interpreter of this version that cannot create environments
 interpreter() {
   printf '#!/bin/sh\ncase "$2" in *version_info*) echo "Python 3.%s" ;; *) exit 1 ;; esac\n' "$2" >"$1"
   chmod +x "$1"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the installed package consists of, and what python/make_wheel has left in a folder: wheel_check.py ENVIRONMENT FOLDER, by that
-environment's interpreter. Ends with 1 where it is more, or less, than it should be."""
+"""Checks the contents of the installed package and of the folder of python/make_wheel: wheel_check.py ENVIRONMENT
+FOLDER. Must run in this environment's interpreter. Exits with 1 if files are missing, unexpected or too large."""
 import importlib.metadata
 import pathlib
 import re
@@ -15,7 +15,7 @@ LARGEST_MB = 4.5
 
 
 def problems_of(files: dict[str, float], libraries: set[str]) -> list[str]:
-    """`files`: path in the package to its size in MB."""
+    """Checks the files of the package. `files`: size in MB by path in the package."""
     out = []
     if beyond := libraries - SYSTEM:
         out.append(f"needs shared libraries that not every system has: {', '.join(sorted(beyond))}")
@@ -27,7 +27,7 @@ def problems_of(files: dict[str, float], libraries: set[str]) -> list[str]:
 
 
 def problems_of_what_is_given_away(names: list[str], sources: list[str]) -> list[str]:
-    """`names` of files in the folder; `sources`: paths in the source distribution, below its own folder."""
+    """Checks the folder. `names`: files in the folder; `sources`: paths in the source distribution, without its first folder."""
     out = []
     wheels = [name for name in names if name.endswith(".whl")]
     if len(wheels) != 1 or not re.fullmatch(r"tumble-[\d.]+-(cp311-cp311|cp312-abi3)-(manylinux[\w.]+_x86_64)+\.whl", wheels[0]):

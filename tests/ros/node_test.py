@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs `python -m tumble.ros` as a process on one core, plays recordings to it, and compares what it publishes with the library.
 
-node_test.py TUMBLE ROLL FOLDER    recordings of the rig and of the sphere; FOLDER receives the logs. The node for the rig is killed between two
-                                   plays; the second play must give the same.
+node_test.py TUMBLE ROLL FOLDER    TUMBLE and ROLL are recordings of the rig and of the sphere; FOLDER receives the logs. The node for the rig is
+                                   killed between two plays; the results of both plays must be equal.
 """
 import json
 import pathlib
@@ -42,8 +42,8 @@ def sample_of(message) -> tuple:
 
 
 def pose_numbers(T: np.ndarray) -> list[float]:
-    """x y z qx qy qz qw of a pose."""
-    # the eigenvector of the largest eigenvalue (I. Bar-Itzhack, J. Guidance 23, 2000)
+    """Returns x y z qx qy qz qw of a pose."""
+    # quaternion as the eigenvector of the largest eigenvalue (I. Bar-Itzhack, J. Guidance 23, 2000)
     R = T[:3, :3]
     K = np.zeros((4, 4))
     K[:3, :3] = R + R.T - np.trace(R) * np.eye(3)
@@ -53,7 +53,7 @@ def pose_numbers(T: np.ndarray) -> list[float]:
 
 
 class Expected:
-    """The library's answer: the adapter in this process, given the messages in the order of their times."""
+    """Returns the expected messages: those of the adapter in this process, which gets the same messages in order of time."""
 
     def __init__(self) -> None:
         self.poses, self.rates, self.sweeps = {}, {}, {}
@@ -92,7 +92,7 @@ class Expected:
 
 
 class Received:
-    """Everything that the node publishes, and when."""
+    """Stores all messages that the node publishes, with their times of arrival."""
 
     def __init__(self, node, name: str) -> None:
         self.poses, self.newest, self.rates, self.sweeps, self.maps, self.counts = {}, {}, {}, {}, [], {}
@@ -151,7 +151,7 @@ def differences(expected: Expected, received: Received) -> list[str]:
 
 
 def latency(sent: list, got: dict) -> str:
-    """From the moment when a message was sent to the moment when the pose of its end arrived."""
+    """Returns the delays between sending a message and receiving the pose at its end."""
     times, ends = np.array([at for at, _ in sent]), np.array([when for _, when in sent])
     waits = [when - ends[np.abs(times - stamp).argmin()] for stamp, (_, when) in got.items()]
     return f"median {1e3 * np.median(waits):.1f} ms, largest {1e3 * max(waits):.1f} ms, n = {len(waits)}"
@@ -254,7 +254,7 @@ def roll_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]:
 
 
 def ended_well(process: subprocess.Popen, log: pathlib.Path) -> list[str]:
-    """Ends the node by Ctrl-C. A node without trouble ends with 0 and an empty log."""
+    """Stops the node by Ctrl-C. A node without errors exits with 0 and an empty log."""
     process.send_signal(signal.SIGINT)
     status = process.wait(20)
     return [f"{log}: the node ended with {status} and reports {text[:300]}"] if (text := log.read_text()) or status != 0 else []

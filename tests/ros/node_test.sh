@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs the node of the Python package with ROS 2 from PyPI and compares it with the library. Checks the C++ nodes for errors.
-#   node_test.sh TREE BUILD    BUILD has bin/tumble; the environment (400 MB) and what is compiled stay in BUILD/python and BUILD/ros_node
-# The nodes run in a network of their own where the kernel allows it, so that they meet no other ROS nodes.
+#   node_test.sh TREE BUILD    BUILD contains bin/tumble; the environment (400 MB) and compiled files remain in BUILD/python and BUILD/ros_node
+# If the kernel allows it, the nodes run in a separate network namespace, without other ROS nodes.
 set -euo pipefail
 tree=$1 build=$2 work=$2/ros_node
 environment=$work/environment
@@ -15,7 +15,7 @@ wheel=$(echo "$build"/python/wheel/dist/*.whl)
 pip --force-reinstall --no-deps "$wheel"
 pip "$wheel[files]"
 
-# the C++ nodes have no errors against the real messages and the declarations of rclcpp that they use
+# compiles the C++ nodes with the real messages, and with declarations of the parts of rclcpp that they use
 check() { g++ -std=c++20 -fsyntax-only -Wall -Werror -I "$work/stand_in" -I "$tree/ros/include" -I "$tree/estimator/include" -isystem /usr/include/eigen3 "${messages[@]}" "$1"; }
 messages=()
 for folder in "$environment"/include/*/; do messages+=(-isystem "$folder"); done
@@ -28,7 +28,7 @@ sed 's/odometry.twist_B\[0\]/odometry.twist/' "$tree/ros/nodes/odometry_node.cpp
 cp "$tree/ros/nodes/odometry_node.hpp" "$work"
 if check "$work/wrong.cpp" 2>/dev/null; then echo 'node_test: an error in a node is not found' >&2; exit 1; fi
 
-# 6 s of a tumble, with 16 rings of 1800 columns at 10 Hz, and of a rolling sphere
+# recordings of 6 s: a tumbling rig with a lidar of 16 rings and 1800 columns at 10 Hz, and a rolling sphere
 for scenario in hill roll; do
   sed 's/^duration_s: .*$/duration_s: 6/' "$tree/scenarios/catalogue/$scenario.yaml" >"$work/$scenario.yaml"
   [ -f "$work/$scenario.h5" ] || "$build/bin/tumble" record "$work/$scenario.yaml" --seed 1001 -o "$work/$scenario.h5" --quiet

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""An independent publisher: plays a recording in real time as the drivers of an IMU and of a lidar would publish it.
+"""An independent publisher, which plays a recording in real time like the drivers of an IMU and a lidar.
 
-play.py RECORDING SENT TOPIC...    waits for a subscriber of each topic (imu, points), publishes the messages at their times, and writes to SENT
-                                   when (monotonic clock, seconds) it sent the messages of each stamp. Uses nothing of tumble but its reader
-                                   of recordings.
+play.py RECORDING SENT TOPIC...    waits for a subscriber of each topic (imu, points), then publishes the messages at their times. Writes the
+                                   sending time of each message to SENT (monotonic clock, seconds). From tumble, the
+                                   script uses only the reader of recordings.
 """
 import array
 import json
@@ -19,7 +19,7 @@ from sensor_msgs.msg import Imu, PointCloud2, PointField
 
 import tumble
 
-#: As a lidar of 16 rings and 1800 columns sends them: rays without a return are NaN.
+#: Points of a lidar with 16 rings and 1800 columns, with NaN for rays without a return.
 POINTS = 28_800
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"), ("t", "<u4"), ("ring", "<u2")])
 FIELDS = [PointField(name=name, offset=POINT.fields[name][1], datatype=kind, count=1)
@@ -54,7 +54,7 @@ def cloud_message(sweep) -> PointCloud2:
 
 
 def messages(recording, topics) -> list:
-    """(time at which a driver has the message, topic, message): samples at their stamps, sweeps at their ends."""
+    """Returns (time, topic, message) in the order of a driver: samples at their time stamps, sweeps at their ends."""
     imu = recording.imus[0]
     out = [(int(imu.time_ns[k]), "imu", imu_message(imu, k)) for k in range(len(imu))]
     if "points" in topics:
@@ -75,7 +75,7 @@ def main(recording: str, sent: str, *topics: str) -> int:
             print("play.py: no subscriber of imu and points within 60 s", file=sys.stderr)
             return 1
         time.sleep(0.1)
-    time.sleep(3.0)  # until both ends of each topic know each other
+    time.sleep(3.0)  # until publishers and subscribers have found each other
     times, began = {"imu": [], "points": []}, time.monotonic() - 1e-9 * queue[0][0]
     for time_ns, topic, message in queue:
         time.sleep(max(0.0, began + 1e-9 * time_ns - time.monotonic()))

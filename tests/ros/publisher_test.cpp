@@ -135,7 +135,7 @@ TEST(Deskew, PointsOfASpinningBodyAreThoseOfAStandingOne) {
     worst_m = std::max(worst_m, (deskewed[i].position_L_m.cast<double>() - truth).norm());
     worst_raw_m = std::max(worst_raw_m, (raw - truth).norm());
   }
-  // (a h^2 / 8 with 10 ms between poses and 30 m/s^2 at the IMU is 0.4 mm; twice as far where the first is
+  // (a h^2 / 8 with 10 ms between poses and 30 m/s^2 at the IMU is 0.4 mm; twice this if the first pose is
   // extrapolated)
   EXPECT_LT(worst_m, 4e-3);
   EXPECT_GT(worst_raw_m, 1.0) << "negative control: the body turns by 1.5 rad in the sweep";

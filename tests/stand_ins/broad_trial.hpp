@@ -27,7 +27,7 @@ std::string broad_folder();
 /// read.
 BroadTrial read_broad_trial(const std::string& folder, const std::string& number);
 
-/// One of `broad_trials()`.
+/// Reads one of `broad_trials()`.
 BroadTrial read_broad_trial(const std::string& number);
 
 /// A BroadError contains root mean square errors in degrees as BROAD defines them; samples without reference are left

@@ -33,7 +33,7 @@ double window(double t, double begin, double end, double ramp) {
 }
 
 double Noise::number(double deviation) {
-  double sum = -6.0;  // twelve uniform numbers: variance one
+  double sum = -6.0;  // sum of twelve uniform numbers: variance one
   for (int k = 0; k < 12; ++k) {
     state_ ^= state_ << 13;
     state_ ^= state_ >> 7;

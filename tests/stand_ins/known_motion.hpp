@@ -11,7 +11,7 @@ inline constexpr double kStandardGravity_m_s2 = 9.80665;
 
 /// A KnownMotion is a motion in closed form.
 struct KnownMotion {
-  std::function<Eigen::Quaterniond(double)> q_WI;  ///< of the seconds since the start
+  std::function<Eigen::Quaterniond(double)> q_WI;  ///< attitude at a time in seconds from the start
   std::function<Eigen::Vector3d(double)> p_WI_m;
 };
 

@@ -15,17 +15,17 @@ namespace tumble::scenarios::fixture {
 struct Wand {
   double duration_s = 40.0;
   double log_hz = 100.0;
-  double gyro_hz = 0.0;   ///< of a sensor slower than the log; 0: as fast
-  double accel_hz = 0.0;  ///< the same
+  double gyro_hz = 0.0;   ///< rate of a sensor slower than the log; 0: rate of the log
+  double accel_hz = 0.0;  ///< the same for the accelerometer
   double rail_rad_s = 7.3;
-  double rail_tilt = -0.02;   ///< of the x rail, per rad/s of z
-  double rail_y_slope = 0.0;  ///< the same, per rad/s of y
+  double rail_tilt = -0.02;   ///< tilt of the x saturation limit, per rad/s of z
+  double rail_y_slope = 0.0;  ///< tilt of the x saturation limit, per rad/s of y
   double rail_offset_rad_s = 0.0;
-  double delay_s = 0.012;  ///< the reference lags the IMU
+  double delay_s = 0.012;  ///< delay of the reference relative to the IMU
   Eigen::Quaterniond q_IV = Eigen::Quaterniond(Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.2, -0.5, 0.8).normalized()));
   Eigen::Quaterniond q_VW = Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d(1.0, 0.3, 0.0).normalized()));
-  std::vector<double> flips_s;  ///< starts of 0.15 s during which markers are taken for one another
-  int decimals = 4;             ///< of the stamps
+  std::vector<double> flips_s;  ///< starts of intervals of 0.15 s in which markers are confused
+  int decimals = 4;             ///< decimals of the time stamps
 
   static Eigen::Vector3d rate(double t) {
     const double twirl = 11.0 * std::pow(std::max(0.0, std::sin(0.9 * t)), 8.0) * std::sin(3.1 * t);

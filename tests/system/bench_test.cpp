@@ -31,7 +31,7 @@ std::vector<json> lines_of(const std::string& text) {
 class Bench : public ::testing::Test {
  protected:
   void SetUp() override {
-    setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0);  // Debian's own, which tools/setup gives numpy
+    setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0);  // tools/setup installs numpy for Debian's interpreter
     std::ofstream(folder_ / "small.yaml") << "name: small\ndoc: two draws\nmethods: [rate/raw]\ntimeout_s: 60\n"
                                              "draws: {mild: {bare: [1001]}, wild: {hill: [1001]}}\n";
     const fs::path examples = test::source_dir() / "examples" / "methods";

@@ -64,7 +64,8 @@ TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
   EXPECT_LT(ate_m(scored), 1e-6);
 }
 
-/// A bag, a TUM file and tables of one simulated recording have the same stamps; files that count from zero fit too.
+/// A bag, a TUM file and tables of one simulated recording have the same time stamps; files that count from zero are
+/// also accepted.
 TEST(Exchange, ExportsOfARecordingHaveOneClock) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), bag = (folder / "a.bag").string();

@@ -158,7 +158,7 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
   ASSERT_EQ(run_program({"export", recording, "--format", "ply", "-o", (folder / "all").string(), "--quiet"}).status,
             0);
   ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth, "--quiet"}).status, 0);
-  copy_sweeps(folder / "all", folder / "some", 60, 12);  // the rig has come down and rocks
+  copy_sweeps(folder / "all", folder / "some", 60, 12);  // the rig has landed and rocks
   const std::string back = (folder / "back.h5").string(), estimate = (folder / "e").string();
   const Ended imported = run_program({"import", (folder / "some").string(), "--lidar", "rs16", "--robot", "rig",
                                       "--reference", truth, "--reference-frame", "body", "-o", back, "--json"});

@@ -25,7 +25,7 @@ int status_after(const std::vector<std::string>& arguments, const fs::path& fold
 
 struct Verb {
   const char* name;
-  std::vector<std::string> arguments;  ///< without the output, which goes into the folder
+  std::vector<std::string> arguments;  ///< without the output, which is in the folder
 };
 
 TEST(Interrupted, NothingHalfDoneIsLeft) {

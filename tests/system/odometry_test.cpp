@@ -66,7 +66,7 @@ void drop_sweeps(sim::LidarRecord& lidar, const std::function<bool(std::size_t)>
 struct Fault {
   const char* name;
   const char* evidence;  ///< part of a finding
-  const char* repair;    ///< part of the repair of a finding
+  const char* repair;    ///< part of the remedy of a finding
   void (*inject)(sim::ImuRecord& imu, sim::LidarRecord& lidar);
 };
 
@@ -117,7 +117,7 @@ const Fault kFaults[] = {
      }},
 };
 
-/// Exports the recording with a fault for another package, and returns the path of the bag.
+/// Exports the recording with a fault for another package. Returns the path of the bag.
 fs::path bag_of(const fs::path& folder, const char* peer, const Fault* fault) {
   scenarios::RecordingInfo info = scenarios::read_info(short_stroll());
   sim::Sensors sensors = scenarios::read_sensors(short_stroll());

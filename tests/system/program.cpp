@@ -44,7 +44,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::function<
   folder_ = fresh_folder("child_" + std::to_string(++count));
   pid_ = fork();
   if (pid_ != 0) return;
-  setpgid(0, 0);  // a group of its own, as a shell gives it
+  setpgid(0, 0);  // a separate process group, as a shell creates it
   redirect(folder_ / "out", STDOUT_FILENO);
   redirect(folder_ / "err", STDERR_FILENO);
   // a certificate measured by one test serves the others, and no file is written to the user's home

@@ -14,7 +14,7 @@
 namespace tumble::system_test {
 
 struct Ended {
-  int status = -1;  ///< exit status; 128 + n when signal n ended it
+  int status = -1;  ///< exit status; 128 + n if signal n ended it
   std::string out, err;
 };
 

@@ -213,7 +213,7 @@ TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db", files = folder / "s.db.files";
   Running running(sweep_arguments(database, "1..2", "1"), in_short_catalogue());
-  // the folder is made just before the draw runs again
+  // the folder is created just before the draw runs again
   for (int i = 0; i < 12000 && !running.has_ended() && !fs::exists(files); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   ASSERT_TRUE(fs::exists(files));

@@ -57,7 +57,8 @@ TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   const fs::path folder = shared_run(GetParam());
   const json result = shared_result(GetParam());
   for (const json& outcome : result["outcomes"]) {
-    if (!must_hold(outcome) && outcome["status"] == "diverged") continue;  // a finding, scored as such
+    // a diverged run is a finding, and scored as one
+    if (!must_hold(outcome) && outcome["status"] == "diverged") continue;
     EXPECT_EQ(outcome["status"], "ok") << outcome;
   }
   EXPECT_EQ(result["digest"].get<std::string>().size(), 32u);
@@ -276,7 +277,7 @@ TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(methods(json_of(again)), methods(said));
   EXPECT_TRUE(fs::exists(folder / "roll_2" / "recording.h5"));
-  // the folder does not hide the scenario of its name
+  // the folder does not hide the scenario of the same name
   const Ended drawn = in_folder({"render", "roll", "--seed", "5", "--width", "160", "--height", "120", "-o", "x.png"});
   EXPECT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_THAT(read_file(folder / "x.png"), StartsWith("\x89PNG"));

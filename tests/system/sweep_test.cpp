@@ -208,7 +208,7 @@ TEST(Sweep, OfASuiteSomeScenariosAlone) {
   const Ended unknown = with({"--scenario", "slib"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("unknown scenario of suite 'slip' 'slib'"));
-  const Ended all = with({"--shard", "2/2"});  // which has nothing to do
+  const Ended all = with({"--shard", "2/2"});  // this shard is empty
   EXPECT_EQ(all.status, 0) << all.err;
   EXPECT_THAT(all.err, HasSubstr("use --scenario slip to run only the scenario"));
 }

@@ -161,7 +161,7 @@ TEST(ErrorCode, AGapIsSaidWithItsPlace) {
   std::ofstream csv(folder / "gap.csv");
   csv << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
   for (int k = 0; k < 500; ++k) {
-    const int cs = k < 200 ? k : k + 150;  // nothing for one and a half seconds
+    const int cs = k < 200 ? k : k + 150;  // a gap of 1.5 s
     csv << cs / 100 << ',' << cs % 100 * 10'000'000 << ",0.01,0," << 0.001 * (k % 7) << ",0,0,9.8\n";
   }
   csv.close();

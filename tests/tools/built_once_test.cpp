@@ -41,7 +41,7 @@ class Openings {
 
   /// Returns the number of openings since the last call.
   int count() {
-    std::array<inotify_event, 64> events;  // without names: a file is watched, no folder
+    std::array<inotify_event, 64> events;  // events without names, because a file is watched, not a folder
     int opened = 0;
     for (ssize_t size = 0; (size = read(fd_, events.data(), sizeof events)) > 0;) {
       const auto read_now = events.begin() + size / static_cast<ssize_t>(sizeof(inotify_event));

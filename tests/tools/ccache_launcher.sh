@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# What a precompiled header's sum is worth: it follows the header, and none outlives it. ccache is a stand-in that
-# writes what it is told to, or fails.
+# Tests the checksum of a precompiled header: it depends only on the header, and is deleted with the header. A fake
+# ccache writes the given contents, or fails.
 #   ccache_launcher.sh ROOT
 set -eu
 launcher=$1/estimator/cmake/ccache_launcher
@@ -26,7 +26,7 @@ launch one again.pch
 [ "$(cat again.pch.sum)" = "$first" ] || fail 'the same header in another place has another sum'
 launch two pch.gch
 [ "$(cat pch.gch.sum)" != "$first" ] || fail 'another header has the same sum'
-if launch none pch.gch; then fail 'a compiler that fails is not told'; fi
-[ ! -e pch.gch ] && [ ! -e pch.gch.sum ] || fail 'what was not compiled, or its sum, stays'
+if launch none pch.gch; then fail 'the launcher hides a failure of the compiler'; fi
+[ ! -e pch.gch ] && [ ! -e pch.gch.sum ] || fail 'the old header or its sum remains after a failed compilation'
 launch three source.o
 [ -e source.o ] && [ ! -e source.o.sum ] || fail 'an object file has a sum'

@@ -63,7 +63,7 @@ class CurvesTest : public testing::Test {
 TEST_F(CurvesTest, AreDrawnPerMethodOverTheValuesThatWereSet) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const auto error = static_cast<double>(seed);
-    store(seed, Kind::rate, "raw", {}, {{kMedian, 77.0}});  // as it is: no point of the curve
+    store(seed, Kind::rate, "raw", {}, {{kMedian, 77.0}});  // unchanged value: not a point of the curve
     for (const double value : {0.0, 0.005, 0.01}) {
       store(seed, Kind::rate, "tumble", {kOffset, value}, {{kMedian, error * (1.0 + 100.0 * value)}});
       store(seed, Kind::rate, "raw", {kOffset, value}, {{kMedian, 10.0 * error}});
@@ -107,7 +107,7 @@ TEST_F(CurvesTest, AFailureRanksAsTheWorstAndAFailedMapCountsAsOne) {
   EXPECT_EQ(raw[0].median, 1.0);
   EXPECT_EQ(raw[1].failed, 3);
   EXPECT_TRUE(std::isinf(raw[1].median)) << "three of four failed";
-  // the figure leaves a gap there and shows the share of failures below
+  // the figure has a gap there and shows the share of failures below
   const Figure figure = curve_figure(*curve);
   bool gap = false, failures = false;
   for (const nlohmann::json& trace : nlohmann::json::parse(figure.traces)) {
@@ -145,7 +145,7 @@ TEST_F(CurvesTest, OfBinnedMetricsStandAtTheBinsAndInNoTable) {
   }
   EXPECT_THAT(labels, ElementsAre("0.025 – 0.055", "0.105 – 0.205", "over 0.405"));
   EXPECT_THAT(medians, ElementsAre(1.0, 2.0, 4.0));
-  // a bin without samples stays a gap
+  // a bin without samples remains a gap
   const Figure figure = curve_figure(*curve);
   const auto ticks = nlohmann::json::parse(figure.layout)["xaxis"]["ticktext"];
   EXPECT_THAT(ticks.get<std::vector<std::string>>(),
@@ -163,7 +163,7 @@ TEST_F(CurvesTest, OfBinnedMetricsStandAtTheBinsAndInNoTable) {
 
 TEST_F(CurvesTest, OverMeasuresOfTheDrawsHaveBinsOfEquallyMany) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const auto share = seed <= 10 ? 0.0 : 0.01 * static_cast<double>(seed);  // ten draws never clip
+    const auto share = seed <= 10 ? 0.0 : 0.01 * static_cast<double>(seed);  // ten draws without clipping
     results().store(scenarios::DrawValues{"hill", seed, {{"motion_clipped_share", share}}});
     store(seed, Kind::slam, "tumble", {}, {{"translation_error_end_m", share}});
   }

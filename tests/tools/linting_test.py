@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What tools/lint does beside clang-format and clang-tidy: includes, and many sources as one text.
+"""Tests the parts of tools/lint other than clang-format and clang-tidy: missing includes, and joint texts of many
+sources.
 
     linting_test.py TOOLS_FOLDER
 """
@@ -70,7 +71,7 @@ class Groups(Case):
         self.assertEqual(len(lines), len(places))
         self.assertEqual(lines.count("struct Span {"), 1)
         self.assertEqual(lines.count("struct Span_1 {"), 1)
-        at = lines.index("int b = other.reach + reach_1({});")  # the member of another is not theirs
+        at = lines.index("int b = other.reach + reach_1({});")  # a member of another class is unchanged
         self.assertEqual(places[at], ("b.cpp", 9))
         self.assertEqual(groups.suspected(f"/x/j.cpp:{at + 1}:5: error: e [c]", pathlib.Path("/x/j.cpp"), places), {"b.cpp"})
 
@@ -130,7 +131,7 @@ class CleanSources(Case):
 
     def test_what_has_not_changed_is_not_read_again(self):
         self.assertTrue(self.known().holds("a.cpp", ["-O1"]))
-        self.write("other.hpp", "double other();")  # which it does not reach
+        self.write("other.hpp", "double other();")  # a.cpp does not include this header
         self.assertTrue(self.known().holds("a.cpp", ["-O1"]))
 
     def test_all_that_a_reading_depends_on_counts(self):

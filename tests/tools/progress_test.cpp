@@ -26,7 +26,7 @@ SweepProgress progress(std::uint64_t done, std::uint64_t total, double elapsed_s
 TEST(DurationText, UsesTwoUnitsAtMost) {
   EXPECT_EQ(duration_text(0.4), "0 s");
   EXPECT_EQ(duration_text(59.4), "59 s");
-  EXPECT_EQ(duration_text(59.6), "1 min 00 s");  // rounded before it is split: never "60 s"
+  EXPECT_EQ(duration_text(59.6), "1 min 00 s");  // rounded before it is split, so it is never "60 s"
   EXPECT_EQ(duration_text(185.0), "3 min 05 s");
   EXPECT_EQ(duration_text(3599.7), "1 h 00 min");
   EXPECT_EQ(duration_text(3720.0), "1 h 02 min");

@@ -66,7 +66,7 @@ TEST(PackedReplay, AKnownPoseAtAKnownTimeComesBackWithinItsQuantum) {
       }
       Eigen::Quaterniond q;
       for (int i = 0; i < 4; ++i) q.coeffs()[i] = attitudes[4 * k + static_cast<std::size_t>(i)] / 32767.0;
-      // half a step in each of four numbers turns by no more than two of them
+      // an error of half a step in each of four numbers rotates by at most two steps
       EXPECT_LT(q.normalized().angularDistance(Eigen::Quaterniond(truth.linear())), 2.0 / 32767.0);
     }
   }

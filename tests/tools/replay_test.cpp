@@ -43,7 +43,7 @@ TEST(ReplayMotion, GoesBetweenItsPosesAndNoFurther) {
     times.push_back(t);
     poses.push_back(known_pose(t));
   }
-  times.push_back(1'050'000'000);  // what is no pose is left out
+  times.push_back(1'050'000'000);  // an invalid pose is left out
   poses.push_back(Isometry3d(Eigen::Translation3d(Vector3d::Constant(std::nan("")))));
   times.push_back(3'000'000'000);
   poses.push_back(known_pose(3'000'000'000));

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/reproduce: scores of a small database, numbers of a page, and the check that finds a stale one. No program runs here.
+"""Tests tools/reproduce without the program: scores of a small database, numbers of a page, and the check for stale
+numbers.
 
     reproducing_test.py TOOLS_FOLDER
 """
@@ -31,7 +32,7 @@ class Case(unittest.TestCase):
         self.root = pathlib.Path(scratch.name)
 
     def scores(self, *rows: tuple) -> runs.Scores:
-        """Rows: seed, kind, method, status, metric, value."""
+        """Creates a database from rows of seed, kind, method, status, metric and value."""
         path = self.root / "scores.db"
         path.unlink(missing_ok=True)
         with sqlite3.connect(path) as database:
@@ -89,7 +90,7 @@ class RigPage(Case):
                                      clipped=clipped > 0, clipped_elements=clipped)
 
     def text(self, overlap: float) -> str:
-        """The page of two draws."""
+        """Tests the page of two draws."""
         rows = []
         for seed in (1, 2):
             for name in rig.SWEPT:
@@ -109,7 +110,7 @@ class RigPage(Case):
 
     def test_another_result_makes_it_stale(self):
         found = page.stale(self.text(overlap=0.8), self.text(overlap=0.7))
-        self.assertEqual(len(found), 2)  # of all draws, and of those that clip one element at a time
+        self.assertEqual(len(found), 2)  # values of all draws, and of the draws in which one element clips at a time
         self.assertIn("map overlap", found[0])
 
     def test_draws_that_clip_two_elements_are_told_apart(self):
@@ -149,7 +150,7 @@ class Running(Case):
 
 
 class Figures(unittest.TestCase):
-    """Tables of docs/figures.yaml."""
+    """Tests the tables of docs/figures.yaml."""
 
     GROUP = {"sweep": "s", "by": "scenario", "rows": {"hill": "grassy hill"},
              "columns": [{"text": "end error [cm]"}, {"method": "slam/a", "metric": "end_m", "statistic": "median", "scale": 100},

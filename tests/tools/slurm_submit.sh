@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/slurm/submit with a stand-in of sbatch: what it hands on, and what it refuses. The real one: tests/cluster.
+# Tests which arguments tools/slurm/submit passes to a fake sbatch, and which it rejects. tests/cluster uses the real
+# Slurm.
 #   slurm_submit.sh TREE
 set -euo pipefail
 scratch=$(mktemp -d)
@@ -13,13 +14,13 @@ export PATH=$scratch/bin:$PATH
 db=$scratch/out.db
 
 fail() { printf 'slurm_submit: %s\n' "$1" >&2; cat "$scratch/said" >&2; exit 1; }
-# submits ARGUMENT...: it sends both jobs
+# submits ARGUMENT... checks that the script submits both jobs
 submits() {
   rm -f "$scratch/called"
   "$1/tools/slurm/submit" "${@:2}" > "$scratch/said" 2>&1 || fail "refused: ${*:2}"
   [ "$(wc -l < "$scratch/called")" = 2 ] || fail 'not two jobs'
 }
-# refuses WORDS ARGUMENT...: it says so, with status 2, and sends nothing
+# refuses WORDS ARGUMENT... checks that the script exits with 2 and this message, and submits nothing
 refuses() {
   local status=0
   rm -f "$scratch/called"
@@ -31,9 +32,9 @@ refuses() {
 
 submits "$1" roll --db "$db" --shards 3 -- --seeds 1..18 --method rate/raw
 grep -q -- '--array=1-3 ' "$scratch/called" && grep -q -- '--dependency=afterok:7 ' "$scratch/called" || fail 'not an array and what follows it'
-submits "$1" roll --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw  # nothing has come home
+submits "$1" roll --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw  # no shard has copied results
 touch "$db.shards/shard_1.db"
-submits "$1" roll --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw  # goes on
+submits "$1" roll --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw  # resumes
 refuses "$1" 'shards of another sweep: roll --shards 4 --seeds 1..18 --method rate/raw' roll --db "$db" --shards 4 -- --seeds 1..36 --method rate/raw
 refuses "$1" 'shards of another sweep' roll --db "$db" --shards 3 -- --seeds 1..18 --method rate/raw
 refuses "$1" 'shards of another sweep' slip --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw

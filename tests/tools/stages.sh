@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/test goes through its stages with stand-ins of cmake and ctest: to the end although one fails, which it says and exits by.
+# Tests, with fake cmake and ctest, that tools/test runs all stages even if one fails, and reports the failure with its
+# exit status.
 #   stages.sh TREE
 set -euo pipefail
 scratch=$(mktemp -d)
@@ -13,10 +14,10 @@ stand_in tools/setup 'exit 0'
 stand_in tools/lint '[ "${FAILING:-}" != lint ]'
 stand_in tools/docs '[ "${FAILING:-}" != docs ]'
 stand_in bin/ctest '[ "${FAILING:-}" != ctest ]'
-# fails to build what FAILING names
+# the fake cmake fails for the target in FAILING
 stand_in bin/cmake 'case "$*" in *"--build --preset ${FAILING:-none} "*) exit 1 ;; esac'
 
-# outcome FAILING ARGUMENT...: what tools/test says at its end, "exit STATUS" below
+# outcome FAILING ARGUMENT... prints the last lines of tools/test, then "exit STATUS"
 outcome() {
   local failing=$1; shift
   local status=0

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Does what a tutorial says: follow.py TUTORIAL.md FOLDER. Ends with 1 at the first command that fails.
+"""Runs the commands of a tutorial: follow.py TUTORIAL.md FOLDER. Exits with 1 at the first command that fails.
 
-A block of code after a line with nothing but `NAME`: is written to NAME; a block of sh is run by bash in FOLDER, which is
-made anew; a block after <!-- not run: REASON --> is left out. Blocks of other languages without a name are an error, and
-so is a tutorial that runs nothing: it would prove nothing.
+A block of code after a line that contains only `NAME`: is written to the file NAME. A block of the language sh is run
+by bash in FOLDER, which is created empty. A block after <!-- not run: REASON --> is skipped. A block of another
+language without a name is an error. A tutorial without commands is an error, too.
 """
 import pathlib
 import re
@@ -14,7 +14,7 @@ import sys
 
 
 def blocks(text):
-    """(line number, language, file name or None, reason to leave it out or None, code) of each block."""
+    """Returns (line number, language, file name or None, reason to skip or None, code) of each block."""
     name = reason = None
     lines = iter(enumerate(text.splitlines(), start=1))
     for number, line in lines:

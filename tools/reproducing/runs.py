@@ -59,9 +59,9 @@ class Runs:
               last: int = 0) -> Scores:
         """Sweeps the draws of a suite into NAME.db, resumes a sweep that was stopped, and returns its scores.
 
-        scenario  the one scenario of the suite; empty: all
-        keep      leaves recording and estimates of each draw (`kept`)
-        last      last seed, where it is not that of the run
+        scenario  runs only this scenario of the suite; empty: all
+        keep      keeps recording and estimates of each draw (`kept`)
+        last      last seed, if it differs from the last seed of the run
         """
         words: list[object] = ["sweep", suite]
         if scenario:

@@ -335,7 +335,6 @@ published.
 | roll correction | never made in the code | made, as printed |
 | attitude reference | optical tracker, fitted to Autogain | exact, aligned in yaw |
 | position reference | tape measure at way points | exact |
-
 | slip and slide | provoked by hand | slippery patches |
 
 ## Jitter at standstill: Madgwick against complementary

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times published packages of attitude filters, ns a sample, over the motion of attitude_bench. See README.md."""
+"""Measures the time of published attitude filters per sample in ns, on the motion of attitude_bench. See README.md."""
 import importlib
 import sys
 import time
@@ -14,7 +14,7 @@ RATE_HZ, SAMPLES, REPEATS = 250.0, 5000, 3
 
 
 def motion() -> tuple[np.ndarray, np.ndarray]:
-    """Moves for 15 s and rests for 5 s: rate [rad/s] and specific force [m/s^2]."""
+    """Returns rate [rad/s] and specific force [m/s^2] of a body that moves for 15 s and rests for 5 s."""
     t = np.arange(SAMPLES) / RATE_HZ
     moves = (t < 15.0).astype(float)
     rate = moves[:, None] * np.stack([np.sin(t), 2.0 * np.cos(1.7 * t), 0.5 * np.sin(3.1 * t)], axis=1)
@@ -23,7 +23,7 @@ def motion() -> tuple[np.ndarray, np.ndarray]:
 
 
 def peers(rate: np.ndarray, force: np.ndarray):
-    """(name, run) of every package that is there; each run is one pass over the samples."""
+    """Returns (name, run) of every installed package. Each run is one pass over the samples."""
     def has(module: str) -> bool:
         try:
             importlib.import_module(module)
@@ -65,7 +65,7 @@ def main() -> int:
                 start = time.process_time()
                 run()
                 best = min(best, time.process_time() - start)
-        except Exception as error:  # another version of the package: the others are still worth a figure
+        except Exception as error:  # for example another version of the package; the other packages are still measured
             print(f"{name:40} failed: {error}")
             continue
         timed += 1

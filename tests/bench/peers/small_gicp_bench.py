@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times small_gicp's single-thread point-to-plane on the clouds that registration_clouds wrote. See README.md."""
+"""Measures the time of small_gicp's single-thread point-to-plane registration on the clouds of registration_clouds. See
+README.md."""
 import pathlib
 import sys
 import time

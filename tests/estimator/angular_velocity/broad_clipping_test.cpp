@@ -18,11 +18,11 @@
 namespace tumble {
 namespace {
 
-constexpr double kWindowS = 20.0;  // about the peak of the trial, so that the test takes seconds
+constexpr double kWindowS = 20.0;  // around the peak of the trial, so that the test takes seconds
 
 struct Clipped {
   std::vector<ImuSample> samples;
-  std::vector<Eigen::Vector3d> truth_rad_s;  // the readings before the clipping
+  std::vector<Eigen::Vector3d> truth_rad_s;  // readings before clipping
   std::vector<bool> clipped;
   double rail_rad_s = 0.0;
 };
@@ -74,13 +74,13 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   ASSERT_GT(std::count(trial.clipped.begin(), trial.clipped.end(), true), 20);
 
   RateSmoother::Params params;
-  params.model.nominal = {};  // nobody knows a centre of mass of a sensor in a hand
+  params.model.nominal = {};  // the centre of mass of a hand-held sensor is unknown
   std::vector<RateState> ours, theirs;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(trial.samples, ours, report).ok());
   ASSERT_EQ(ours.size(), trial.samples.size());
   Saave::Params published;
-  published.lever_arm_m = {-0.022, -0.085, 0.055};  // of the published rig
+  published.lever_arm_m = {-0.022, -0.085, 0.055};  // lever arm of the published rig
   published.saturation_point_rad_s = 0.999 * trial.rail_rad_s;
   ASSERT_TRUE(Saave(published).estimate(trial.samples, theirs).ok());
 

@@ -46,7 +46,7 @@ std::vector<ImuSample> clipped_samples(std::vector<ImuSample> samples) {
 }
 
 struct Found {
-  std::string first;  ///< verdict when it was no longer ok
+  std::string first;  ///< first verdict other than ok
   TimeNs told_ns = 0;
   FrozenAxes::State state;
 };
@@ -119,7 +119,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
     std::normal_distribution<double> noise;
     std::vector<ImuSample> out;
     for (int k = 1; k <= 3000; ++k) {
-      const double t = k * kSampling_s, read_t = kSampling_s * (k - k % 3);  // read every third time
+      const double t = k * kSampling_s, read_t = kSampling_s * (k - k % 3);  // one new reading per three samples
       ImuSample sample;
       sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
       sample.angular_velocity_rad_s = {2.0 * std::sin(4.0 * read_t), std::cos(3.0 * read_t), 6.0 * std::sin(2.0 * t)};

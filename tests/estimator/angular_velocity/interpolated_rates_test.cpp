@@ -68,12 +68,13 @@ TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
 TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   const Bent motion;
   std::vector<RateStreamKnot> window = motion.window(24, 3);
-  EXPECT_FALSE(rate_between_readings(window, 23, kPeriod_s).has_value());  // the next one has not come
+  EXPECT_FALSE(rate_between_readings(window, 23, kPeriod_s).has_value());  // the next reading is missing
   EXPECT_TRUE(rate_between_readings(window, 10, kPeriod_s).has_value());
   for (std::size_t k = 12; k < 15; ++k) window[k].observation.clipping.gyro = 2;
-  EXPECT_FALSE(rate_between_readings(window, 10, kPeriod_s).has_value());  // 12 is the first at or after it
+  // sample 12 is the first at or after this time
+  EXPECT_FALSE(rate_between_readings(window, 10, kPeriod_s).has_value());
   for (RateStreamKnot& knot : window) knot.repeats = false, knot.repeated = {};
-  EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has its own
+  EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has a reading
 }
 
 // Interpolated forces along a line are correct at the middle of the sample's window, up to the error of the clock;
@@ -87,7 +88,7 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
     samples[k].angular_velocity_rad_s = Vector3d(1.0 + 1e-3 * static_cast<double>(k), 0.0, 0.0);
     samples[k].specific_force_m_s2 = Vector3d(kSlope_m_s3 * kPeriod_s * (static_cast<double>(k) - 0.5), 0.0, 1.0);
   }
-  EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has its own
+  EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has a reading
   all = samples;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     // taken half a sample before it is logged, at the middle of a window of half the period

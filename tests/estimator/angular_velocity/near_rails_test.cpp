@@ -29,7 +29,7 @@ RailPlanes planes(double slope = -0.02) {
 
 struct Twirl {
   std::vector<ImuSample> samples;
-  std::vector<double> expected_deficit_rad_s;  // what the window of each lost
+  std::vector<double> expected_deficit_rad_s;  // saturation deficit of each window
 };
 
 // Returns means over windows of a rate about x that swings with `amplitude` at the given frequency; each is logged

@@ -110,14 +110,14 @@ TEST(RailDetector, WhatIsFlatByNatureIsNoPlateau) {
 }
 
 TEST(RailDetector, ThePlateauOverrulesTheStatedRange) {
-  for (double stated : {7.854, 12.0}) {  // below what was read, and above the plateau
+  for (double stated : {7.854, 12.0}) {  // below the largest reading, and above the plateau
     const RailDetector rails({.stated_gyro_rad_s = stated});
     RailDetector::State state;
     const std::vector<ImuSample> run = swinging_run(15.0, 10.5);
     classify(rails, run, state);
     EXPECT_EQ(rails.rail(state, 0).value_or(0.0), 10.5);
     EXPECT_TRUE(rails.disagrees(state, 0));
-    EXPECT_EQ(rails.rail(state, 2).value_or(0.0), 10.5);  // the still axis goes by its sibling
+    EXPECT_EQ(rails.rail(state, 2).value_or(0.0), 10.5);  // the axis at rest uses the limit of the other axis
     EXPECT_FALSE(rails.disagrees(state, 2));
   }
   const RailDetector right({.stated_gyro_rad_s = 10.5});

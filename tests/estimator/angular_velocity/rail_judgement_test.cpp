@@ -28,11 +28,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kRail_m_s2 = 19.6;  // 2 g, as the pendulum of RepoIMU has: the turning alone passes it
+constexpr double kRail_m_s2 = 19.6;  // 2 g, as on RepoIMU's pendulum: the centripetal force alone exceeds it
 
 struct Tumble {
   TumbleRecording recording;
-  std::vector<Vector3d> hidden_m_s2;  // what each element of the accelerometer lost, signed
+  std::vector<Vector3d> hidden_m_s2;  // saturation deficit of each accelerometer element, signed
   Matrix3d rows;
 };
 
@@ -190,7 +190,7 @@ TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
   // negative control: the same smoother without planes uses wrong forces
   ErrorsAtRails blind = errors_with(with_lever_arm<RateSmoother::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
-  // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, within 0.990 and 0.938
+  // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, share within three deviations 0.990 and 0.938
   EXPECT_LT(ours.mean(), 0.6 * blind.mean());
   EXPECT_LT(ours.quantile(0.9), 0.3 * blind.quantile(0.9));
   EXPECT_GT(ours.within, 0.97 * ours.axes);
@@ -254,7 +254,7 @@ TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
     by_planes.add(tumble.hidden[k], planes[k].clipped_axes);
   }
   ASSERT_GT(by_planes.deep, 20);
-  EXPECT_LT(by_rails.found, 0.3 * by_rails.deep);  // measured: 0.22, readings that happen to repeat the largest
+  EXPECT_LT(by_rails.found, 0.3 * by_rails.deep);  // measured: 0.22, readings that repeat the largest by chance
   EXPECT_GT(by_planes.found, 0.95 * by_planes.deep);
 }
 

@@ -46,8 +46,8 @@ struct Known {
   test::DataFolder folder;
   const char* file;
   int axis;
-  double distance, offset, first_slope, second_slope;  // along (axis + 1) % 3 and (axis + 2) % 3
-  int samples;                                         // at the rail, counted by hand
+  double distance, offset, first_slope, second_slope;  // slopes along (axis + 1) % 3 and (axis + 2) % 3
+  int samples;                                         // samples at the saturation limit, counted by hand
 };
 
 class RealRails : public ::testing::TestWithParam<Known> {};

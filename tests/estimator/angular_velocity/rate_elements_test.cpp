@@ -136,7 +136,7 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
   EXPECT_TRUE(suspect(plane_of_x(8.7), top));
   EXPECT_FALSE(suspect({}, top));
-  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a rail 6 % away is another's
+  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a saturation limit that differs by 6 % belongs to another element
   RailPlanes own = plane_of_x(8.7);
   own.element[1] = own.element[0];
   EXPECT_FALSE(suspect(own, top));

@@ -114,7 +114,7 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
     EXPECT_LT(gyro_factor(knot, rig, gyro).residual.norm(), 1e-12);
     EXPECT_LT(flight_factor(knot, rig, accel).residual.norm(), 1e-12);
     EXPECT_LT(euler_factor(knot, rig).residual.norm(), 1e-10);
-    EXPECT_GT(euler_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would turn otherwise
+    EXPECT_GT(euler_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would rotate differently
   }
 }
 

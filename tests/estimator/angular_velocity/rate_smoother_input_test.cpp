@@ -31,7 +31,7 @@ std::vector<RateState> sound_rates(const std::vector<ImuSample>& samples, RateRe
     EXPECT_LT(state.w_WI_I_rad_s.norm(), 100.0);
     EXPECT_TRUE(state.covariance_rad2_s2.allFinite());
     EXPECT_GT(state.covariance_rad2_s2.diagonal().minCoeff(), 0.0);
-    EXPECT_LT(state.covariance_rad2_s2.diagonal().maxCoeff(), 2500.1);  // the bound on rates, squared
+    EXPECT_LT(state.covariance_rad2_s2.diagonal().maxCoeff(), 2500.1);  // square of the bound on rates
   }
   return out;
 }
@@ -90,7 +90,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
     samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
     const bool clipped = k >= 100 && k < 500;
     samples[k].angular_velocity_rad_s = clipped ? Vector3d(10.5, -10.5, 10.5) : Vector3d(1.0, -1.0, 1.0);
-    samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // outwards: no rotation makes that
+    samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // the force points outwards, which no rotation causes
   }
   RateReport report;
   const std::vector<RateState> out = sound_rates(samples, report);
@@ -98,7 +98,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
   EXPECT_GT(report.bounded_only, 300u);
   EXPECT_GT(out[300].w_WI_I_rad_s.x(), 10.3);
   EXPECT_LT(out[300].w_WI_I_rad_s.y(), -10.3);
-  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far from the softness of the bound
+  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far larger than the softness of the bound
 }
 
 TEST(RateSmootherInput, ADeadAxis) {
@@ -138,7 +138,7 @@ TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrongAndWhenForcesLookLikeG) {
   options.seed = 13;
   TumbleRecording tumble = make_tumble(options);
   auto params = with_lever_arm<RateSmoother::Params>();
-  params.rails.stated_gyro_rad_s = 7.854;  // the data sheet of a device that clips at 10.5
+  params.rails.stated_gyro_rad_s = 7.854;  // stated range of a device that clips at 10.5
   std::vector<RateState> out;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(tumble.samples, out, report).ok());

@@ -126,7 +126,7 @@ Consistency consistency_with_matrices(double sigma, double stated) {
     TumbleOptions options;
     options.seed = options.mounting_seed = seed;
     options.roll = false;
-    options.flights = 2;  // many are a calibration of their own
+    options.flights = 2;  // many flights calibrate the gyro
     for (double& entry : options.gyro_error.reshaped()) entry = sigma * noise();
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
     RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.01, seed);
@@ -177,11 +177,12 @@ TEST(RateSmoother, ARunWithoutClippingReturnsTheGyro) {
     EXPECT_EQ(run.states[k].source, RateSource::measured);
   }
   EXPECT_EQ(run.report.clipped, 0u);
-  EXPECT_LT(ours, 1.02 * gyro);  // as good as the gyro or better
+  EXPECT_LT(ours, 1.02 * gyro);  // at least as good as the gyro
 }
 
 TEST(RateSmoother, IsEquivariantToARotatedMounting) {
-  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitZ()).toRotationMatrix();  // rails stay on axes
+  // saturation limits remain on the axes
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitZ()).toRotationMatrix();
   TumbleOptions options;
   options.seed = 3;
   TumbleRecording turned = make_tumble(options);

@@ -30,7 +30,7 @@ ImpactSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0
     ImpactSums::DelayGrid force;
     const auto at = [&](double eighth) {
       const double since = std::fmod(8.0 * k + eighth + 800.0, 80.0);
-      const double phase = std::min(since, 80.0 - since) / 8.0;  // samples from the nearest stroke
+      const double phase = std::min(since, 80.0 - since) / 8.0;  // samples since the nearest stroke
       return between_m_s2 + 100.0 * std::exp(-0.5 * phase * phase);
     };
     for (int i = 0; i < ImpactSums::kDelayCount; ++i) force[i] = at(i - ImpactSums::kDelayMax - late);
@@ -54,7 +54,7 @@ TumbleRecording long_late_tumble(std::uint64_t seed, int late) {
   TumbleOptions options;
   options.seed = options.mounting_seed = seed;
   options.flights = 30;
-  options.speed_low_rad_s = 3.0;  // strokes that the gyro reads
+  options.speed_low_rad_s = 3.0;  // strokes that the gyro can measure
   options.speed_high_rad_s = 14.0;
   TumbleRecording out = make_tumble(options);
   delay_force(late, 0, out);
@@ -267,7 +267,7 @@ TEST(RateStreamDelay, AStatedOneIsTakenFromTheStart) {
       TumbleRecording recording = long_late_tumble(seed, 0);
       if (late > 0) {
         delay_force(late, 0, recording);
-      } else {  // readings of the gyro come late
+      } else {  // readings of the gyro are late
         const std::vector<ImuSample> in_time = recording.samples;
         for (std::size_t k = 2; k < in_time.size(); ++k)
           recording.samples[k].angular_velocity_rad_s = in_time[k - 2].angular_velocity_rad_s;

@@ -63,7 +63,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
     for (std::uint64_t seed = 3; seed <= 4; ++seed) {
       const TumbleRecording tumble = tilted_tumble(seed, tilt);
       auto params = with_lever_arm<RateStream::Params>();
-      params.lag_s = 9.0;  // nothing leaves the window
+      params.lag_s = 9.0;  // so that all samples remain in the window
       params.expert.inflation.covariance = 0.0;
       const RateStream method(params);
       RateStream::State state = method.start();
@@ -187,7 +187,7 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
   params.calibrated_errors =
-      std::make_shared<KnownSensorErrors>();  // a device that is as on its sheet: its rail alone is in doubt
+      std::make_shared<KnownSensorErrors>();  // a device that agrees with its data sheet: only the limit is uncertain
   const Believed suspect = believed(params);
   // negative control: axes with slower rates are accepted
   params.expert.planes.distance_min_rad_s = 1000.0;
@@ -237,7 +237,7 @@ TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
 TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed, 800).samples;
-    constexpr std::size_t kTop = 752;  // x passes zero at 7.54 s
+    constexpr std::size_t kTop = 752;  // x crosses zero at 7.54 s
     const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 7.2, 8.2, 9.0, 9.6, 9.6, 8.6, 7.0, 5.0, 3.0};
     for (std::size_t i = 0; i < std::size(steps); ++i) {
       // equal readings would be a plateau
@@ -245,7 +245,7 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
     }
     auto params = with_lever_arm<RateStream::Params>();
     params.calibrated_errors =
-        std::make_shared<KnownSensorErrors>();  // as above: 200 rad/s^2 would show a gyro that may be 1 ms late
+        std::make_shared<KnownSensorErrors>();  // as above; 200 rad/s^2 would reveal that the gyro may be 1 ms late
     const RateStream method(params);
     RateStream::State state = method.start();
     std::optional<RateState> rate;
@@ -271,7 +271,7 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
 TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed).samples;
-    constexpr std::size_t kTop = 377;  // x passes zero at 3.77 s, before it has met its rail
+    constexpr std::size_t kTop = 377;  // x crosses zero at 3.77 s, before its first clipping
     const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 6.1, 5.0, 3.5, 2.0};
     for (std::size_t i = 0; i < std::size(steps); ++i) {
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));

@@ -111,7 +111,7 @@ TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
     rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
     return model.calibration_mahalanobis(rig);
   };
-  EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // sides 3 : 2 : 2
+  EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // ratio of sides 3 : 2 : 2
   EXPECT_GT(mahalanobis({1.0, 1.0, 2.0}), params.calibration_mahalanobis_max);
   EXPECT_NEAR(mahalanobis({0.0, 1.0, 1.0}), 3.65, 0.01);
 }
@@ -126,7 +126,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
     RateStream::State state = method.start();
     std::vector<RateState> got;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (k == split) state = RateStream::State(state);  // carried over as a copy, to another object
+      if (k == split) state = RateStream::State(state);  // continues with a copy in another object
       const RateStream second(wrong_lever(3));
       ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
       if (one) got.push_back(*one);
@@ -182,7 +182,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
   const TumbleRecording recording = make_tumble(options);
   RateStream::Params params = wrong_lever(2);
   params.period_s = 0.001;
-  params.lag_s = 0.05;  // short: a step with each sample costs the square of it
+  params.lag_s = 0.05;  // a short lag, because the time of a step per sample grows with its square
   const auto median_of = [&](const RateStream::Params& with) {
     const RateStream method(with);
     RateStream::State state = method.start();
@@ -261,7 +261,7 @@ TEST(RateStream, AllocatesNothingPerSample) {
   for (const ImuSample& sample : of_planes) ASSERT_TRUE(method.push(sample, other, one).ok());
   EXPECT_EQ(allocations, between);
   EXPECT_TRUE(other.rails.known.planes.any());
-  ::operator delete(::operator new(3));  // the counter does count; a compiler may leave out what `new` asks for
+  ::operator delete(::operator new(3));  // the counter works; a compiler may remove an unused `new`
   EXPECT_EQ(allocations, between + 1);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 struct Watched {
   RepeatDetector::State state;
-  int wrong = 0;  ///< samples after the first 200 whose being new or repeated is not told
+  int wrong = 0;  ///< misclassified samples (new or repeated) after the first 200
   double least_age = 100.0, largest_age = 0.0;
 };
 
@@ -69,8 +69,10 @@ TEST(RepeatDetector, SaysNothingOfOthers) {
   EXPECT_EQ(detect_frozen_units(1.0, 1.0).state.of(Triad::gyro).change_since_reading(), Eigen::Vector3d::Zero());
   EXPECT_FALSE(detect_frozen_units(3.3, 0.0).state.of(Triad::gyro).is_slower_than_log());
   EXPECT_FALSE(detect_frozen_units(1e6, 1.0).state.of(Triad::gyro).is_slower_than_log());
-  EXPECT_FALSE(detect_frozen_units(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());  // at its rails on all
-                                                                                                 // axes it repeats too
+  // at its limits on all axes
+  EXPECT_FALSE(detect_frozen_units(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());
+  // the sensor also
+  // repeats readings
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::ptrdiff_t resting(const std::vector<ImuSample>& samples) {
 }
 
 TEST(RestDetector, FindsAStandstillFromItsFirstSample) {
-  // a reading leaves the spread of 0.03 at 5.8 deviations: once in 1e8 readings
+  // a reading exceeds the limit of 0.03 at 5.8 deviations: once in 1e8 readings
   EXPECT_EQ(resting(standing(200, 1)), 200);
 }
 
@@ -103,7 +103,7 @@ TEST(RestDetector, AKnownBiasIsNoTurn) {
   }
   EXPECT_TRUE(known.rests);
   EXPECT_FALSE(unknown.rests);
-  // a hundred readings of noise 0.0052: five deviations
+  // noise of a mean over a hundred readings, 0.0052 each: five deviations
   EXPECT_LT((known.mean_rate_rad_s() - bias_rad_s - Eigen::Vector3d(-0.01, 0.0, 0.01)).cwiseAbs().maxCoeff(), 0.0026);
 }
 
@@ -153,7 +153,7 @@ TEST(RestDetector, ForceBeyondGravityIsNoRest) {
     return std::count(found.begin(), found.end(), true);
   };
   EXPECT_EQ(rests(10.3), 100);
-  for (ImuSample& sample : samples) sample.specific_force_m_s2.z() += 0.6;  // a steady push
+  for (ImuSample& sample : samples) sample.specific_force_m_s2.z() += 0.6;  // a constant acceleration
   EXPECT_EQ(rests(10.3), 0);
 }
 

@@ -52,7 +52,7 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
     const Saave second(stated_device());
     for (std::size_t k = split; k < run.size(); ++k) {
       ASSERT_TRUE(second.step(run[k], carried, got).ok());
-      ASSERT_EQ(got.rate_rad_s, whole[k].rate_rad_s);  // bit for bit
+      ASSERT_EQ(got.rate_rad_s, whole[k].rate_rad_s);  // identical bits
       ASSERT_EQ(got.variance_rad2_s2, whole[k].variance_rad2_s2);
     }
     EXPECT_EQ(carried, state);

@@ -146,7 +146,7 @@ TEST(SaaveEdge, ContactIsBelieved) {
   const Vector3d w = 15.0 * Vector3d::UnitX(), to_axis = Vector3d(-0.022, 0, 0) - kLever;
   const Vector3d force = w.cross(w.cross(kLever)) + 9.81 * to_axis.normalized();
   const Saave::Recovered out = after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
-  EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // the figure is to first order, exact 2.94
+  EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // first-order value; the exact value is 2.94
 }
 
 TEST(SaaveEdge, DeviceFlagsAreNotUsed) {
@@ -284,7 +284,7 @@ TEST(SaaveAccuracy, ACentimetreOfLeverArmErrorAlongTheLever) {
   ASSERT_GT(e.clipped, 400u);
   const double exact = 15.0 * (1.0 - std::sqrt(kLever.norm() / (kLever.norm() + 0.01)));
   EXPECT_NEAR(e.median, exact, 1e-6);
-  EXPECT_NEAR(e.median, 0.64, 0.064);  // the stated figure, for a rate "about" 15 rad/s
+  EXPECT_NEAR(e.median, 0.64, 0.064);  // stated value, for a rate of "about" 15 rad/s
 }
 
 TEST(SaaveAccuracy, UnclippedRunsComeBackUnchanged) {

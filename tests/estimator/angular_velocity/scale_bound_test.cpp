@@ -18,7 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 struct ScaleInformation {
-  double of_model = 0.0;  ///< with all else at its optimum
+  double of_model = 0.0;  ///< with all other unknowns at their optimum
   double at_most = 0.0;   ///< rate_smoother.md (R48)
 };
 
@@ -111,7 +111,7 @@ TEST(ScaleBound, TheErrorIsThatOfTheBound) {
   }
   EXPECT_LT(squares, 1.5 * variances);
   EXPECT_GT(squares, 0.1 * variances);
-  EXPECT_GT(squares, 4.0 * without);  // what a scale leaves is no small thing
+  EXPECT_GT(squares, 4.0 * without);  // a scale error has a noticeable effect
 }
 
 }  // namespace

@@ -222,7 +222,7 @@ TEST(TriadDelay, IsNilWithoutMotion) {
 TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
   Coverage found, taken, in_time;
   double late_sum = 0.0, clean_sum = 0.0, taken_sum = 0.0;
-  for (const std::uint64_t seed : {2u, 3u, 5u, 6u, 7u}) {  // 1, 4 and 8 are taken for no flight at all, see below
+  for (const std::uint64_t seed : {2u, 3u, 5u, 6u, 7u}) {  // seeds 1, 4 and 8 are classified as contact, see below
     const TumbleRecording late = late_tumble(seed, 1), clean = late_tumble(seed, 0);
     std::vector<RateState> states;
     RateReport report;

@@ -19,10 +19,11 @@ using Eigen::Vector3d;
 
 constexpr double kStep_s = 5e-4;
 constexpr double kImpactTime = 0.02;
-constexpr double kLeverMax = 8.0;  // rad/m: mass times distance of the contact over a third of the trace of the inertia
+// rad/m: mass times distance of the contact, divided by a third of the trace of the inertia
+constexpr double kLeverMax = 8.0;
 
 struct Moment {
-  Vector3d rate, force_at_centre;  // IMU axes; the force of contact at the centre of mass
+  Vector3d rate, force_at_centre;  // IMU axes; contact force at the centre of mass
   Phase phase;
 };
 

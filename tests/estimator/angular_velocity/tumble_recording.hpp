@@ -17,8 +17,8 @@ enum class Phase : std::uint8_t { rest, push, flight, impact, roll };
 
 struct TumbleOptions {
   std::uint64_t seed = 1;
-  std::uint64_t mounting_seed = 1;  ///< of the principal axes in the IMU
-  int rate_hz = 100;                ///< divides 2000
+  std::uint64_t mounting_seed = 1;  ///< orientation of the principal axes in the IMU
+  int rate_hz = 100;                ///< must divide 2000
   double gyro_rail_rad_s = 10.5;
   double accel_rail_m_s2 = 196.0;
   Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
@@ -31,18 +31,18 @@ struct TumbleOptions {
   Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero(), accel_error = Eigen::Matrix3d::Zero();
   /// Rows along which the gyro's elements sense and clip; readings are converted back to the axes.
   Eigen::Matrix3d gyro_rows = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d gyro_offset_rad_s = Eigen::Vector3d::Zero();  ///< of the elements, taken off after they clip
-  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;        ///< of the flights
+  Eigen::Vector3d gyro_offset_rad_s = Eigen::Vector3d::Zero();  ///< of the elements, subtracted after clipping
+  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;        ///< rates of the flights
   int flights = 8;
-  double impact_m_s2 = 150.0;  ///< peak force of an impact, drawn between a third of it and all of it
-  bool roll = true;            ///< end by a second of rolling to rest
+  double impact_m_s2 = 150.0;  ///< largest peak force of an impact; the smallest is a third of it
+  bool roll = true;            ///< the motion ends with a second of rolling to rest
 };
 
 struct TumbleRecording {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Vector3d> truth;  ///< mean of w_WI_I over the window of each sample
   std::vector<Phase> phase;
-  std::vector<Eigen::Vector3d> hidden;                ///< what each element's rail took away, signed [rad/s]
+  std::vector<Eigen::Vector3d> hidden;                ///< signed saturation deficit of each element [rad/s]
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< in IMU axes
 };
 

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using Measurement = WnojSmoother::Measurement;
 using Smoothed = WnojSmoother::Smoothed;
 
-constexpr TimeNs kAnchored_ns = 10'000'000;  // 100 Hz, for which the anchors are stated
+constexpr TimeNs kAnchored_ns = 10'000'000;  // 100 Hz; the reference values apply to this rate
 constexpr double kMeasured = 2.741e-5, kEstimated = 0.2741, kAsPrinted = 3.648, kRejected = 1e6;
 
 std::vector<Measurement> constant_run(std::size_t count, double variance, TimeNs period_ns = kAnchored_ns) {
@@ -117,7 +117,7 @@ double weight(double variance, int offset) {
 TEST(WnojSmoother, WeightsAndDeviationAtTheVarianceOfTheCode) {
   const double want[] = {0.484, 0.255, 0.039, -0.020, -0.014};
   for (int offset = 0; offset < 5; ++offset) {
-    EXPECT_NEAR(weight(kEstimated, offset), want[offset], 5e-4) << offset;  // stated with three decimals
+    EXPECT_NEAR(weight(kEstimated, offset), want[offset], 5e-4) << offset;  // the publication states three decimals
     EXPECT_NEAR(weight(kEstimated, -offset), want[offset], 5e-4) << offset;
   }
   EXPECT_NEAR(std::sqrt(smooth(constant_run(201, kEstimated))[100].variance_rad2_s2.x()), 0.364, 5e-4);
@@ -171,7 +171,7 @@ TEST(WnojSmoother, FollowsAStraightRampExactly) {
   for (auto& m : run) m.rate_rad_s = Vector3d(1.0, -2.0, 3.0) * seconds(m.time_ns) + Vector3d(5.0, 0.0, -1.0);
   const std::vector<Smoothed> got = smooth(run);
   for (std::size_t k = 0; k < run.size(); ++k) {
-    EXPECT_LE((got[k].rate_rad_s - run[k].rate_rad_s).norm(), 1e-10) << k;  // a ramp needs no jerk
+    EXPECT_LE((got[k].rate_rad_s - run[k].rate_rad_s).norm(), 1e-10) << k;  // a linear rate needs no jerk
     EXPECT_LE((got[k].acceleration_rad_s2 - Vector3d(1.0, -2.0, 3.0)).norm(), 1e-7) << k;
   }
 }
@@ -183,7 +183,8 @@ TEST(WnojSmoother, ShortRuns) {
   EXPECT_EQ(smooth(run)[0].variance_rad2_s2, run[0].variance_rad2_s2);
   run = constant_run(2, kEstimated);
   run[1].rate_rad_s.setOnes();
-  EXPECT_LE((smooth(run)[0].rate_rad_s - run[0].rate_rad_s).norm(), 1e-12);  // two readings fix rate and acceleration
+  // two readings determine rate and acceleration
+  EXPECT_LE((smooth(run)[0].rate_rad_s - run[0].rate_rad_s).norm(), 1e-12);
   EXPECT_NEAR(smooth(run)[1].variance_rad2_s2.x(), kEstimated, 1e-12);
 }
 

@@ -137,7 +137,7 @@ TEST_P(Broad, BasicVqfLandsOnItsAnchors) {
 /// tenth.
 TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
   const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
-  EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // 0.161
+  EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // measured 0.161
   EXPECT_GT(complementary.inclination_motion_deg, 5.0) << "it believes accelerations: 8.7";
   const BroadError mahony = run_trials("mahony", baselines::Mahony({}), trials()).back();
   EXPECT_NEAR(mahony.inclination_motion_deg, 2.48, 0.1);
@@ -216,7 +216,7 @@ TEST_P(Broad, TumbleIsQuieterAtRestThanTheComplementaryFilter) {
     complementary += jitter_at_rest_deg(baselines::Complementary({}), trial) / 8.0;
   }
   std::printf("jitter at rest, deg per sample: tumble %.5f, complementary %.5f\n", ours, complementary);
-  EXPECT_LT(ours, 0.5 * complementary);  // measured 0.0009 against 0.0036
+  EXPECT_LT(ours, 0.5 * complementary);  // measured 0.0009 compared with 0.0036
 }
 
 /// Negative control of the score: a known tilt is reported as inclination, and the alignment removes a known rotation.
@@ -259,7 +259,7 @@ TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
   for (const BroadError& error : {madgwick, mahony})
     EXPECT_GT(error.inclination_motion_deg, 2.0 * vqf.inclination_motion_deg);
   EXPECT_GT(complementary.inclination_motion_deg, 2.0) << "it believes accelerations: 2.98";
-  EXPECT_LT(tumble.inclination_rest_deg, 0.05);  // 0.044: the accelerometer has noise and no bias here
+  EXPECT_LT(tumble.inclination_rest_deg, 0.05);  // measured 0.044: here, the accelerometer has noise but no bias
   EXPECT_GT(mahony.inclination_rest_deg, 0.5) << "the gyro's bias leaks into it: 0.89";
 }
 

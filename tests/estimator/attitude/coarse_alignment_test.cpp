@@ -37,7 +37,7 @@ TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
 }
 
 struct Found {
-  double tilt_rad = 0.0, deviation_rad = 0.0, least_deviation_rad = 1e9;  ///< least: within 0.1 s of the gap
+  double tilt_rad = 0.0, deviation_rad = 0.0, least_deviation_rad = 1e9;  ///< least: within 0.1 s after the gap
 };
 
 /// A body that moves by a hand's breadth is struck at the start of a gap of 0.3 s, so that half the change of its rate
@@ -90,7 +90,7 @@ TEST(CoarseAlignment, ASecondGapBeforeUpIsFoundLosesNothingOfTheDoubt) {
   step(time_ns += 300'000'000, 3.0);
   ASSERT_TRUE(state.alignment.running);
   const double lost = TumbleAttitude::attitude_covariance_rad2(state)(0, 0);
-  step(time_ns += 60'000'000, 3.0);  // a short one alone loses nothing
+  step(time_ns += 60'000'000, 3.0);  // a single short gap does not require alignment
   EXPECT_TRUE(state.alignment.running);
   EXPECT_GE(TumbleAttitude::attitude_covariance_rad2(state)(0, 0), lost);
 }

@@ -93,7 +93,7 @@ void expect_bad_input_refused(const Filter& filter) {
   expect_refused(filter, state, bad, ErrorCode::time_order);
   bad.time_ns = std::numeric_limits<TimeNs>::min();
   expect_refused(filter, state, bad, ErrorCode::time_order);
-  bad.time_ns = state.last_time_ns + 1'000'000'001;  // gap_max_s is 1 by default
+  bad.time_ns = state.last_time_ns + 1'000'000'001;  // the default of gap_max_s is 1
   expect_refused(filter, state, bad, ErrorCode::gap);
   bad.time_ns = std::numeric_limits<TimeNs>::max();
   expect_refused(filter, state, bad, ErrorCode::gap);

@@ -50,7 +50,7 @@ Point random_point(std::uint64_t seed, double step_s) {
 
 using Factor = std::function<double(const Point&, System::Block&, System::Block&, System::Corner&)>;
 
-/// The gradient that a factor adds is half the negative derivative of its cost, in every unknown.
+/// The gradient of a factor is half the negative derivative of its cost, for every unknown.
 void expect_gradient(const Factor& factor, const Point& at) {
   System::Block here, next;
   System::Corner corner;

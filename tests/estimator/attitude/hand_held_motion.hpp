@@ -28,7 +28,7 @@ struct HandHeldMotion {
   Eigen::Quaterniond attitude(double t) const {
     return so3::exp({0.0, tilt(t, 0), 0.0}) * so3::exp({spin(t, 0), 0.0, 0.0});
   }
-  /// Rate in sensor axes: R = Ry(b) Rx(a).
+  /// Returns the rate in sensor axes: R = Ry(b) Rx(a).
   Eigen::Vector3d rate(double t) const {
     const double a = spin(t, 0);
     return {spin(t, 1), tilt(t, 1) * std::cos(a), -tilt(t, 1) * std::sin(a)};

@@ -36,8 +36,8 @@ Vector3d mean_rate(const HandHeldMotion& motion, double end_s, double window_s, 
 struct Held {
   std::vector<ImuSample> samples;
   std::vector<ClipSigns> signs;
-  std::vector<Vector3d> rate_rad_s;  ///< true, mean over the log's step
-  std::vector<bool> lost;            ///< the reading lies below its unclipped twin
+  std::vector<Vector3d> rate_rad_s;  ///< true mean over the log's period
+  std::vector<bool> lost;            ///< the reading is below the unclipped reading
 };
 
 /// `mark` is added to each repeated reading, more each time, so that it does not look repeated.
@@ -63,8 +63,8 @@ Held held(double duration_s, double mark) {
 }
 
 struct HeldErrors {
-  double median_rad_s = 0.0;  ///< of the errors where a reading lost something
-  double within = 0.0;        ///< three deviations, of those
+  double median_rad_s = 0.0;  ///< errors of readings with a deficit
+  double within = 0.0;        ///< their share within three deviations
   double called_measured = 0.0;
 };
 
@@ -139,7 +139,7 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   const double expected = kJerk * kJerk * std::pow(kPeriod_s, 3.0) / 320.0;
   std::printf("root density %.1f, drawn %.1f; window %.5f, expected %.5f rad/s\n", std::sqrt(power), kJerk,
               std::sqrt(apart), std::sqrt(expected));
-  // 12000 correlated second differences: 2 % of the root density
+  // 12000 correlated second differences: accuracy of 2 % for the root density
   EXPECT_NEAR(std::sqrt(power), kJerk, 0.05 * kJerk);
   EXPECT_NEAR(std::sqrt(apart), std::sqrt(expected), 0.05 * std::sqrt(expected));
 }

@@ -168,7 +168,7 @@ TEST_P(HandHeldBroadAttitude, IsBetterThanTheFilterOnATrial) {
   std::vector<RateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
-  const HandHeldSmoother smoother({.expert = {.node_s = 0.02}});  // half the time
+  const HandHeldSmoother smoother({.expert = {.node_s = 0.02}});  // half of the time
   ASSERT_TRUE(smoother.estimate(trial.samples, {}, rates, attitudes, report).ok());
   std::vector<Eigen::Quaterniond> q_WI;
   for (const AttitudeState& attitude : attitudes) q_WI.push_back(attitude.q_WA);

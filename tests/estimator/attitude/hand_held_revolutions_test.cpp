@@ -32,7 +32,7 @@ HandHeldStream::Params calm_hand(double lag_s) {
 
 /// HiddenRate is the error of the rate about the spin's axis at one clipped sample, with its stated deviation.
 struct HiddenRate {
-  double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: share of the segment that has passed
+  double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: elapsed share of the segment
 };
 
 struct LiveSpin {

@@ -83,7 +83,7 @@ TEST(HandHeldStream, IsTheBatchOnALongLag) {
   HandHeldStream::Params params;
   params.lag_s = 1.5;
   params.window_s = 1.8;
-  params.body.expert.hand.hand_noise_adaptation = 0.0;  // the one thing in which the two differ by design
+  params.body.expert.hand.hand_noise_adaptation = 0.0;  // stream and batch differ in this adaptation by design
   const std::vector<RateState> live = stream(recording, params);
   std::vector<RateState> batch;
   std::vector<AttitudeState> attitudes;
@@ -141,8 +141,8 @@ TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   for (const double hz : {30.0, 20.0, 12.0}) {
     const HandHeldRecording recording = testing::record({.spin_hz = 0.45}, hz, 12.0, 5.0);
     const HandHeldStream::Params params;
-    ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);  // a sample's lag is longer than the window
-    const std::vector<RateState> live = stream(recording, params);    // one for each sample
+    ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);  // the lag is longer than the window
+    const std::vector<RateState> live = stream(recording, params);    // one result per sample
     std::vector<double> raw;
     for (std::size_t k = 0; k < live.size(); ++k) {
       EXPECT_GT(live[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0) << hz << " Hz, " << k;

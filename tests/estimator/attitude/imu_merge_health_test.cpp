@@ -139,7 +139,7 @@ TEST(ImuMergeHealth, AUnitThatRepeatsItselfWhileTheOthersMoveIsFrozen) {
     EXPECT_NEAR(seconds(out.state.units[unit].frozen_since_ns), 1.996, 0.01);
     // from two instead of three IMUs, after 0.03 s of calibration from wrong differences
     EXPECT_LT(out.worst_rate_rad_s, 4.0 * good.worst_rate_rad_s);
-    EXPECT_LT(out.worst_force_m_s2, 4.0 * good.worst_force_m_s2);  // and an acceleration from the gyros' noise
+    EXPECT_LT(out.worst_force_m_s2, 4.0 * good.worst_force_m_s2);  // and an acceleration from the gyro noise
   }
 }
 

@@ -64,8 +64,8 @@ ImuMerge::Params tilted_params(const TiltedSpin& spin, int count) {
 }
 
 struct RailedMerge {
-  double error_rad_s = 0.0;      ///< largest a while after a gyro has clipped
-  double raw_error_rad_s = 0.0;  ///< of a gyro alone
+  double error_rad_s = 0.0;      ///< largest error some time after a gyro has clipped
+  double raw_error_rad_s = 0.0;  ///< error of a single gyro
   int clipped = 0, unflagged = 0;
   ImuMerge::State state;
 };

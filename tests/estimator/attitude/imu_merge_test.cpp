@@ -55,8 +55,8 @@ ImuMerge::Params spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_
 }
 
 struct MergeErrors {
-  double rate_error_rad_s = 0.0;     ///< largest after 0.1 s at the rail
-  double clipped_error_rad_s = 0.0;  ///< of a gyro alone
+  double rate_error_rad_s = 0.0;     ///< largest error after 0.1 s at the saturation limit
+  double clipped_error_rad_s = 0.0;  ///< error of a single gyro
   int railed = 0, flagged = 0;
 };
 
@@ -88,7 +88,7 @@ TEST(ImuMerge, TellsARateBeyondTheRangeByTheAccelerometers) {
   const Spin spin;
   const MergeErrors exact = merge_errors(spin, spin_params(spin), 44.0);
   ASSERT_GT(exact.railed, 100);
-  EXPECT_GT(exact.clipped_error_rad_s, 5.0);  // or the test shows nothing
+  EXPECT_GT(exact.clipped_error_rad_s, 5.0);  // the test needs a large raw error
   EXPECT_LT(exact.rate_error_rad_s, 0.5);
   EXPECT_EQ(exact.flagged, 0);
   // the mounting is wrong by 1 mm, which is calibrated below saturation
@@ -143,7 +143,7 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
   const Spin spin;
   const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;
-  std::array<Eigen::Matrix3d, 3> errors;  // together nothing, as what all share cannot be told
+  std::array<Eigen::Matrix3d, 3> errors;  // their sum is zero, because common errors are unobservable
   errors[0] << 3e-3, -2e-3, 1e-3, 2e-3, -1e-3, 3e-3, -3e-3, 1e-3, 2e-3;
   errors[1] << -1e-3, 3e-3, 2e-3, -3e-3, 2e-3, -1e-3, 1e-3, 2e-3, -3e-3;
   errors[2] = -errors[0] - errors[1];
@@ -164,7 +164,7 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
     plain = std::max(plain, (mean - exact).norm());
     corrected = std::max(corrected, (merged->specific_force_m_s2 - exact).norm());
   }
-  EXPECT_GT(plain, 0.1);  // or the test shows nothing
+  EXPECT_GT(plain, 0.1);  // the test needs a large error
   EXPECT_LT(corrected, 0.3 * plain);
 }
 
@@ -178,14 +178,14 @@ TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
     const bool impact = k == 25;
     for (std::size_t unit = 0; unit < 3; ++unit) {
       now[unit].time_ns = k * kUnitPeriod_ns;
-      if (impact) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the rail, as a mean
+      if (impact) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the limit, on average
     }
     std::optional<ImuSample> merged;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
     EXPECT_NEAR(merged->specific_force_m_s2.x(), impact ? 50.0 : 0.0, 1e-6) << k;
     EXPECT_EQ(merged->device_clip_flags, 0) << k;
   }
-  EXPECT_EQ(state.units[1].excluded_windows, 10);  // for 40 ms, as impacts come in rows
+  EXPECT_EQ(state.units[1].excluded_windows, 10);  // for 40 ms, because impacts follow each other
   EXPECT_EQ(state.units[0].excluded_windows, 0);
 }
 

@@ -215,7 +215,7 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   const ImuPlausibility plausibility({});
   const auto verdict_at = [&](double force_rotation_rad2, double correlation) {
     ImuPlausibility::State state;
-    constexpr double kRotated_rad2 = 10.0;  // by the gyro, well beyond what little is left out
+    constexpr double kRotated_rad2 = 10.0;  // rotation angle by the gyro, far more than the excluded part
     state.force_rotation_rad2 = kRotated_rad2 * force_rotation_rad2;
     state.gyro_rotation_rad2 = kRotated_rad2;
     state.rotated_windows = 100.0;

@@ -46,7 +46,7 @@ PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   for (int k = 0; k < motion.samples; ++k) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), rate = Eigen::Vector3d::Zero();
-    for (int j = 0; j < kFine; ++j) {  // a reading is a mean over its time
+    for (int j = 0; j < kFine; ++j) {  // a reading is a mean over its window
       const double t_s = kStep_s * (k - 1 + (j + 0.5) / kFine);
       const Eigen::Vector3d w = rate_rad_s(t_s);
       const Eigen::Quaterniond half = so3::exp(0.5 * kStep_s / kFine * w);

@@ -90,7 +90,7 @@ TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
 TEST(RegimeSmoother, ASpinInFlightIsNot) {
   const HandHeldMotion motion;
   HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
-  for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same turning, and nobody who holds the body
+  for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same rotation without a hand
     const double t = 0.01 * (static_cast<double>(k) + 0.5);
     const Eigen::Vector3d w = motion.rate(t);
     recording.samples[k].specific_force_m_s2 =

@@ -23,7 +23,7 @@ using testing::quantile;
 
 struct Joined {
   std::vector<RateState> rates;
-  std::vector<double> hand_held;  ///< share, after each sample given out
+  std::vector<double> hand_held;  ///< hand-held share after each reported sample
   RegimeStream::State state;
 };
 
@@ -220,7 +220,7 @@ TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
 TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   const SlowlyBegun motion;
   std::vector<ImuSample> samples = motion.record(100.0, 16.0, 7.3).samples;
-  for (std::size_t k = 1000; k < 1080; ++k)  // the lever arm's share alone
+  for (std::size_t k = 1000; k < 1080; ++k)  // only the force of the lever arm
     samples[k].specific_force_m_s2 = motion.turning(0.01 * (static_cast<double>(k) + 0.5), motion.motion.lever_arm_m);
   RegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = HandHeldMotion().lever_arm_m;

@@ -225,7 +225,7 @@ TEST(RestGravity, OfASpanWithAGapNothingIsSaid) {
   const auto silent_for = [](TimeNs gap_ns) {
     return Harm([gap_ns](ImuSample& sample) {
       if (sample.time_ns >= 3'000'000'000 && sample.time_ns < 3'000'000'000 + gap_ns)
-        sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // passed over
+        sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // the sample is skipped
     });
   };
   EXPECT_EQ(after({}, silent_for(300'000'000)).spans, 0u);

@@ -32,7 +32,7 @@ HandHeldSmoother::Params smoother_params() {
   out.hand_sigma_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
   out.expert.jerk_inflation = 1.0;
-  out.expert.iterations_max = 100;  // a filter that was fed with blind readings is no good start
+  out.expert.iterations_max = 100;  // a filter with wrong forces is a poor start
   return out;
 }
 

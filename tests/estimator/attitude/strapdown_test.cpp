@@ -75,7 +75,7 @@ Eigen::Vector3d coning_rate(double t, double h, double half_cone, double coning_
 TEST(Strapdown, ConingDriftsByWhatOneRatePerSampleCannotKnow) {
   constexpr double kHalfCone = 0.05;
   constexpr double kConing_rad_s = 2.0 * std::numbers::pi * 5.0;
-  constexpr int kSteps = 2000;  // whole turns of the cone: 2000 * 4 ms * 5 Hz = 40
+  constexpr int kSteps = 2000;  // whole revolutions of the cone: 2000 * 4 ms * 5 Hz = 40
   const double h = seconds(testing::kPeriod_ns);
   const Strapdown filter({});
   Strapdown::State state;

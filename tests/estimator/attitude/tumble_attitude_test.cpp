@@ -50,7 +50,7 @@ TEST(TumbleAttitude, AtRestTheBiasIsFoundAndTheAttitudeHeld) {
   }
   EXPECT_TRUE(after_2s.at_rest);
   EXPECT_NEAR((state.bias_rad_s - bias).norm(), 0.0, 1e-4);  // measured 3e-6
-  // a minute with a vertical bias of 0.34 deg/s is 20 deg of heading for a gyro alone
+  // with a gyro alone, a vertical bias of 0.34 deg/s gives a heading error of 20 deg per minute
   EXPECT_NEAR(so3::log(after_2s.q_WI.conjugate() * state.q_WI).z(), 0.0, 1e-9);
   EXPECT_NEAR(tilt(state.q_WI), 0.0, 1e-4);
 }
@@ -97,7 +97,7 @@ TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
   double worst_a = 0.0, worst_b = 0.0;
   for (int k = 0; k <= 15000; ++k) {
     const double t = k * seconds(kPeriod_ns);
-    // velocity amplitude 0.48 m/s at 1 Hz: 3 m/s^2, an apparent tilt of 17 deg
+    // velocity amplitude of 0.48 m/s at 1 Hz: 3 m/s^2, an apparent tilt of 17 deg
     const ImuSample sample{
         k * kPeriod_ns, {0, 0, 0}, {3.0 * std::sin(2.0 * std::numbers::pi * t), 0.0, kGravity_m_s2}, 0};
     ASSERT_TRUE(ours.step(sample, a).ok());
@@ -222,7 +222,7 @@ TEST(TumbleAttitude, CovarianceStaysAProperOne) {
 
 TEST(TumbleAttitude, CovarianceShrinksWhereTheForceIsThatOfABodyInPlace) {
   const TumbleAttitude filter({});
-  const auto deviation = [&](double shaken_m_s2) {  // to and fro in 5 s
+  const auto deviation = [&](double shaken_m_s2) {  // back and forth in 5 s
     TumbleAttitude::State state;
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
     for (ImuSample sample : testing::wobble(20000)) {
@@ -246,12 +246,12 @@ TEST(TumbleAttitude, CovarianceShrinksWhereTheForceIsThatOfABodyInPlace) {
 /// attitude afterwards.
 struct Struck {
   Eigen::Vector3d before_rad_s, after_rad_s;
-  double share = 0.5;  ///< of the gap, when it is struck
+  double share = 0.5;  ///< time of the strike, as a share of the gap
 };
 
 struct BehindGap {
-  Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();  ///< true less estimated, axes of W
-  double variance_rad2 = 0.0;                          ///< of one of them
+  Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();  ///< true minus estimated, axes of W
+  double variance_rad2 = 0.0;                          ///< of each tilt axis
   bool at_rest = false;
 };
 

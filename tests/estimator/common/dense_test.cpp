@@ -60,7 +60,7 @@ TEST(Dense, SemidefiniteHasTheBitsOfTheFixedSize) {
   solve_semidefinite_vector(A, b);
   EXPECT_EQ(b, Vector(A.ldlt().solve(right())));
   ASSERT_TRUE(b.allFinite());
-  EXPECT_EQ(b[5], 0.0);  // what nothing holds is not moved
+  EXPECT_EQ(b[5], 0.0);  // an unconstrained unknown is not changed
 }
 
 TEST(Dense, EigenvaluesAreThoseOfTheFixedSize) {

@@ -33,7 +33,7 @@ TEST(ImuInterpolation, FollowsALineBetweenReadingsAndBeyondThem) {
     EXPECT_NEAR(near.length_s, 4e-3, 1e-18);
     const ImuSample found = imu.at(time_ns, near), expected = on_the_line(time_ns);
     EXPECT_EQ(found.time_ns, time_ns);
-    // a dozen roundings of numbers up to 700
+    // rounding errors of about a dozen numbers up to 700
     EXPECT_LT((found.angular_velocity_rad_s - expected.angular_velocity_rad_s).norm(), 1e-12) << time_ns;
     EXPECT_LT((found.specific_force_m_s2 - expected.specific_force_m_s2).norm(), 1e-12) << time_ns;
   }

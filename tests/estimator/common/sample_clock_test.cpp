@@ -12,7 +12,7 @@
 namespace tumble {
 namespace {
 
-constexpr TimeNs kStart_ns = 1'700'000'000'000'000'000;  // seconds since 1970: a double no longer holds it
+constexpr TimeNs kStart_ns = 1'700'000'000'000'000'000;  // ns since 1970, which a double cannot represent exactly
 
 /// Returns sample times, some of which are missing.
 std::vector<TimeNs> regular(std::size_t count, double period_ns, double lost_share = 0.0) {
@@ -83,7 +83,7 @@ TEST(SampleClock, ErrsByWhatItsMemoryLeaves) {
     const std::vector<TimeNs> times_ns = regular(40'000, period_ns);
     const double stated_ns = jitter_ns * std::sqrt(1.25 * period_ns * 1e-9 / SampleClock::Params{}.memory_s);
     const double measured_ns = spread_ns(times_of(jittered(times_ns, jitter_ns)), times_ns, 5000);
-    EXPECT_NEAR(measured_ns / stated_ns, 1.0, 0.15) << period_ns;  // some hundred memories: 7 % of chance
+    EXPECT_NEAR(measured_ns / stated_ns, 1.0, 0.15) << period_ns;  // some hundred memories, so 7 % of random error
   }
 }
 
@@ -96,7 +96,8 @@ TEST(SampleClock, FollowsAPeriodThatNobodyStatedThroughLostSamples) {
       const std::vector<TimeNs> found = times_of(stamps_ns);
       EXPECT_TRUE(rise(found));
       EXPECT_LT(spread_ns(found, times_ns, 300), 0.25 * jitter_ns) << period_ns << " ns, lost " << lost_share;
-      EXPECT_LT(spread_ns(found, times_ns, 0), 0.6 * jitter_ns);  // from the first stamps on: never worse than they are
+      // the estimate is better than the time stamps from the start
+      EXPECT_LT(spread_ns(found, times_ns, 0), 0.6 * jitter_ns);
     }
   }
 }
@@ -152,8 +153,10 @@ TEST(SampleClock, IsNotLostInABurst) {
 
 TEST(SampleClock, GoesOnBehindAGapAndAJumpOfTheClock) {
   std::vector<TimeNs> times_ns = regular(6000, 4e6);
-  for (std::size_t k = 2000; k < times_ns.size(); ++k) times_ns[k] += 1'000'000'000;          // on its numbers
-  for (std::size_t k = 4000; k < times_ns.size(); ++k) times_ns[k] += 7'000'000 + 1'850'000;  // off them
+  // time stamps on the clock line
+  for (std::size_t k = 2000; k < times_ns.size(); ++k) times_ns[k] += 1'000'000'000;
+  // time stamps off the clock line
+  for (std::size_t k = 4000; k < times_ns.size(); ++k) times_ns[k] += 7'000'000 + 1'850'000;
   const std::vector<TimeNs> found = times_of(jittered(times_ns, 3e5));
   EXPECT_TRUE(rise(found));
   const auto worst_ns = [&](std::size_t from, std::size_t to) {
@@ -164,7 +167,7 @@ TEST(SampleClock, GoesOnBehindAGapAndAJumpOfTheClock) {
   EXPECT_LT(worst_ns(500, 2000), 1.5e5);
   EXPECT_LT(worst_ns(2000, 2200), 3e5);
   EXPECT_LT(worst_ns(4500, 6000), 1.5e5);
-  EXPECT_LT(worst_ns(4000, 4500), 2e6 + 9e5);  // half a period from its stamp at most
+  EXPECT_LT(worst_ns(4000, 4500), 2e6 + 9e5);  // at most half a period from its time stamp
 }
 
 // The device is set to a tenfold rate.

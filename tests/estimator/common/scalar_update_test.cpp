@@ -30,10 +30,10 @@ TEST(ScalarUpdate, IsBayesRuleForADirection) {
   Matrix4 P = kPrior;
   const Vector4 correction = scalar_update(row, 0.7, 0.05, P);
   expect_bayes(row.transpose(), 0.7, 0.05, correction, P);
-  Matrix4 other = kPrior;  // a column says the same
+  Matrix4 other = kPrior;  // a column vector gives the same
   EXPECT_EQ(scalar_update(Vector4(row.transpose()), 0.7, 0.05, other), correction);
   EXPECT_EQ(other, P);
-  Eigen::Matrix<double, 2, 4> rows;  // one of which is not contiguous
+  Eigen::Matrix<double, 2, 4> rows;  // one row is not contiguous
   rows << Eigen::RowVector4d::Ones(), row;
   Matrix4 again = kPrior;
   EXPECT_EQ(scalar_update(rows.row(1), 0.7, 0.05, again), correction);
@@ -54,7 +54,7 @@ TEST(ScalarUpdate, CheckTellsAnotherVariance) {
             1e-3);
 }
 
-/// Bayes' rule for several numbers: the inverse covariance gains H^T noise^-1 H.
+/// Reference by Bayes' rule for several measurements: the inverse covariance increases by H^T noise^-1 H.
 TEST(VectorUpdate, IsBayesRuleForCorrelatedNoise) {
   Eigen::Matrix<double, 2, 4> H;
   H << 0.3, -1.1, 0.0, 2.0, 1.0, 0.4, -0.2, 0.0;

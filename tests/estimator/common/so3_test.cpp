@@ -27,7 +27,7 @@ std::vector<Vector3d> axes() {
           Vector3d(-0.3, 0.9, -0.1).normalized()};
 }
 
-// sum of a_n [phi]x^n in long double: exp for a_n = 1 / n!, left Jacobian for a_n = 1 / (n + 1)!
+// sum of a_n [phi]x^n in long double; exp for a_n = 1 / n!, left Jacobian for a_n = 1 / (n + 1)!
 Wide series(const Vector3d& phi, int shift) {
   Wide k;
   const Eigen::Matrix<long double, 3, 1> v = phi.cast<long double>();
@@ -103,13 +103,13 @@ TEST(So3, LeftJacobianIsTheDerivativeOfExp) {
   const Vector3d phi(0.4, -1.1, 0.7), d(1e-6, -2e-6, 1.5e-6);
   const Vector3d measured = log(exp(phi + d) * exp(phi).conjugate());
   EXPECT_LE((measured - left_jacobian(phi) * d).norm(), 1e-11);             // second order: |d|^2 = 7e-12
-  EXPECT_GT((measured - left_jacobian(phi).transpose() * d).norm(), 1e-7);  // the right Jacobian is another one
+  EXPECT_GT((measured - left_jacobian(phi).transpose() * d).norm(), 1e-7);  // the right Jacobian differs
 }
 
 TEST(So3, LeftJacobianInverseIsTheInverse) {
   for (const Vector3d& axis : axes()) {
     for (double angle : angles()) {
-      if (angle > 4.0) continue;  // near 2 pi the inverse itself grows without bound
+      if (angle > 4.0) continue;  // near 2 pi, the inverse Jacobian is unbounded
       const Vector3d phi = angle * axis;
       const Matrix3d product = left_jacobian_inverse(phi) * left_jacobian(phi);
       EXPECT_LE((product - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 2e-15) << angle;

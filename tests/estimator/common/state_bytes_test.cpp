@@ -101,7 +101,7 @@ TEST(StateBytes, TroubleHasFieldValueAndBound) {
     Held held;
     return read(bytes, held);
   };
-  // value 8 bytes, count 4, on 1, colour 1
+  // bytes: value 8, count 4, on 1, colour 1
   Status status = status_with(0, {0, 0, 0, 0, 0, 0, 0xf0, 0x7f});
   EXPECT_EQ(status.error_code, ErrorCode::non_finite);
   EXPECT_STREQ(status.field, "value");
@@ -137,7 +137,7 @@ TEST(StateBytes, AreMatchedNumberByNumber) {
 }
 
 TEST(StateBytes, ChecksumIsFnv1a) {
-  const std::string text = "foobar";  // of RFC 9923's test vectors
+  const std::string text = "foobar";  // test vector of RFC 9923
   EXPECT_EQ(checksum(std::as_bytes(std::span(text))), 0x85944171f73967e8u);
 }
 

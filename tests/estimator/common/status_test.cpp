@@ -85,7 +85,7 @@ TEST(CheckSamples, TellsTheFirstTroubleOfASequence) {
   EXPECT_EQ(check_samples(samples, 0.009).error_code, ErrorCode::gap);
   samples[3].angular_velocity_rad_s.z() = std::nan("");
   EXPECT_EQ(check_samples(samples, 0.01).error_code, ErrorCode::non_finite);
-  samples[2].time_ns = samples[1].time_ns;  // comes before
+  samples[2].time_ns = samples[1].time_ns;  // earlier than the previous sample
   const Status stuck = check_samples(samples, 0.01);
   EXPECT_EQ(stuck.error_code, ErrorCode::time_order);
   EXPECT_EQ(stuck.value, 10'000'000.0);

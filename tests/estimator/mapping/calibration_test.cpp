@@ -26,7 +26,7 @@ TEST(StatedCalibration, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
   learnt.time_offset_s = -0.018;
   EXPECT_NEAR(kGiven.deviations(learnt), 6.0, 1e-9);
   learnt = {};
-  learnt.gravity_W_m_s2 = Eigen::Vector3d(1.0, 0.0, -9.7);  // each run's own
+  learnt.gravity_W_m_s2 = Eigen::Vector3d(1.0, 0.0, -9.7);  // differs in each run
   EXPECT_EQ(kGiven.deviations(learnt), 0.0);
 }
 

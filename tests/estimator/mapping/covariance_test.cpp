@@ -19,7 +19,7 @@ using Odometry = LidarInertialOdometry;
 using test::kSamplesPerSweep;
 
 constexpr int kRuns = 16, kSweepsOfRun = 16, kColumns = 300;
-constexpr double kRs16Noise_m = 0.02;  // of the RS-16
+constexpr double kRs16Noise_m = 0.02;  // noise of the RS-16
 
 /// BelievedImu adds IMU errors as the mapper assumes them: constant over a sweep and independent between sweeps, as
 /// large as the parameters state (mapping.md, R39 to R41). At rest, which the mapper detects, there are no errors.
@@ -112,7 +112,7 @@ TEST(Covariance, HoldsOverTumbles) {
 /// a second after an impact of which one reading lost 1 m/s. `flags` are the flags of this reading, `noise_m` is the
 /// noise of the ranges.
 double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
-  constexpr int kKnocked = 25, kEnd = 5;  // sample; sweeps
+  constexpr int kKnocked = 25, kEnd = 5;  // number of the sample; number of sweeps
   test::Motion still;
   still.rest_s = 1e9;
   Odometry odometry{Odometry::Params()};
@@ -129,7 +129,7 @@ double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
         test::make_sweep(test::Room::corridor(), still, Eigen::Isometry3d::Identity(), k, noise_m, kColumns);
     EXPECT_TRUE(odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report).ok());
   }
-  EXPECT_GT(std::abs(report.pose.p_WA_m.x()), 0.1);  // nothing else stops it
+  EXPECT_GT(std::abs(report.pose.p_WA_m.x()), 0.1);  // no measurement stops the sensor
   return report.pose.p_WA_m.x() / std::sqrt(report.pose.covariance(0, 0));
 }
 

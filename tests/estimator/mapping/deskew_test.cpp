@@ -81,7 +81,8 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
 }
 
 TEST(SweepTrajectory, IsExactForASteadySpinAtRest) {
-  // constant rate and a force constant in body axes: a sensor on a circle, the closed form of the integration
+  // constant rate, and a force that is constant in body axes: a sensor on a circle, with the closed form of the
+  // integration
   const Eigen::Vector3d w(3.0, -4.0, 12.0);
   MotionState start;
   std::vector<MotionSample> samples;
@@ -160,7 +161,7 @@ TEST(SweepTrajectory, CovarianceMatchesDifferences) {
   }
   // forward differences of order h; measured 2e-6
   EXPECT_LT((nominal.covariance - F * F.transpose()).cwiseAbs().maxCoeff(), 2e-5);
-  EXPECT_GT((nominal.covariance - start.covariance).cwiseAbs().maxCoeff(), 1e-2);  // there was something to propagate
+  EXPECT_GT((nominal.covariance - start.covariance).cwiseAbs().maxCoeff(), 1e-2);  // the covariance must grow
 }
 
 class DeskewedSweep : public testing::Test {
@@ -191,12 +192,12 @@ class DeskewedSweep : public testing::Test {
 };
 
 TEST_F(DeskewedSweep, LiesOnTheSurfaces) {
-  // attitude error within 1 kHz samples times 14 m of range; measured 4e-4 m
+  // attitude error within samples at 1 kHz, times a range of 14 m; measured 4e-4 m
   EXPECT_LT(largest_distance(1.0), 2e-3);
 }
 
 TEST_F(DeskewedSweep, MissesThemWithAClippedRate) {
-  EXPECT_GT(largest_distance(0.7), 1.0);  // 0.45 rad short over the sweep; measured metres
+  EXPECT_GT(largest_distance(0.7), 1.0);  // error of 0.45 rad over the sweep; measured metres
 }
 
 TEST(SelectPoints, DropsWhatIsNoReturnOfTheWorld) {
@@ -204,8 +205,8 @@ TEST(SelectPoints, DropsWhatIsNoReturnOfTheWorld) {
   std::vector<LidarPoint> points(6);
   points[0].position_L_m = {5, 0, 0};
   points[1].position_L_m = {nan, 0, 0};
-  points[2].position_L_m = {0.1f, 0, 0};   // nearer than the least range
-  points[3].position_L_m = {0.45f, 0, 0};  // the robot's own
+  points[2].position_L_m = {0.1f, 0, 0};   // below the minimum range
+  points[3].position_L_m = {0.45f, 0, 0};  // return from the robot itself
   points[4].position_L_m = {200, 0, 0};
   points[5].position_L_m = {0, 0, std::numeric_limits<float>::infinity()};
   const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23));
@@ -223,7 +224,7 @@ TEST(SweepSampler, TakesTheFirstPointOfEachCube) {
   SweepSampler sampler;
   std::vector<std::uint32_t> chosen;
   const std::vector<Eigen::Vector3f> points = {{0.1f, 0, 0}, {0.2f, 0, 0}, {0.3f, 0, 0}, {-0.1f, 0, 0}};
-  for (int run = 0; run < 2; ++run) {  // nothing is left of an earlier sweep
+  for (int run = 0; run < 2; ++run) {  // the second run must not depend on the first
     sampler.choose(points, 0.25, chosen);
     EXPECT_EQ(chosen, (std::vector<std::uint32_t>{0, 2, 3}));
   }

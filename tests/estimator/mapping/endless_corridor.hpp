@@ -24,12 +24,12 @@ class EndlessCorridor {
 
   std::int64_t start_ns() const { return (sweep_ - 1) * sweep_ns_; }
   std::int64_t end_ns() const { return sweep_ * sweep_ns_; }
-  double x_m() const { return x_m_; }  ///< at the end of the sweep
+  double x_m() const { return x_m_; }  ///< position at the end of the sweep
 
  private:
   int points_per_sweep_;
   std::int64_t sweep_ns_;
-  std::int64_t sweep_ = 0;  // the present one, from 1
+  std::int64_t sweep_ = 0;  // number of the current sweep, from 1
   double start_m_ = 0.0, start_m_s_ = 0.0, a_m_s2_ = 0.0;
   double x_m_ = 0.0, v_m_s_ = 0.0;
 };

@@ -80,7 +80,7 @@ TEST(FlightArc, KeepsAngularMomentumAndEnergy) {
     turned_most = std::max(turned_most, (sample.w_WI_I_rad_s - w).norm());
     q = q * so3::exp(dt * sample.w_WI_I_rad_s);
   }
-  EXPECT_GT(turned_most, 1.0);  // it wobbles: a constant rate would not have done
+  EXPECT_GT(turned_most, 1.0);  // the body wobbles, so a constant rate would be wrong
 }
 
 TEST(FlightArc, IsWhatAnAccelerometerOffTheCentreReads) {

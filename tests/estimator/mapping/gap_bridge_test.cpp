@@ -63,7 +63,7 @@ double squared_over_stated(double walk, double stated_walk) {
   double sum = 0.0;
   int count = 0;
   for (int run = 0; run < 400; ++run) {
-    std::vector<double> truth(201);  // a step a millisecond
+    std::vector<double> truth(201);  // one step per millisecond
     for (std::size_t k = 1; k < truth.size(); ++k) truth[k] = truth[k - 1] + walk * std::sqrt(0.001) * noise();
     const WindowRate before = window({truth.front() + 0.2 * noise(), 0.0, 0.0}, 0.2, -5, 0);
     const WindowRate after = window({truth.back() + 0.2 * noise(), 0.0, 0.0}, 0.2, 200, 205);

@@ -61,7 +61,7 @@ TEST(InertialTrack, NoiseOfTheFirstReadingsEndsNoRest) {
   // the second reading is one of 99
   EXPECT_NEAR((listener.track.samples().back().w_WI_I_rad_s - Eigen::Vector3d(0.0, 1.0, 0.0)).norm(), 0.0175 / 99.0,
               1e-9);
-  // negative control: as if the first run of readings were the only one
+  // negative control: only the first few readings count
   EXPECT_EQ(noisy_at_first(0.0).resting(), 1);
 }
 
@@ -122,7 +122,7 @@ std::vector<MotionSample> parts_of_a_gap(double after_rad_s) {
   listener.now_ns += 300'000'000;
   listener.hear(1, Eigen::Vector3d(0.0, after_rad_s, 0.0), Eigen::Vector3d::Zero());
   const auto samples = listener.track.samples();
-  EXPECT_EQ(samples.back().time_ns - samples.back().from_ns, listener.step_ns);  // a reading is of its own window
+  EXPECT_EQ(samples.back().time_ns - samples.back().from_ns, listener.step_ns);  // a reading covers only its own window
   std::vector<MotionSample> parts;
   for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
     EXPECT_EQ(samples[k].time_ns, samples[k + 1].from_ns);
@@ -137,7 +137,7 @@ TEST(InertialTrack, AFlightGoesOnThroughAGapThatItsRateBearsOut) {
   for (const MotionSample& part : flown) {
     EXPECT_TRUE(part.in_flight && !part.bridges_gap);
     EXPECT_NEAR(part.w_WI_I_rad_s.y(), 3.0, 1e-9);
-    EXPECT_GE(part.rate_sigma_rad_s.y(), 0.2 - 1e-9);  // what it is off by at the end
+    EXPECT_GE(part.rate_sigma_rad_s.y(), 0.2 - 1e-9);  // error at the end
   }
   // with an impact inside the gap
   const auto struck = parts_of_a_gap(8.0);

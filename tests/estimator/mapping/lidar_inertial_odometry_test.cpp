@@ -53,7 +53,8 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
     if (point.normal_W.isZero()) continue;
     ++with_normal;
     EXPECT_NEAR(point.normal_W.norm(), 1.0f, 1e-5f);
-    inwards += point.normal_W.cast<double>().dot(-p) > 0.0 || room.distance(p) > 0.2;  // pillars look outwards
+    // normals of pillars point outwards
+    inwards += point.normal_W.cast<double>().dot(-p) > 0.0 || room.distance(p) > 0.2;
   }
   EXPECT_GT(static_cast<double>(near) / static_cast<double>(map.size()), 0.98);
   EXPECT_GT(static_cast<double>(with_normal) / static_cast<double>(map.size()), 0.7);
@@ -127,7 +128,7 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
     const auto& d = report.least_constrained_direction;
     EXPECT_GT(std::hypot(d[0], d[1], d[5]), 0.95) << d.transpose();
   }
-  EXPECT_GT(degenerate, 3);  // at rest its rings give no plane at all
+  EXPECT_GT(degenerate, 3);  // at rest, its rings determine no plane
 }
 
 /// A plane without noise leaves directions undetermined to the last bit: the ratio of smallest to largest eigenvalue is
@@ -153,7 +154,8 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
     for (int k = sweep * kSamplesPerSweep; k < (sweep + 1) * kSamplesPerSweep; ++k) {
       ImuSample sample;
       sample.time_ns = (k + 1) * test::kSweep_ns / kSamplesPerSweep;
-      sample.angular_velocity_rad_s = {0.0, 0.0, sweep == 0 ? 0.0 : 0.5};  // no rest, about the plane's normal
+      // rotation about the plane's normal, so the sensor is not at rest
+      sample.angular_velocity_rad_s = {0.0, 0.0, sweep == 0 ? 0.0 : 0.5};
       sample.specific_force_m_s2 = {0.0, 0.0, params.expert.gravity_m_s2};
       ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     }

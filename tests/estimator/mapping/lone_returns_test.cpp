@@ -14,7 +14,8 @@ namespace tumble {
 namespace {
 
 constexpr RangeNoise kNoise{0.02, 0.0015};
-constexpr float kNoticeable_m = 0.6f;  // at 15 m returns 0.4 deg apart are one surface at 10 deg up to here
+// at a range of 15 m, returns 0.4 deg apart belong to one surface at 10 deg up to this difference
+constexpr float kNoticeable_m = 0.6f;
 
 std::vector<SweepPoint> selected(const std::vector<LidarPoint>& given) {
   std::vector<SweepPoint> points;

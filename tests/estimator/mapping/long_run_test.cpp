@@ -11,8 +11,8 @@ namespace {
 
 TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   constexpr std::int64_t kSlowSweep_ns = 400'000'000;
-  constexpr int kSweeps = 1500;  // 10 min, some 600 m
-  constexpr int kSettled = 150;  // 60 m: the map has left its start behind
+  constexpr int kSweeps = 1500;  // 10 min, about 600 m
+  constexpr int kSettled = 150;  // 60 m: the start is outside of the map
   const LidarInertialOdometry::Params params = test::corridor_params();
   LidarInertialOdometry odometry(params);
   test::EndlessCorridor corridor(400, kSlowSweep_ns);

@@ -30,7 +30,7 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   // the IMU samples end too early; the state is unchanged
   EXPECT_EQ(add_sweep(odometry, 3, points, report).error_code, ErrorCode::too_few);
   feed_imu(odometry, 3);
-  // times
+  // invalid times
   EXPECT_EQ(odometry.add_sweep(2 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,
             ErrorCode::time_order);
   EXPECT_EQ(odometry.add_sweep(4 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,

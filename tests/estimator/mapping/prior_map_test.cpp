@@ -76,7 +76,7 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
   const int sweeps = run_until_localised(rig);
   ASSERT_TRUE(rig.odometry.localised().ok()) << rig.odometry.localised().message();
-  EXPECT_FALSE(rig.report.in_prior_map);  // the poses of the accepting sweep are still in the local frame
+  EXPECT_FALSE(rig.report.in_prior_map);  // poses of the accepting sweep are still in the local frame
   EXPECT_LT(rig.error_m(), 0.06);
 
   for (int k = sweeps; k < sweeps + 8; ++k) {
@@ -132,7 +132,7 @@ TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
 }
 
 TEST(PriorMap, TwoEqualPlacesAreAmbiguous) {
-  RoomRig mapped(true_params(), test::slower(), Room::box());  // equal to itself after half a turn
+  RoomRig mapped(true_params(), test::slower(), Room::box());  // the room is symmetric under half a rotation
   mapped.run(0, kMapped);
   RoomRig rig(true_params(), second_motion(), Room::box());
   ASSERT_TRUE(rig.odometry.use_map({.points = moved(mapped.odometry.map(), T_MW())}).ok());

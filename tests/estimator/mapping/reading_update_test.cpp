@@ -106,7 +106,7 @@ Eigen::Isometry3d read_motion(const Case& c, TimeNs from_ns, TimeNs to_ns, const
 /// Joint is the estimate after the reading, from the boundary, the noise at the start and within, all at once: 28 + 28
 /// + 9 unknowns, x = G x_last + n_0 + n.
 struct Joint {
-  Eigen::MatrixXd covariance, errors, of_x;  ///< by the weights, by the errors, and x by the joint
+  Eigen::MatrixXd covariance, errors, of_x;  ///< by the gains and by the errors, and x from the joint update
   Eigen::VectorXd mean;
 };
 

@@ -102,13 +102,13 @@ TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {
   ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);
   const double sigma_before = std::sqrt(rig.report.pose.covariance(0, 0));
   for (int k = 20; k < 50; ++k) {
-    // a gyro that drifts: the inertial prior alone ends 0.15 rad and half a metre or more away
+    // a gyro with drift: the inertial prior alone has a final error of at least 0.15 rad and half a metre
     rig.feed_imu(k, {0.03, -0.03, 0.03});
     EXPECT_EQ(rig.sweep(k, {}).error_code, ErrorCode::empty);
     ASSERT_EQ(rig.report.verdict, SweepVerdict::rejected);
     EXPECT_EQ(rig.report.consecutive_rejected_sweeps, k - 19);
   }
-  EXPECT_GT(rig.error_m(), 0.3);  // lost indeed
+  EXPECT_GT(rig.error_m(), 0.3);  // tracking has failed
   EXPECT_GT(std::sqrt(rig.report.pose.covariance(0, 0)), 10.0 * sigma_before);
   EXPECT_LT(rig.error_m(), 5.0 * std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace()));
   rig.run(50, 56);
@@ -120,7 +120,7 @@ TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {
 TEST(Recovery, BridgesAGapOfASecondInBothSensors) {
   Rig rig(true_params(), gentle());
   rig.run(0, 20);
-  rig.run(30, 39);  // sweeps and samples of a second are missing; the sample after it bridges the gap
+  rig.run(30, 39);  // sweeps and samples of a second are missing; the next sample bridges the gap
   EXPECT_NE(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_LT(rig.error_m(), 0.1);
 }
@@ -170,7 +170,7 @@ TEST(Equivariance, ToARotatedMounting) {
   EXPECT_LT(std::abs(world.x()) + std::abs(world.y()), 2e-3);
   // the selection of points per voxel depends on the heading: registration noise
   EXPECT_LT((world * ra.pose.p_WA_m - rb.pose.p_WA_m).norm(), 0.03);
-  EXPECT_GT((ra.pose.p_WA_m).norm(), 0.3);  // it moved
+  EXPECT_GT((ra.pose.p_WA_m).norm(), 0.3);  // the sensor moved
 }
 
 /// Returns the lidar points on one side of the room only, by their true positions.
@@ -200,7 +200,7 @@ void see_the_other_side(Rig& rig, SweepVerdict expected) {
   EXPECT_EQ(rig.odometry.map().size(), before + rig.report.map_points_added);
   rig.feed_imu(9);
   ASSERT_TRUE(rig.sweep(9, on_side(rig, 9, -kFar_m, 1.5)).ok());
-  EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);  // with what the sweep before drew
+  EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);  // to the points of the previous sweep
   EXPECT_EQ(rig.report.consecutive_rejected_sweeps, 0);
   EXPECT_LT(rig.error_m(), 0.03);  // measured: 4 mm
 }
@@ -224,10 +224,10 @@ TEST(Recovery, SaysAndSurvivesAGapOfASecondInTheImuAlone) {
   for (int k = 20; k < 30; ++k) {
     EXPECT_EQ(rig.sweep(k, rig.points(k)).error_code, ErrorCode::too_few);
     EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
-    EXPECT_TRUE(rig.report.trajectory.empty());  // no pose is made up
+    EXPECT_TRUE(rig.report.trajectory.empty());  // no pose is reported
   }
   rig.feed_imu(30);
-  ASSERT_TRUE(rig.sweep(30, {}).error_code == ErrorCode::empty);  // the gap is bridged, by nothing but the prior
+  ASSERT_TRUE(rig.sweep(30, {}).error_code == ErrorCode::empty);  // only the prior bridges the gap
   EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_GT(std::sqrt(rig.report.pose.covariance(0, 0)), 10.0 * sigma_before);
   rig.run(31, 39);

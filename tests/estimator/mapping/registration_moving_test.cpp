@@ -75,8 +75,8 @@ TEST_F(MovingSweep, CorrectsTheVelocityInsideOfTheSweep) {
 TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   run(Eigen::Vector3d::Zero(), 8.0, 5.0);
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
-  ASSERT_GT(deficit_, 1.0);         // one axis, 2 to 4 rad/s above the rail
-  EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; without the deficit see below
+  ASSERT_GT(deficit_, 1.0);         // one axis is 2 to 4 rad/s above the limit
+  EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; the test below is without the deficit
   const SweepUnknowns::Deficit& deficit = result_.mean.deficit_rad_s;
   EXPECT_NEAR(deficit.sum() / SweepTrajectory::kKnots, deficit_, 0.2);
   // the surfaces determine the total deficit of the sweep, whatever the single knots are

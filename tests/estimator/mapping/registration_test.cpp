@@ -52,7 +52,7 @@ Registration::Result align(const test::Room& room, const Registration::Prior& pr
 TEST(Registration, DerivativesMatchDifferences) {
   const test::Motion motion;
   std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.2));
-  for (std::size_t i = 104; i < 109; ++i) samples[i].clipped_axes = 5;  // x and z, part of the sweep
+  for (std::size_t i = 104; i < 109; ++i) samples[i].clipped_axes = 5;  // x and z, in a part of the sweep
   MotionState start;
   start.time_ns = 1'000'000'000;
   start.q_WI = so3::exp({0.3, -0.2, 0.9});
@@ -108,7 +108,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     }
   }
   EXPECT_EQ(analytic[10], 0.0);            // axis y was not clipped
-  EXPECT_GT(std::abs(analytic[9]), 1e-3);  // axis x was
+  EXPECT_GT(std::abs(analytic[9]), 1e-3);  // axis x was clipped
 }
 
 TEST(Registration, FindsAKnownPoseInARoom) {
@@ -179,7 +179,7 @@ TEST(Registration, NamesTheAxisOfACorridor) {
 
 /// Noisy ranges tilt the normals of floor and walls, as if there were surfaces across the corridor.
 TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
-  constexpr double kNoise_m = 0.02;  // of the RS-16
+  constexpr double kNoise_m = 0.02;  // range noise of the RS-16
   const Registration::Prior prior = loose_prior(0.5, 0.05);
   const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
   ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
@@ -289,7 +289,7 @@ TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
 }
 
 TEST(Registration, BelievesNoFewMatchesWhereThePriorExpectsNone) {
-  Registration::Prior prior = loose_prior(0.05, 0.03);  // and yet off by seven deviations
+  Registration::Prior prior = loose_prior(0.05, 0.03);  // with an error of seven standard deviations
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.15);
   const Registration::Result result = align_few(prior, 30);
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);

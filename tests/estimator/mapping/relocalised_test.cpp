@@ -17,7 +17,7 @@ namespace {
 using test::RoomRig;
 using test::true_params;
 
-constexpr int kCovered = 20, kSeesAgain = 35;  // sweeps without points in between
+constexpr int kCovered = 20, kSeesAgain = 35;  // number of sweeps without points; first sweep with points
 
 /// Returns the room as seen from another position: the sweep fits the map completely where the sensor is not.
 std::vector<LidarPoint> seen_from_elsewhere(const RoomRig& rig, int sweep, double shift_m) {
@@ -63,11 +63,11 @@ TEST(Relocalised, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
   ASSERT_TRUE(rig.sweep(kSeesAgain + 1, of_no_room(rig, kSeesAgain + 1)).ok());
   EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
   EXPECT_EQ(rig.report.consecutive_rejected_sweeps,
-            kSeesAgain + 1 - kCovered + 1);  // those before it, it, and this one
+            kSeesAgain + 1 - kCovered + 1);  // the sweeps before, the relocalised sweep and the current sweep
   EXPECT_FALSE(rig.report.relocalisation_unconfirmed);
   EXPECT_EQ(rig.odometry.map().size(), with_it - drawn + rig.report.map_points_added);
   const double sigma_m = std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace());
-  EXPECT_LT(rig.error_m(), 3.0 * sigma_m);  // as one who is lost says it
+  EXPECT_LT(rig.error_m(), 3.0 * sigma_m);  // the stated deviation is that of a tracking failure
 
   rig.run(kSeesAgain + 2, kSeesAgain + 8);
   EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
@@ -149,7 +149,7 @@ struct OpenState {
     Impl::members(std::as_const(*members), writer);
     return out;
   }
-  std::vector<std::byte> head;  ///< the parameters that another run may have taught
+  std::vector<std::byte> head;  ///< parameters, which may contain a calibration
   std::unique_ptr<Impl> members;
 };
 

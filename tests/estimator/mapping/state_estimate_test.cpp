@@ -71,7 +71,7 @@ TEST(Unknowns, PoseAndMountingAreThoseOfTheWholeProduct) {
   EXPECT_EQ(u::block(part, u::pose, u::mounting), u::block(whole, u::pose, u::mounting));
   EXPECT_EQ(u::block(part, u::mounting, u::pose), u::block(whole, u::mounting, u::pose));
   EXPECT_EQ(u::block(part, u::mounting), u::block(whole, u::mounting));
-  EXPECT_NE(u::block(part, u::pose), u::block(errors, u::pose));  // F did something
+  EXPECT_NE(u::block(part, u::pose), u::block(errors, u::pose));  // F changed the state
 }
 
 TEST(Unknowns, BlocksCoverEachUnknownOnce) {
@@ -175,7 +175,7 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
   EXPECT_LT((state_estimate.weight - expected).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_EQ(state_estimate.weight, state_estimate.error);
 
-  params.T_IL.translation().x() += 0.1;  // another lever is another covariance
+  params.T_IL.translation().x() += 0.1;  // another lever arm gives another covariance
   EXPECT_GT((estimate_at_start(params, levelled).weight - expected).cwiseAbs().maxCoeff(), 1e-5);
 }
 

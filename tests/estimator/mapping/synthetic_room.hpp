@@ -16,7 +16,7 @@ namespace tumble::test {
 
 inline constexpr double kRoomGravity_m_s2 = 9.80665;
 inline constexpr int kSamplesPerSweep = 10;
-inline constexpr int kHalfColumns = 450;  ///< of a sweep, where fewer do
+inline constexpr int kHalfColumns = 450;  ///< columns of a sweep, for tests with half of them
 inline constexpr double kRoomNoise_m = 0.01;
 
 /// Room consists of planes (point, normal towards the free side) and vertical round pillars.

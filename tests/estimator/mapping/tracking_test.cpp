@@ -42,12 +42,12 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
       {Tracking{}, found, registered, "tracking 0"},
       {Tracking{}, found, degenerate, "tracking 0"},
       {Tracking{2}, found, registered, "tracking 0"},
-      {Tracking{}, failed, degenerate, "tracking 1"},  // by a trusted prior
+      {Tracking{}, failed, degenerate, "tracking 1"},  // with a certain prior
       {Tracking{1}, failed, rejected, "lost 1 2"},
-      {Tracking{1}, not_tried, rejected, "lost 1 1"},  // no points are no search
+      {Tracking{1}, not_tried, rejected, "lost 1 1"},  // without points, there is no search
       {Lost{1, 1}, failed, rejected, "lost 2 2"},
       {Lost{1, 1}, not_tried, rejected, "lost 2 1"},
-      {Lost{5, 29}, failed, degenerate, "tracking 30"},  // given up
+      {Lost{5, 29}, failed, degenerate, "tracking 30"},  // the state is given up
       {Lost{2, 0}, not_tried, first, "tracking 0"},
       {Lost{3, 2}, found, registered, "tracking 0"},
       {Lost{3, 2}, relocalisation_unconfirmed, registered, "found after 3 2, agree 0"},
@@ -149,7 +149,7 @@ TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
   EXPECT_EQ(placement(Lost{}, 89, true), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Lost{}, 100, false), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Relocalised{}, 90, false),
-            found);  // what a velocity that is off asks for goes on for some sweeps
+            found);  // the effect of a velocity error lasts for some sweeps
   EXPECT_EQ(placement(Relocalised{}, 89, true), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Tracking{}, 50, false), found);
 }

@@ -68,7 +68,7 @@ TEST_P(NeighbourSearch, AgreesWithBruteForce) {
     }
     seen += expected.size();
   }
-  EXPECT_GT(seen, 100u);  // the comparison was about something
+  EXPECT_GT(seen, 100u);  // the comparison covered enough points
 }
 
 INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
@@ -119,7 +119,7 @@ TEST(VoxelMap, KeepsOnePointPerCubeOfTheSpacing) {
   EXPECT_TRUE(map.insert({0.01f, 0.01f, 0.01f}, 0.1f, 0));
   EXPECT_FALSE(map.insert({0.09f, 0.09f, 0.09f}, 0.1f, 0));
   EXPECT_TRUE(map.insert({0.11f, 0.01f, 0.01f}, 0.1f, 0));
-  EXPECT_TRUE(map.insert({-0.01f, 0.01f, 0.01f}, 0.1f, 0));  // cubes do not fold at zero
+  EXPECT_TRUE(map.insert({-0.01f, 0.01f, 0.01f}, 0.1f, 0));  // cells around zero are not merged
   EXPECT_EQ(map.size(), 3u);
 }
 

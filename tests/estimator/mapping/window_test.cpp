@@ -80,7 +80,7 @@ TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
   params.expert.window_sweeps = 3;
   Drive run(params);
   run.sweeps(0, 15);
-  run.sweeps(15, 18, 15, 16);  // nothing but a gyro on its rail
+  run.sweeps(15, 18, 15, 16);  // only a clipped gyro
   run.sweeps(18, 19);
   const PoseState& at_once = run.reports[15].trajectory.back();
   const PoseState& smoothed = run.reports[17].smoothed.back();
@@ -121,7 +121,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   for (const auto& sweep : open) all.insert(all.end(), sweep.begin(), sweep.end());
   ASSERT_EQ(all.size(), 120u);
   for (std::size_t i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].time_ns - all[i - 1].time_ns, 10'000'000) << i;
-  // the newest is the filter's own
+  // the newest state is that of the filter
   EXPECT_EQ(open.back().back().p_WA_m, run.report.trajectory.back().p_WA_m);
 }
 
@@ -209,7 +209,7 @@ TEST(ExecutorThreads, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
     };
     Drive run(params);
     run.sweeps(0, 8);
-    EXPECT_GT(calls, 20u);  // it was asked
+    EXPECT_GT(calls, 20u);  // the callback was called
     EXPECT_EQ(run.report.pose.p_WA_m, alone.report.pose.p_WA_m);
     EXPECT_EQ(run.report.pose.q_WA.coeffs(), alone.report.pose.q_WA.coeffs());
     EXPECT_EQ(run.report.pose.covariance, alone.report.pose.covariance);

@@ -73,8 +73,8 @@ TEST(WorldCovariance, DriftGrowsAlongTheDirectionThatNothingHeld) {
   Pose expected = Pose::Zero();
   expected(1, 1) = 0.04;
   EXPECT_LT((in_world(covariance) - expected).cwiseAbs().maxCoeff(), 1e-15);
-  along << 0.6, 0.0, 0.0, 0.8, 0.0, 0.0;  // of a direction that turns too, the translation alone
-  covariance.add_drift(100.0, along);     // no direction counts as held less surely than by 3 m
+  along << 0.6, 0.0, 0.0, 0.8, 0.0, 0.0;  // of a direction that also rotates, only the translation counts
+  covariance.add_drift(100.0, along);     // the deviation of a constrained direction is at most 3 m
   expected(0, 0) = 0.09 * 0.36;
   EXPECT_LT((in_world(covariance) - expected).cwiseAbs().maxCoeff(), 1e-15);
 }

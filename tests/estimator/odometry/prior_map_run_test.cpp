@@ -35,7 +35,7 @@ test::Motion motion(double swing) {
 struct RoomRun {
   explicit RoomRun(double swing) : moves(motion(swing)), imu(test::make_imu(moves, 4.0)), odometry(rig_params()) {}
 
-  /// Adds the data of the sweeps from..to-1, and keeps the newest report.
+  /// Adds the data of the sweeps from..to-1, and stores the newest report.
   void feed(int from, int to) {
     for (int sweep = from; sweep < to; ++sweep) {
       for (int k = sweep * test::kSamplesPerSweep; k < (sweep + 1) * test::kSamplesPerSweep; ++k)

@@ -68,7 +68,7 @@ TEST(SavedMap, EveryChangedByteIsRefused) {
   }
 }
 
-/// The checksum of these bytes is right; only their values are impossible.
+/// The checksum of these bytes is correct; only their values are impossible.
 TEST(SavedMap, ImpossibleValuesAreRefused) {
   const auto refused = [](auto change) {
     std::vector<MapPoint> points = some_points();

@@ -62,7 +62,7 @@ TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
       worst_m = std::max(worst_m, end.error_m);
     }
   }
-  EXPECT_GT(worst_m, 0.1);  // it is no easy case
+  EXPECT_GT(worst_m, 0.1);  // the test needs a difficult case
   EXPECT_LT(end_of(0.0, 0.0, RollingSmoother::kWholeRun).error_m, 0.03);
 }
 

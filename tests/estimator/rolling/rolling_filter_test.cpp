@@ -87,7 +87,7 @@ void add_errors(std::uint64_t seed, RollingTruth& truth) {
 struct Result {
   double end_error_m = 0.0, end_sigma_m = 0.0;
   double recall = 1.0, precision = 1.0;  ///< of samples without grip, contact velocities of 1 to 50 mm/s not counted
-  double delay_s = 0.0;                  ///< from a contact velocity of 50 mm/s to the first sample not gripping
+  double delay_s = 0.0;                  ///< from 50 mm/s of contact velocity to the first sample without grip
 };
 
 Result filtered(const RollingTruth& truth, const Contact& contact, const RollingFilter::Params& params) {
@@ -125,7 +125,7 @@ double rolling_error(const RollingTruth& truth) {
 struct Case {
   const char* name;
   Contact velocity, contact;
-  double rolling_at_least_m;  ///< what rolling alone must get wrong, or the case tests nothing
+  double rolling_at_least_m;  ///< lower bound for the error of pure rolling, so that the case is meaningful
 };
 
 std::vector<Case> cases() {
@@ -159,13 +159,13 @@ TEST(RollingFilter, StandsStillWhereTheSphereDoes) {
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
     const double time_s = seconds(truth.samples[k].time_ns);
-    if (time_s < 8.3) continue;  // the way ends at 8.0 s
+    if (time_s < 8.3) continue;  // the roll ends at 8.0 s
     if (still++ == 0) first = state->p_WG_m;
     drift_m = std::max(drift_m, (state->p_WG_m - first).norm());
   }
   EXPECT_EQ(still, 426);
   EXPECT_EQ(drift_m, 0.0);
-  EXPECT_LT((first - truth.p_WG_m.back()).norm(), 0.02);  // and not before the way was mended
+  EXPECT_LT((first - truth.p_WG_m.back()).norm(), 0.02);  // the path before must not be corrected yet
 }
 
 TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
@@ -213,7 +213,7 @@ TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
 
 TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
   for (const Case& c : cases()) {
-    for (const std::uint64_t seed : {1001, 1002, 1003}) {  // others than those of development
+    for (const std::uint64_t seed : {1001, 1002, 1003}) {  // seeds that were not used in development
       RollingTruth truth = truth_of(c.velocity, c.contact);
       add_errors(seed, truth);
       const Result r = filtered(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
@@ -222,7 +222,8 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
       EXPECT_LT(r.end_error_m, 0.02) << c.name << " " << seed;  // 1 % of the path; measured up to 0.5 %
       EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << c.name << " " << seed;
       EXPECT_GT(r.recall, 0.9) << c.name << " " << seed;
-      EXPECT_GT(r.precision, 0.8) << c.name << " " << seed;  // live: an end is believed late; measured 0.85 to 1
+      // live: the end of an event is detected late; measured 0.85 to 1
+      EXPECT_GT(r.precision, 0.8) << c.name << " " << seed;
       EXPECT_LE(r.delay_s, 0.03) << c.name << " " << seed;
     }
   }
@@ -248,7 +249,7 @@ TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
     const Result r = filtered(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
     std::printf("held spin %.2f m/s: end %.4f m, sigma %.4f, recall %.2f\n", position_constrained, r.end_error_m,
                 r.end_sigma_m, r.recall);
-    EXPECT_LT(r.end_error_m, 0.03) << position_constrained;  // of 2.5 m
+    EXPECT_LT(r.end_error_m, 0.03) << position_constrained;  // path of 2.5 m
     EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << position_constrained;
   }
 }
@@ -334,7 +335,7 @@ TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
   EXPECT_EQ(filter.step(bad, *state).error_code, ErrorCode::non_finite);
   EXPECT_EQ(filter.step(truth.samples[599], *state).error_code, ErrorCode::time_order);
   ImuSample late = truth.samples[640];
-  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // gap_max_s is 1 by default
+  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // the default of gap_max_s is 1
   EXPECT_EQ(filter.step(late, *state).error_code, ErrorCode::gap);
   EXPECT_TRUE(*state == *before);
   EXPECT_TRUE(filter.step(truth.samples[600], *state).ok());

@@ -48,7 +48,7 @@ testing::RollingTruth path(double duration_s) {
 }
 
 struct Held {
-  double nodes = 0.0, state = 0.0, at_the_end = 0.0;  ///< bytes; those at the end beside the state
+  double nodes = 0.0, state = 0.0, at_the_end = 0.0;  ///< bytes; at_the_end is in addition to the state
 };
 
 Held held_by(double duration_s) {
@@ -78,9 +78,9 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   const Held one = held_by(60.0), two = held_by(120.0);
   const double nodes = two.nodes - one.nodes;
   ASSERT_NEAR(nodes, 3000.0, 2.0);
-  // five samples of 64 bytes and a step of 152, in vectors that double; measured 557
+  // five samples of 64 bytes and a step of 152 bytes, in vectors that double; measured 557
   EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::NodeModes)) + 16.0);
-  // two filters in each segment, a mode and a variance for each node; measured 288
+  // two filters in each segment, and a mode and a variance for each node; measured 288
   EXPECT_LT((two.at_the_end - one.at_the_end) / nodes, 320.0);
   EXPECT_GT(sizeof(rolling::NodeRecord), 10'000u) << "the bound says nothing any more";
   EXPECT_LT(two.at_the_end, 5e6);

@@ -90,7 +90,7 @@ TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
   const double exact = end_error_m(truth.samples, end_m, RollingSmoother::kWholeRun);
   std::vector<ImuSample> position_constrained = truth.samples, jittered = slipping_sampled(4'000'000).samples;
-  // a device of 200 Hz read at 1 kHz
+  // a device with 200 Hz that is read at 1 kHz
   for (std::size_t k = 0; k < position_constrained.size(); ++k) {
     position_constrained[k].angular_velocity_rad_s = truth.samples[k - k % 5].angular_velocity_rad_s;
     position_constrained[k].specific_force_m_s2 = truth.samples[k - k % 5].specific_force_m_s2;

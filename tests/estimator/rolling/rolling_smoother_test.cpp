@@ -105,7 +105,7 @@ struct Normalised {
 
 Normalised normalised_errors(double lag_s) {
   constexpr int kDraws = 16;
-  constexpr std::size_t kWithin = 1500;  // 6 s: the slip is over, the second leg is not
+  constexpr std::size_t kWithin = 1500;  // 6 s: after the slip, within the second leg
   Normalised mean;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     const testing::RollingTruth truth = drawn_path(seed, testing::lagged_params(1.0).filter);
@@ -169,7 +169,7 @@ TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
   const testing::RollingTruth still = slipping();
   testing::RollingTruth turning = still;
   for (std::size_t k = 0; k < turning.samples.size(); ++k) {
-    if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the way ends at 8.0 s
+    if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the roll ends at 8.0 s
     turning.samples[k].angular_velocity_rad_s += turning.q_WI[k].conjugate() * Eigen::Vector3d(0.0, 0.0, 0.014);
   }
   const std::vector<RollingEstimate> without = smoothed_truth(still, RollingSmoother::kWholeRun);
@@ -211,7 +211,7 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   // accelerations alone determine the radius to 0.7 mm, and the distance improves this to 0.35
   EXPECT_LT(with->radius_sigma_m, 0.6 * without->radius_sigma_m);
   EXPECT_GT(wrong_m, 0.03);
-  EXPECT_LT(told_m, 0.5 * wrong_m);  // 12 of 32 mm; what is left is across the distance
+  EXPECT_LT(told_m, 0.5 * wrong_m);  // 12 of 32 mm; the rest is perpendicular to the distance
 }
 
 TEST(RollingSmoother, SplitRunsEqual) {
@@ -239,7 +239,7 @@ TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
   const testing::RollingTruth truth = slipping();
   for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());
   ASSERT_TRUE(smoother.check_state(*state).ok()) << "negative control";
-  for (int k = 0; k < 5000; ++k) {  // 2.2 s at 500 Hz, four times over, are 4400
+  for (int k = 0; k < 5000; ++k) {  // four times 2.2 s at 500 Hz are 4400 samples
     state->samples.push_back(state->samples.back());
     state->samples.back().time_ns += 1000;
   }

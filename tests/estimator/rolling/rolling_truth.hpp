@@ -19,12 +19,12 @@ struct RollingTruth {
   std::vector<bool> gripping;  ///< contact velocity below 1 mm/s
 };
 
-inline const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);  ///< of the IMU in them, where it is not in the middle
-inline constexpr double kRadius_m = 0.145;  ///< of the spheres of these tests, unless they say otherwise
+inline const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);  ///< position of the IMU in tests with an off-centre IMU
+inline constexpr double kRadius_m = 0.145;                  ///< default radius of the spheres in these tests
 
 struct RollingMotion {
-  std::function<Eigen::Vector3d(double)> velocity_m_s;          ///< of the centre, horizontal
-  std::function<Eigen::Vector3d(double)> contact_velocity_m_s;  ///< of the contact point; zero while it grips
+  std::function<Eigen::Vector3d(double)> velocity_m_s;          ///< velocity of the centre, horizontal
+  std::function<Eigen::Vector3d(double)> contact_velocity_m_s;  ///< of the contact point; zero with grip
   double duration_s = 10.0;
   double radius_m = kRadius_m;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
@@ -75,7 +75,7 @@ inline double minimum_jerk_speed(double t, double start_s, double duration_s, do
   return length_m / duration_s * 30.0 * x * x * (1.0 - x) * (1.0 - x);
 }
 
-/// One metre along x, then one along y, each in 2.5 s, with rests of 2 s at both ends; 10 s.
+/// One metre along x, then one metre along y, each in 2.5 s, with rests of 2 s at both ends; 10 s in total.
 inline Eigen::Vector3d l_shape(double t) {
   return {minimum_jerk_speed(t, 2.0, 2.5, 1.0), minimum_jerk_speed(t, 5.5, 2.5, 1.0), 0.0};
 }

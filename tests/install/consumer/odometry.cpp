@@ -9,7 +9,7 @@ int main() {
   sphere.units.push_back({tumble::sheets::phidget1044()});
   tumble::RollingOdometry rolling(sphere);
   tumble::TumblingOdometry::Params rig;
-  rig.lever_arm_I_m.setZero();  // the IMU at the centre of mass
+  rig.lever_arm_I_m.setZero();  // the IMU is at the centre of mass
   tumble::TumblingOdometry tumbling(rig);
   tumble::ImuSample sample;
   sample.specific_force_m_s2 = {0.0, 0.0, 9.80665};

@@ -30,7 +30,7 @@ TEST(Autogain, FactorsAndGainsOfThePaper) {
   const AutogainGains slow = filter.gains({0, -0.1, 0}, kPeriod_s);
   EXPECT_EQ(slow.beta, 0.0);
   EXPECT_EQ(slow.madgwick_rad_s, 0.0);
-  EXPECT_NEAR(slow.slerp_share, 0.02, 1e-5);  // tau of 0.396 s is 0.02 rounded
+  EXPECT_NEAR(slow.slerp_share, 0.02, 1e-5);  // a tau of 0.396 s is 0.02, rounded
   const AutogainGains middle = filter.gains({0.3, 0, -1.1}, kPeriod_s);
   EXPECT_NEAR(middle.factor.z(), 0.25, 1e-15);
   EXPECT_NEAR(middle.factor.x(), 0.01, 1e-15);
@@ -88,7 +88,7 @@ TEST(Autogain, PassesPitchOfNinetyDegrees) {
   for (const AutogainProfile profile : {AutogainProfile::paper, AutogainProfile::code2021, AutogainProfile::smooth}) {
     const Autogain filter({.profile = profile});
     Autogain::State state;
-    for (int k = 0; k <= 2000; ++k) {  // a turn of 6.4 rad about y at 0.4 rad/s
+    for (int k = 0; k <= 2000; ++k) {  // a rotation of 6.4 rad about y at 0.4 rad/s
       const Eigen::Quaterniond truth = so3::exp({0.0, 0.4 * 0.008 * k, 0.0});
       const Eigen::Vector3d f = truth.conjugate() * Eigen::Vector3d(0, 0, kGravity_m_s2);
       ASSERT_TRUE(filter.step({k * TimeNs{8'000'000}, {0, 0.4, 0}, f, 0}, state).ok());
@@ -139,7 +139,7 @@ class AutogainReplay : public ::testing::TestWithParam<test::DataFolder> {};
 
 TEST_P(AutogainReplay, TheLogWasWrittenByTheCodeOf2021WithItsRollError) {
   const testing::SphereLog log = testing::read_sphere_log(test::written(GetParam()) / test::kSphereLogFile);
-  if (!GetParam().real) {  // written by that very code: what is left is the text's nine decimals
+  if (!GetParam().real) {  // the stand-in was written by this code, so only rounding to nine decimals remains
     ASSERT_EQ(log.samples.size(), test::kStandInSphereSamples);
     EXPECT_LT(replay_median_arcsec(log, {.profile = kCode, .roll_error_2021 = true}), 0.01);
     EXPECT_GT(replay_median_arcsec(log, {.profile = kPaper, .roll_error_2021 = true}), 1.0);

@@ -80,7 +80,7 @@ double worst_of(const Swing& swing, Run run) {
   EXPECT_TRUE(status.ok()) << status.message();
   if (states.size() != swing.count()) return std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < states.size(); ++k) {
-    EXPECT_GE(states[k].clipped_axes != 0, swing.clipped(k)) << k;  // the ragged edge may count too
+    EXPECT_GE(states[k].clipped_axes != 0, swing.clipped(k)) << k;  // partly clipped windows at the edge may count too
     EXPECT_GT(states[k].covariance_rad2_s2(1, 1), 0.0) << k;
   }
   return swing.worst([&](std::size_t k) { return states[k].w_WI_I_rad_s; });
@@ -135,7 +135,7 @@ TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
 
 TEST(StandstillSmoother, SpreadsTheTiltBetweenTwoRests) {
   Swing swing;
-  swing.peak = 11.4;  // a few samples: what is lost must stay a fraction of a radian
+  swing.peak = 11.4;  // few clipped samples: the missing rotation must remain a fraction of a radian
   const std::vector<ImuSample> samples = swing.samples();
   const double worst = worst_of(swing, [&](std::vector<RateState>& out) {
     return StandstillSmoother({.rails = rails()}).estimate(samples, out);
@@ -153,7 +153,7 @@ TEST(PublishedFamilies, RefuseBadInput) {
     EXPECT_EQ(estimate(std::span<const ImuSample>{}).error_code, ErrorCode::empty);
     EXPECT_EQ(estimate(std::span<const ImuSample>(spoilt)).error_code, ErrorCode::non_finite);
     EXPECT_EQ(estimate(std::span<const ImuSample>(falling)).error_code, ErrorCode::time_order);
-    EXPECT_EQ(out.size(), 3u);  // nothing is written
+    EXPECT_EQ(out.size(), 3u);  // the output is unchanged
   };
   refuses([&](std::span<const ImuSample> s) { return ClippedBaseline(ClippedBaseline::Params{}).estimate(s, out); });
   refuses([&](std::span<const ImuSample> s) {
@@ -170,8 +170,8 @@ TEST(PublishedFamilies, RefuseBadInput) {
 // The test uses a rate that crosses the saturation level with constant slope, for which loss and reading have a closed
 // form.
 TEST(SubsampleSaturation, IsExactForAConstantSlope) {
-  for (const double slope : {0.5, 2.0, 5.0}) {    // per window
-    for (const double share : {0.2, 0.5, 0.8}) {  // of the window that is hidden
+  for (const double slope : {0.5, 2.0, 5.0}) {    // slope per window
+    for (const double share : {0.2, 0.5, 0.8}) {  // clipped share of the window
       const double free = 1.0 - share, reading = kRail - 0.5 * free * free * slope;
       const double unclipped = reading + 0.5 * share * share * slope, neighbour = unclipped - slope;
       const SubsampleSaturation loss = subsample_saturation(reading, neighbour, kRail, 1e-6);

@@ -58,7 +58,7 @@ TEST(RollingOdometry, CircleClosesOnItself) {
     widest = std::max(widest, state.p_WG_m.norm());
   }
   EXPECT_NEAR(state.p_WG_m.norm(), 0.0, 1e-12);
-  EXPECT_NEAR(widest, 2.0 * 0.3, 1e-5);  // diameter; the trapezoid falls short by dt^2 / 12 = 1.3e-6 of it
+  EXPECT_NEAR(widest, 2.0 * 0.3, 1e-5);  // diameter; the trapezoid rule is short by dt^2 / 12 = 1.3e-6 of it
 }
 
 TEST(RollingOdometry, TrapezoidIsExactForLinearRateAndUnevenSteps) {
@@ -75,7 +75,8 @@ TEST(RollingOdometry, TrapezoidIsExactForLinearRateAndUnevenSteps) {
 }
 
 TEST(RollingOdometry, SlopeMovesAlongThePlane) {
-  const Eigen::Vector3d normal = Eigen::Vector3d(-std::sin(0.3), 0.0, std::cos(0.3));  // climbing towards +x by 0.3 rad
+  // slope of 0.3 rad, upwards towards +x
+  const Eigen::Vector3d normal = Eigen::Vector3d(-std::sin(0.3), 0.0, std::cos(0.3));
   const RollingOdometry odometry({.radius_m = kRadius_m, .normal_W = normal});
   RollingOdometry::State state;
   for (int k = 0; k <= 250; ++k) ASSERT_TRUE(odometry.step(k * kSample_ns, {0, 2, 0}, kLevel, state).ok());

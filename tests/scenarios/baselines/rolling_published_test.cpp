@@ -102,8 +102,8 @@ TEST(AutogainFusion, WithoutAccelerationItIsHalfOfRolling) {
   EXPECT_NEAR((rolled(half, truth).p_WG_m.head<2>() - 0.5 * truth.p_WG_m.back().head<2>()).norm(), 0.0, 0.1);
 }
 
-/// With the integral at its limit the fused step is a fixed multiple of the rolling step: what the published figures
-/// show.
+/// While the integral is at its limit, the fused step is a fixed multiple of the rolling step, as in the published
+/// figures.
 TEST(AutogainFusion, SaturatedStepsHaveTheRatiosOfThePublishedFigures) {
   const auto ratio = [](double rotation_weight, double sign) {
     const AutogainFusion method({.limiter = 1.1, .rotation_weight = rotation_weight});

@@ -63,7 +63,7 @@ TEST(SlipObserver, CleanRollOpensNoEvent) {
 }
 
 TEST(SlipObserver, IdealSlipAndSlideAreFound) {
-  for (const double speed : {-0.6, 0.3}) {  // spins too fast; turns too slowly
+  for (const double speed : {-0.6, 0.3}) {  // rotates too fast; rotates too slowly
     const RollingTruth truth = truth_with(pulse(2.8, 0.8, speed));
     const double rolling = rolling_end_error(truth);
     EXPECT_GT(rolling, 0.15) << speed;

@@ -66,7 +66,7 @@ TEST(TrimmedIcp, NoMatchesAndFarCorrectionsAreNoSuccess) {
   TrimmedIcp bounded(strict);
   const auto result = bounded.align(points, prior, map_of(test::Room::box()));
   EXPECT_EQ(result.verdict, RegistrationVerdict::diverged);
-  EXPECT_EQ(result.T.translation().x(), 0.3);  // the prior
+  EXPECT_EQ(result.T.translation().x(), 0.3);  // the prior is unchanged
 }
 
 TEST(TrimmedIcp, ACorridorLooksLikeASuccess) {
@@ -74,7 +74,7 @@ TEST(TrimmedIcp, ACorridorLooksLikeASuccess) {
   Eigen::Isometry3d prior = Eigen::Isometry3d::Identity();
   prior.translation().x() = 0.4;
   const auto result = icp.align(sweep_of(test::Room::corridor()), prior, map_of(test::Room::corridor()));
-  EXPECT_EQ(result.verdict, RegistrationVerdict::converged);  // the published chain's known error, kept
+  EXPECT_EQ(result.verdict, RegistrationVerdict::converged);  // the known error of the published chain, reproduced
 }
 
 // The test compares the published rule with a search over every share.
@@ -93,7 +93,7 @@ TEST(Trim, MinimisesItsCostWithinBounds) {
 }
 
 TEST(Trim, UnmatchedSlotsInTheCountReachPastTheData) {
-  const std::vector<float> d2(600, 1.0f);  // of 1000 slots 400 have no match
+  const std::vector<float> d2(600, 1.0f);  // 400 of 1000 slots have no match
   TrimmedIcp::Params params;
   const std::size_t rightly = TrimmedIcp::trim(d2, d2.size(), params);
   EXPECT_LE(rightly, 420u);

@@ -76,7 +76,7 @@ TEST(Bench, ResultsOfAnotherSimulationAreTold) {
   const BenchResult a = some_result("a", {0.1, 0.2, 0.3});
   BenchResult b = some_result("b", {0.1, 0.2, 0.3});
   EXPECT_EQ(other_recording(a, b), "");
-  b.draws[2].recording = "";  // of a draw whose process died
+  b.draws[2].recording = "";  // a draw whose process crashed
   EXPECT_EQ(other_recording(a, b), "");
   b.draws[2].recording = "another";
   EXPECT_EQ(other_recording(a, b), "hill 3");

@@ -21,7 +21,8 @@ Scenario fixed(const std::string& name) {
 /// The test checks, for every scenario, that each complication can be removed alone, that the remaining scenario can be
 /// drawn, and that no part of the complication remains.
 TEST(Complications, EachGoesAndTheDrawStays) {
-  const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};  // all are many seconds
+  // testing all scenarios takes many seconds
+  const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};
   for (const std::string& name : scenario_names(tree_data())) {
     const Scenario scenario = fixed(name);
     const std::vector<Complication> all = complications(scenario);

@@ -123,7 +123,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   EXPECT_THAT(names_with(alone, Fate::needed), ElementsAre());
   EXPECT_FALSE(alone.controlled);
 
-  Method control = *find_methods("rate/raw").front();  // needs a rail
+  Method control = *find_methods("rate/raw").front();  // needs a saturation limit
   control.run = [run = control.run](const sim::Sensors& sensors, const sim::Values& values, const OracleInput& oracle) {
     const sim::ImuRecord& imu = sensors.imus.front();
     if (imu.stated_gyro_range_rad_s > 50.0) throw BadInput("no rail");

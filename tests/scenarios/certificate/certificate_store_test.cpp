@@ -60,7 +60,7 @@ TEST_F(CertificateStoreTest, OnlyARegularFileIsReplaced) {
   const auto file = std::filesystem::directory_iterator(folder_ / "cache")->path();
   std::filesystem::remove(file);
   std::filesystem::create_symlink("/dev/null", file);
-  store().keep(sample());  // no error, no cache
+  store().keep(sample());  // must not throw; the certificate is not cached
   EXPECT_TRUE(std::filesystem::is_symlink(file));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "cache"), {}), 1)
       << "nothing is left beside it";

@@ -105,12 +105,12 @@ TEST(Rows, ALeverArmOfOneMillimetreFailsTheSpecificForce) {
   const std::vector<CertificateEntry> entries = certify_flight_force(input(), setup);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_FALSE(entries[0].passes());
-  EXPECT_NEAR(entries[0].value, 18.0 * 18.0 * 0.001, 0.02);  // w^2 r; the small rates beside it change little
+  EXPECT_NEAR(entries[0].value, 18.0 * 18.0 * 0.001, 0.02);  // w^2 r; the small rates of the other axes change little
 }
 
 TEST(Rows, ADropFromElsewhereFailsTheFreeFall) {
   FreeFallSetup setup;
-  setup.stated_height_m = 0.99;  // 2.3 ms sooner, 4.5 steps
+  setup.stated_height_m = 0.99;  // 2.3 ms earlier, 4.5 steps
   EXPECT_THAT(failures(certify_free_fall(input(), setup)), testing::SizeIs(1));
 }
 
@@ -203,7 +203,7 @@ TEST(Rows, ATiltOfTwoTenThousandthsFailsTheTiltedRail) {
   TiltedRailSetup setup;
   setup.devices = 1;
   EXPECT_THAT(failures(certify_tilted_rail(input(), setup)), IsEmpty());
-  setup.assumed_tilt = 2e-4;  // a tenth of what real devices keep their tilt to
+  setup.assumed_tilt = 2e-4;  // a tenth of the tilt tolerance of real devices
   EXPECT_THAT(failures(certify_tilted_rail(input(), setup)),
               testing::ElementsAre("tilted_rail_slope (mti30 gyro)", "tilted_rail_slope (mti30 accel)"));
 }
@@ -265,7 +265,7 @@ TEST(Rows, UprightElementsDoNotReachTheRealRails) {
 
 TEST(Rows, APendulumOfAnotherLengthFailsEnergyAndPeriods) {
   PendulumSetup setup;
-  setup.stated_segment_m = 0.25001;  // of 0.25
+  setup.stated_segment_m = 0.25001;  // instead of 0.25
   EXPECT_THAT(failures(certify_pendulum(input(), setup)),
               testing::ElementsAre("pendulum_energy (pendulum)", "pendulum_period (pendulum)"));
 }

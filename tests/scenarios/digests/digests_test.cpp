@@ -21,7 +21,7 @@ namespace {
 struct Kept {
   std::string scenario;
   std::uint64_t seed;
-  std::string lidars;  ///< "lidars", or "none": motion and IMUs alone
+  std::string lidars;  ///< "lidars", or "none": only motion and IMUs
   std::string digest;
 };
 

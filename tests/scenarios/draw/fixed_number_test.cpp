@@ -30,7 +30,7 @@ TEST(FixNumber, SetsOneNumberAndLeavesTheDrawsOfAllOthersAlone) {
   Scenario scenario = load_scenario(kData, "hill");
   fix_number(scenario, "world.trunk_count", 7);
   fix_number(scenario, "sensors.lidar.mount_error.yaw_rad", 0.125);
-  fix_number(scenario, "sensors.imu.output_rate_hz", 200);  // of the data sheet, until now
+  fix_number(scenario, "sensors.imu.output_rate_hz", 200);  // the data sheet's value before
   fix_number(scenario, "duration_s", 3);
   sim::Situation after = draw(kData, scenario, 5001);
   EXPECT_EQ(after.world.values.at("trunk_count"), 7.0);

@@ -59,8 +59,8 @@ inline std::string with(std::string text, const std::string& from, const std::st
 struct Wrong {
   const char* from;
   const char* to;
-  const char* where;  ///< how the message begins
-  const char* what;   ///< what it holds
+  const char* where;  ///< start of the message
+  const char* what;   ///< part of the message
 };
 
 /// Returns the message of the BadInput that `call` throws, or an empty string when it throws none.

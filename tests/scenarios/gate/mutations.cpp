@@ -9,7 +9,7 @@ namespace tumble::scenarios::testing {
 namespace {
 
 constexpr double kShift_ns = 1e6;
-constexpr double kBumpLeast_m = 0.004;  // above its height at the start, the sphere stands on something
+constexpr double kBumpLeast_m = 0.004;  // the sphere is on an obstacle if it is this far above its start height
 constexpr double kMapRotation_rad = 0.02;
 constexpr double kBorder_m_s = 0.02;
 constexpr double kTilt_rad = 0.05;

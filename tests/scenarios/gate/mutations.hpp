@@ -15,10 +15,10 @@ namespace tumble::scenarios::testing {
 struct Mutation {
   const char* name;
   const char* scenario;
-  const char* method;                                           ///< "slam/tumble"
-  std::vector<std::string> metrics;                             ///< each of whose rows has to refuse it
-  void (*given)(sim::Sensors& sensors);                         ///< null: as it is
-  void (*returned)(const sim::Recording&, Estimate& estimate);  ///< null: as it is
+  const char* method;                                           ///< for example "slam/tumble"
+  std::vector<std::string> metrics;                             ///< the gate must reject the row of each metric
+  void (*given)(sim::Sensors& sensors);                         ///< changes the input; null: unchanged
+  void (*returned)(const sim::Recording&, Estimate& estimate);  ///< changes the output; null: unchanged
 };
 
 std::span<const Mutation> mutations();

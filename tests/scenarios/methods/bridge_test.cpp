@@ -57,7 +57,7 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& record = recording.sensors.imus.front();
   std::vector<ImuSample> samples;
-  record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a rail beyond what is stated
+  record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a saturation limit above the stated range
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
   const std::vector<Eigen::Vector3d> read = record.gyro_rad_s;
   for (std::size_t k = 40; k < 90; ++k) record.gyro_rad_s[k].y() = -3e5;
@@ -69,7 +69,7 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   record.gyro_rad_s = read;
   record.accel_m_s2[7].x() = record.accel_m_s2[8].x() = 1e4;  // lasts for two samples
   EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e4);
-  record.stated_accel_range_m_s2 = 0.0;  // nothing is stated
+  record.stated_accel_range_m_s2 = 0.0;  // no range is stated
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
 }
 

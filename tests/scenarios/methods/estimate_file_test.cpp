@@ -246,7 +246,7 @@ TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
       table.number(0.5);
       table.end_row();
     }
-  }  // as when the disk is full, or the run dies
+  }  // as with a full disk, or if the run crashes
   EXPECT_EQ(text(), "old\n");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
   TableWriter table(path, ',', "a,b");

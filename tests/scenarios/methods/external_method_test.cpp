@@ -118,7 +118,7 @@ TEST_F(ExternalMethod, AHangIsEndedWithAllItHasStarted) {
   pid_t child = 0;
   std::ifstream(pid) >> child;
   ASSERT_GT(child, 0);
-  bool gone = false;  // killed with its group; whoever adopts it collects it soon
+  bool gone = false;  // killed with its process group; the adopting process removes it soon
   for (int k = 0; k < 500 && !gone; ++k) {
     std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
     std::string number, name, state;

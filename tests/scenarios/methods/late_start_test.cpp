@@ -106,7 +106,7 @@ TEST(LateImu, SweepsBeforeItAreLeftOutAndCounted) {
   }
 }
 
-// The lidar's clock is 5 ms late, so that its last sweep ends after the last reading of the IMU.
+// The lidar's clock is 5 ms late, so its last sweep ends after the last IMU sample.
 TEST(LastSweep, ThatTheImuDoesNotCoverIsCounted) {
   sim::Recording recording = rig_that_rests(1.5);
   for (std::int64_t& start_ns : recording.sensors.lidars.front().sweep_start_ns) start_ns += 5'000'000;

@@ -16,8 +16,8 @@
 #include "sim/random/stream.hpp"
 #include "tests/tree.hpp"
 
-// A live method gives an answer before it receives the following readings: whatever these are, and whether there are
-// any, the answer has the same bits.
+// A live method must answer before it receives the following readings. The answer must have identical bits for any
+// following readings, and without them.
 namespace tumble::scenarios {
 namespace {
 
@@ -228,7 +228,7 @@ const CutRecording& roll_run() {
 
 const CutRecording& mapped_run() {
   static const CutRecording run = {noisy_rig().sensors,
-                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // it saturates from 1.85 s
+                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // it saturates after 1.85 s
   return run;
 }
 
@@ -254,7 +254,7 @@ TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
       sim::Sensors later = run.sensors;
       apply(fault, cut_ns, later);
       const Estimate whole = method.run(later, {}, {});
-      if (!whole.status.ok()) {  // the harness refuses the recording
+      if (!whole.status.ok()) {  // the harness rejects the recording
         EXPECT_NE(name, "none") << whole.status.message();
         continue;
       }

@@ -84,7 +84,7 @@ double apart(Kind kind, const Estimate& found, const Estimate& expected) {
 /// The readings are at rest and in motion; the second one is beyond twice the gyro's range.
 constexpr Wild kWild[] = {{1.0, true, 0, 9.0}, {3.3, true, 2, 200.0}, {1.1, false, 2, 150.0}};
 
-/// The estimate must equal the one from a recording in which the sample is missing.
+/// The estimate must equal the estimate from a recording without this sample.
 void expect_one_sample_lost(const std::string& method, const sim::Recording& recording) {
   const Kind kind = find_methods(method).front()->info.kind;
   for (const Wild& wild : kWild) {
@@ -94,7 +94,7 @@ void expect_one_sample_lost(const std::string& method, const sim::Recording& rec
   }
 }
 
-/// The estimate must be within `bound` of the one from the sound recording.
+/// The estimate must be within `bound` of the estimate from the correct recording.
 void expect_nothing_lost(const std::string& method, const sim::Recording& recording, double bound) {
   const Kind kind = find_methods(method).front()->info.kind;
   const Estimate clean = run(method, recording);

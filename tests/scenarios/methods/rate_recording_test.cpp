@@ -112,7 +112,7 @@ TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
     const Estimate estimate = estimated_rates("tumble", recording);
     EXPECT_GE(estimate.health.at("rails_disagreeing"), 1.0) << stated;
     EXPECT_EQ(estimate.health.at("learnt_gyro_rail_x_rad_s"), 10.5) << stated;
-    EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau counts
+    EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau is sufficient
   }
 }
 

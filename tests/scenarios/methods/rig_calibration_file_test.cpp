@@ -96,7 +96,7 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
   EXPECT_NE(complaint("\"accelerometer_elements\"", "\"gone\"").find("gone: unknown key"), std::string::npos);
   EXPECT_NE(complaint("3e-07", "1.0").find("device_errors_covariance"), std::string::npos);
   EXPECT_NE(complaint("\"device_errors\"", "\"gone\"").find("gone: unknown key"), std::string::npos);
-  EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a sound change is taken
+  EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a valid change is accepted
 }
 
 // When two elements were saturated only together, nobody knows the level at which the plane cuts the row: the next run

@@ -13,7 +13,7 @@
 namespace tumble::scenarios {
 namespace {
 
-constexpr double kJitter_ns = 6e5;  // of periods of 5 ms
+constexpr double kJitter_ns = 6e5;  // for a period of 5 ms
 
 /// Returns the same readings, stamped by a host with jitter.
 sim::Recording stamped_by_a_host(sim::Recording recording) {

@@ -157,7 +157,7 @@ TEST(Settings, WhatARecordingStatesGivesWayOnlyToWhatSomebodyGave) {
   stated.gravity_m_s2 = 1.6;
   table.apply(resolve_settings("method", {}, stages), stated);
   EXPECT_EQ(stated.gravity_m_s2, 1.6);
-  table.apply(resolved(stages, "gravity_m_s2", 9.8), stated);  // the default's value, but given
+  table.apply(resolved(stages, "gravity_m_s2", 9.8), stated);  // the default's value, explicitly given
   EXPECT_EQ(stated.gravity_m_s2, 9.8);
 }
 

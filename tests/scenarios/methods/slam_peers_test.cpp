@@ -185,7 +185,7 @@ TEST(ConstantVelocity, NeedsNoTimesOfThePointsWhereTheRecordingSaysSo) {
     EXPECT_EQ(outcome.estimate.sweeps.size(), 60u);
     // without a prior, a sweep drifts where its rings lie on those of the map; measured 0.04
     EXPECT_LT(outcome.end_error_m, 0.06);
-    // a pose belongs to the sweep's only instant
+    // a pose belongs to the only time of its sweep
     EXPECT_EQ(outcome.estimate.sweeps[30].pose.time_ns, lidar.sweep_start_ns[30]);
   }
 }

@@ -97,7 +97,7 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   ends.time_ns.resize(kSamples / 2);
   ends.clip_flags.resize(kSamples / 2);
   sim::ImuRecord nan = unit("imu_3", 0, 0.0);
-  nan.gyro_rad_s[7].x() = std::nan("");  // one reading: made up for
+  nan.gyro_rad_s[7].x() = std::nan("");  // a single missing reading is interpolated
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
   EXPECT_EQ(merged.merged.units.size(), 3U);
@@ -193,7 +193,7 @@ TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
 
 TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
   sim::ImuRecord clips = unit("imu_2", 0, 0.0), slow = unit("imu_3", 0, 0.0);
-  clips.stated_gyro_range_rad_s = 0.5;  // up to a second at a time
+  clips.stated_gyro_range_rad_s = 0.5;  // for up to a second
   for (Eigen::Vector3d& rate : clips.gyro_rad_s) rate.z() = std::clamp(rate.z(), -0.5, 0.5);
   for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
   MergedImus merged;

@@ -43,7 +43,7 @@ Eigen::Quaterniond as_is(const Eigen::Quaterniond& q) {
   return q;
 }
 Eigen::Quaterniond with_w_first(const Eigen::Quaterniond& q) {
-  return {q.z(), q.w(), q.x(), q.y()};  // w x y z, taken for x y z w
+  return {q.z(), q.w(), q.x(), q.y()};  // w x y z, interpreted as x y z w
 }
 Eigen::Quaterniond inverse(const Eigen::Quaterniond& q) {
   return q.conjugate();

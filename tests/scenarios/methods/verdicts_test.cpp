@@ -62,7 +62,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped", "lidar_ranges_long"}) {
     const Said bad = said_of(method, draw, wrong);
     EXPECT_TRUE(bad.status != OutcomeStatus::ok || bad.localised == 0.0) << wrong;
-    EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // or nothing was wrong
+    EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // otherwise, nothing was wrong
   }
 }
 
@@ -170,7 +170,7 @@ TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
 
 struct SaidOfRates {
   bool implausible = false, z_frozen = false, mislabelled_axes = false;
-  double turned_sigma_rad_s = 0.0;  ///< mean where it turns
+  double turned_sigma_rad_s = 0.0;  ///< mean while it rotates
 };
 
 SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {

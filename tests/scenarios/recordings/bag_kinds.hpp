@@ -21,7 +21,7 @@ struct BagKind {
   Imported (*read)(const std::filesystem::path&, const BagReading&);
   std::unique_ptr<BagReader> (*open)(const std::filesystem::path&) = nullptr;
   std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&) = nullptr;
-  const char* livox_type = "livox_ros_driver2/CustomMsg";  ///< by ROS 1's name
+  const char* livox_type = "livox_ros_driver2/CustomMsg";  ///< type name in ROS 1
 };
 
 inline constexpr BagKind kRos1 = {"Ros1",        export_ros1_bag,  import_ros1_bag,

@@ -56,7 +56,7 @@ class Stamps : public fixture::Folder, public testing::WithParamInterface<fixtur
   static std::int64_t long_ago(std::int64_t record_ns) { return record_ns - 3600'000 * kMs_ns; }
   static std::int64_t back(std::int64_t record_ns) { return 2 * kOrigin_ns - record_ns; }
   static std::int64_t since_boot(std::int64_t record_ns) { return record_ns - kOrigin_ns + 1'000'000'000; }
-  std::uint32_t offsets_ = 1;  ///< how much longer sweeps are than the fixture's
+  std::uint32_t offsets_ = 1;  ///< sweep duration relative to the fixture's
 
  private:
   int count_ = 0;
@@ -93,7 +93,7 @@ TEST_P(Stamps, AnotherClockIsACaution) {
 TEST_P(Stamps, PointsBeyondTheirRecordAreACaution) {
   const auto said =
       AllOf(HasSubstr("/points: caution: the last points of a sweep"), HasSubstr("(set '--stamps record'"));
-  offsets_ = 600;  // over most of a sweep
+  offsets_ = 600;  // points cover most of a sweep
   EXPECT_THAT(written(same, same).notes, Contains(said));
   EXPECT_THAT(written(same, sweep_before).notes, Not(Contains(said)));
   EXPECT_THAT(written(same, same, StampSource::record).notes, Not(Contains(said)));

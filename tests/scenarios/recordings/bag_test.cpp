@@ -21,9 +21,9 @@ class Bag : public fixture::Folder, public testing::WithParamInterface<fixture::
  protected:
   Bag() {
     for (sim::ImuRecord& imu : recording_.sensors.imus) {
-      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;  // to a plausible median
+      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;  // scaled to a plausible median
     }
-    for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;  // over most of a sweep
+    for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;  // points cover most of a sweep
     reading_.imu.device = "mti30";
     path_ = folder_ / "a.bag";
   }
@@ -214,7 +214,7 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
 }
 
 TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
-  for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // a gyro alone
+  for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // only a gyro
   write();
   EXPECT_THAT(complaint_of(), testing::AllOf(HasSubstr("topic /imu_reference:"),
                                              HasSubstr("(--imu-topic selects the topics to read)")));

@@ -119,7 +119,7 @@ TEST_P(BoundedMemory, AnExportDoesNotGrowWithTheRecording) {
 
 /// Writes a recording with the truth of its body, an IMU and the end of each ray, and the same poses as an estimate.
 void write_truthful(const std::filesystem::path& folder, int sweeps) {
-  constexpr int kStates = 200, kSamples = 40;  // of a sweep's 0.1 s
+  constexpr int kStates = 200, kSamples = 40;  // for the 0.1 s of a sweep
   fixture::Numbers numbers;
   sim::Recording recording;
   sim::Truth& truth = recording.truth;

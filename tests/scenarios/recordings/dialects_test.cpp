@@ -24,12 +24,12 @@ using testing::HasSubstr;
 /// A Wanted contains what an external program reads of a spinning lidar.
 struct Wanted {
   const char* peer;
-  const char* bag;  ///< in the folder
-  bool ros1;        ///< else ROS 2
+  const char* bag;  ///< file name in the folder
+  bool ros1;        ///< false: ROS 2
   const char *imu, *points;
-  const char* time;   ///< field of a point
-  std::uint8_t type;  ///< its number in PointField
-  double unit_ns;     ///< of it, since the header's stamp
+  const char* time;   ///< name of the time field of a point
+  std::uint8_t type;  ///< data type as in PointField
+  double unit_ns;     ///< unit of the time field, which counts from the header's stamp
 };
 
 constexpr Wanted kWanted[] = {

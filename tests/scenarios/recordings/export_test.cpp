@@ -128,7 +128,7 @@ TEST_F(Export, EachOfTwoSensorsOfOneNameHasAFrame) {
   truth.imus[1].T_BI = Eigen::Translation3d(0.2, 0.0, 0.0);
   EXPECT_EQ(true_mounting(truth, "imu").translation().x(), 0.1);
   EXPECT_EQ(true_mounting(truth, "imu_2").translation().x(), 0.2);
-  truth.imus[1].name = "/imu/data";  // cannot be written
+  truth.imus[1].name = "/imu/data";  // this name cannot be a file name
   EXPECT_EQ(true_mounting(truth, "imu_1").translation().x(), 0.2);
   EXPECT_EQ(true_mounting(truth, "/imu/data").translation().x(), 0.2);
   EXPECT_THROW(true_mounting(truth, "imu_2"), BadInput);

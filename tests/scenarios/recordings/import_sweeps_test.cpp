@@ -88,7 +88,7 @@ TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
   put("1.ply", sweep());
   put("2.ply", sweep());
   source_.steady_ns = 100000000;
-  source_.reading.range_max_m = 1.0;  // of points 3.7 m away
+  source_.reading.range_max_m = 1.0;  // points 3.7 m away
   EXPECT_THAT(complaint_of(),
               HasSubstr("6 of 6 points are farther than 2 m, which is twice the range in the data sheet"));
   source_.reading.range_max_m = 2.0;
@@ -190,7 +190,7 @@ TEST_F(ImportSweeps, AbsoluteTimesOfPointsTellTheSweeps) {
   const sim::LidarRecord lidar = import();
   EXPECT_NEAR(static_cast<double>(imported_.info.origin_ns - 1617333602250000000), 0.0, 500.0);
   ASSERT_EQ(lidar.sweep_start_ns.size(), 2u);
-  // a double of that size has steps of 0.24 us
+  // a double of this size has a resolution of 0.24 us
   EXPECT_NEAR(static_cast<double>(lidar.sweep_start_ns[1]), 1e8, 500.0);
   EXPECT_NEAR(lidar.offset_ns[2], 9e7, 500.0);
 }
@@ -298,7 +298,7 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ms", us));
   EXPECT_THAT(complaint_of(),
               HasSubstr("the point times in field 't_ms' have the stated unit ms and a range of 59500"));
-  // a few points may lie close together in any unit
+  // a few points may be close together in any unit
   us.resize(90);
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ns", us));
   EXPECT_EQ(complaint_of(), "");
@@ -312,8 +312,8 @@ TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
 
 TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   sim::Recording recording = fixture::recording();
-  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
-  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // and the rates
+  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // also scales the rates
   export_csv(recording.sensors, nullptr, folder_);
   export_ply(recording.sensors, folder_ / "sweeps");
   source_.folder = folder_ / "sweeps";

@@ -42,8 +42,8 @@ class ImportCsv : public fixture::Folder {
     sim::ImuRecord device;
     device.name = "imu";
     device.device = "mti30";
-    device.stated_gyro_range_rad_s = 80.0;  // the fixture has rates without a pattern, to 44 rad/s
-    device.time_ns = {1, 2, 3};             // of some other recording
+    device.stated_gyro_range_rad_s = 80.0;  // the fixture has random rates of up to 44 rad/s
+    device.time_ns = {1, 2, 3};             // times of another recording
     return import_imu_csv(folder_ / "run_1_xsens.csv", device);
   }
   std::string complaint_of(const std::string& text) {
@@ -70,8 +70,8 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
 
 TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   sim::Recording recording = fixture::recording();
-  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
-  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // and the fixture's rates
+  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // also the fixture's rates
   export_csv(recording.sensors, nullptr, folder_);
   const sim::ImuRecord& given = recording.sensors.imus[1];
   const Imported imported = import_imu_csv(folder_ / "imu_reference.csv", given);
@@ -104,11 +104,11 @@ TEST_F(ImportCsv, PutsStampsInWholeMillisecondsOnTheBeatOfAFasterImuAndSaysSo) {
     double worst_ns = 0.0;
     for (std::size_t k = 0; k < stamps.size(); ++k)
       worst_ns = std::max(worst_ns, std::abs(static_cast<double>(stamps[k]) - 1e6 * step_ms * static_cast<double>(k)));
-    EXPECT_LT(worst_ns, 1.5e5) << step_ms;  // they stood up to half a millisecond off
+    EXPECT_LT(worst_ns, 1.5e5) << step_ms;  // the original time stamps had errors of up to 0.5 ms
     EXPECT_NEAR(static_cast<double>(imported.sensors.imus[0].period_ns), 1e6 * step_ms, 1e3);
     EXPECT_THAT(imported.notes, Contains(HasSubstr("whole milliseconds"))) << step_ms;
   }
-  for (const double step_ms : {1.0, 2.0, 4.0}) {  // a beat of whole milliseconds is what it says
+  for (const double step_ms : {1.0, 2.0, 4.0}) {  // a period of whole milliseconds is exact
     const Imported imported = import(rocking(step_ms));
     EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("whole milliseconds"))));
     EXPECT_EQ(imported.sensors.imus[0].time_ns[1], static_cast<std::int64_t>(1e6 * step_ms));
@@ -176,7 +176,7 @@ class ImportOwnCsv : public ImportCsv {
  protected:
   ImportOwnCsv() {
     sim::Recording recording = fixture::recording();
-    for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
+    for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
     export_csv(recording.sensors, nullptr, folder_);
     given_ = recording.sensors.imus[1];
     text_ = fixture::bytes_of(folder_ / "imu_reference.csv");

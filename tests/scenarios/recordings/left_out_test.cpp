@@ -128,7 +128,7 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
   std::function<void(int, ros::Imu&)> change_imu_;
   std::function<void(int, ros::PointCloud2&)> change_cloud_;
   std::int64_t clock_ns_ = 0;  ///< clock of the points minus clock of the headers
-  bool camera_ = false;        ///< a cloud topic without point times comes first
+  bool camera_ = false;        ///< the first topic is a cloud without point times
 
  private:
   int count_ = 0;
@@ -295,7 +295,7 @@ TEST_P(OddBag, PartsAreReadTogetherByTime) {
     write(folder_ / "other", 0, 80), write(bag, 80, 150);
     std::filesystem::rename(folder_ / "other/other_0.db3", bag / "parts_1.db3");
   } else {
-    return;  // an MCAP file has no parts
+    return;  // an MCAP file has only one part
   }
   const Imported imported = GetParam().read(bag, {});
   EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 150u);

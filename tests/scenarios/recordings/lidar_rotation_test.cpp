@@ -172,7 +172,7 @@ TEST(LidarRotation, WhatTellsNothingIsNotSpokenOf) {
     for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.setZero();
   };
   EXPECT_EQ(text_of(dead), "nothing told");
-  const auto other = [](sim::ImuRecord& imu, sim::LidarRecord&) {  // of the same sizes, of another motion
+  const auto other = [](sim::ImuRecord& imu, sim::LidarRecord&) {  // the same sizes, but another motion
     for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k)
       imu.gyro_rad_s[k] = so3::exp(Eigen::Vector3d(0.0, 0.011 * static_cast<double>(k), 0.7)) * imu.gyro_rad_s[k];
   };

@@ -46,7 +46,7 @@ inline std::vector<Logged> imu_messages(std::size_t count) {
 /// records are consistent with the damaged one.
 struct McapShape {
   std::vector<std::vector<Logged>> chunks;
-  std::string compression;  ///< "", "lz4", "zstd", or a name that nobody knows
+  std::string compression;  ///< "", "lz4", "zstd", or an unknown name
   bool chunked = true, message_index = true, summary = true, statistics = true, repeat_channels = true, crcs = true;
   mcap::Schema schema{1, "sensor_msgs/msg/Imu", "ros2msg", ros2_definition("sensor_msgs/Imu")};
   mcap::Channel channel{1, 1, "/imu", "cdr", {}};

@@ -262,7 +262,7 @@ TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
   const std::string whole = fixture::bytes_of(file());
   ASSERT_EQ(complaint_of(whole), "");
   ASSERT_GT(whole.size(), 5000u);
-  const std::size_t far = whole.size() - 300;  // the last chunk's index, the offsets, the footer
+  const std::size_t far = whole.size() - 300;  // the last chunk's index, the offsets and the footer
   for (std::size_t at = 0; at < whole.size(); at += at < 200 || at > far ? 1 : 13) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ (1 << (at % 8)));

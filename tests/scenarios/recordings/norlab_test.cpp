@@ -274,7 +274,7 @@ TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
     EXPECT_EQ(poses[0].p_WA_m, Eigen::Vector3d(1, 2, 3));
     EXPECT_TRUE(poses[0].q_WA.coeffs().isApprox(Eigen::Vector4d(0, 0, 0.6, 0.8), 1e-12));
   }
-  // readings of an IMU are no poses
+  // IMU readings are not poses
   fixture::put(file, "time,gx,gy,gz,ax,ay,az,temp\n0,0,0,0,0,0,9.8,20\n0.01,0,0,0,0,0,9.8,20\n");
   EXPECT_FALSE(is_pose_table(file));
   EXPECT_THAT(fixture::complaint([&] { pose_format(file); }), HasSubstr("8 other words"));

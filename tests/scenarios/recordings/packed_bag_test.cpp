@@ -29,7 +29,7 @@ class PackedBag : public fixture::Folder {
  protected:
   PackedBag() {
     sim::Sensors sensors = fixture::recording().sensors;
-    for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;  // over most of a sweep
+    for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;  // points cover most of a sweep
     sensors.imus.resize(1);
     for (Eigen::Vector3d& force : sensors.imus[0].accel_m_s2) force = Eigen::Vector3d(0.0, 0.0, 9.8);
     export_ros2_bag(sensors, {}, bag_);

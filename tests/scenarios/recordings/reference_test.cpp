@@ -43,7 +43,7 @@ TEST(ReferenceTruth, PosesOnAGridComeBackAsTheyWere) {
 
 TEST(ReferenceTruth, OtherwiseItIsInterpolatedWhereTwoPosesAreNear) {
   std::vector<ReferencePose> poses = steady(20000123, 100000000, 11);
-  poses.erase(poses.begin() + 4, poses.begin() + 7);  // 0.4 s without
+  poses.erase(poses.begin() + 4, poses.begin() + 7);  // a gap of 0.4 s
   const sim::Truth truth = reference_truth(poses, 5000000000);
   EXPECT_EQ(truth.period_ns, 1000000);
   int known = 0;

@@ -64,7 +64,7 @@ TEST_F(RegularFile, AnythingElseIsCalledWhatItIs) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string socket_at = at + "socket";
-  if (socket_at.size() >= sizeof address.sun_path) return;  // a test folder that lies deep
+  if (socket_at.size() >= sizeof address.sun_path) return;  // the path of the test folder is too long
   socket_at.copy(address.sun_path, socket_at.size());
   const int made = socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);

@@ -47,7 +47,7 @@ TEST_F(ReplaceFile, FollowsTheUsersMask) {
 // the next process removes the files that a killed process leaves, and keeps the files that a living one writes
 TEST_F(ReplaceFile, FilesOfKilledProcessesAreRemoved) {
   std::filesystem::create_directory(folder_ / "x");
-  const OutputFile own(folder_ / "x" / ".." / "own");  // the folder by another name, to look into it again later
+  const OutputFile own(folder_ / "x" / ".." / "own");  // the same folder under another name, for a second look
   const pid_t child = fork();
   if (child == 0) {
     const OutputFile left(folder_ / "a.h5");
@@ -82,7 +82,7 @@ TEST_F(ReplaceFile, ReadOnlyFolderIsRefused) {
   // root may write into a read-only folder, so another user tries
   constexpr uid_t kNobody = 65534;
   const bool root = geteuid() == 0;
-  if (root && seteuid(kNobody) != 0) {  // a container of one user: the kernel's own folders refuse root too
+  if (root && seteuid(kNobody) != 0) {  // a container with one user: in the kernel's folders, root cannot write either
     std::filesystem::permissions(folder_, perms::owner_all);
     EXPECT_THAT(fixture::complaint([] { replace_file("/sys/kernel/a", "x"); }), HasSubstr("cannot be written"));
     return;

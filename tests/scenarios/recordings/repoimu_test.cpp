@@ -184,7 +184,7 @@ TEST_F(Repoimu, WhatPublishedFilesHoldIsRead) {
   for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(import(windows).sensors.imus[0].time_ns.size(), 1000u);
   std::string comma = text;
-  const std::size_t at = comma.find("1.2300;") + 7;  // the quaternion's w
+  const std::size_t at = comma.find("1.2300;") + 7;  // w of the quaternion
   comma[comma.find('.', at)] = ',';
   EXPECT_THAT(all_notes(import(comma)), HasSubstr("1 numbers have a decimal comma"));
   std::string average = text;

@@ -166,7 +166,7 @@ TEST_F(RoundTrip, AnImuWithoutMagnetometerLeavesNoTraceOfOne) {
 TEST_F(RoundTrip, InfoComesBackAndTheWriterFillsItsOwnPart) {
   const sim::Recording recording = fixture::recording();
   RecordingInfo given = info();
-  given.situation_yaml = std::string(200000, 'y');  // larger than an object header holds
+  given.situation_yaml = std::string(200000, 'y');  // larger than an object header can store
   given.digest = "wrong";
   write_recording(folder_ / "a.h5", given, recording.sensors, &recording.truth);
   const RecordingInfo found = read_info(folder_ / "a.h5");

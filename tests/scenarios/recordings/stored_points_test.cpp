@@ -29,9 +29,9 @@ class StoredPoints : public fixture::Folder {
     imu.accel_m_s2.assign(imu.accel_m_s2.size(), Eigen::Vector3d(0.0, 0.0, 9.8));
     fixture::add_lidar(numbers, recording, "lidar", 12, 20000);
     fixture::add_lidar(numbers, recording, "second", 12, 500);
-    for (std::uint32_t& offset : recording.sensors.lidars[1].offset_ns) offset *= 50;  // over most of a sweep
+    for (std::uint32_t& offset : recording.sensors.lidars[1].offset_ns) offset *= 50;  // points cover most of a sweep
     for (float& intensity : recording.sensors.lidars[0].intensity)
-      intensity *= 200.0f;  // which the reader scales at the very end
+      intensity *= 200.0f;  // the reader scales the intensity at the end
     export_mcap(recording.sensors, {}, folder_ / "a.mcap");
   }
   Imported read(const std::filesystem::path& scratch) {

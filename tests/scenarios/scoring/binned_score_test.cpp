@@ -46,7 +46,7 @@ TEST(BinnedScores, AnErrorOfDeepSamplesStaysInTheirBins) {
   std::size_t deep = 0, shallow = 0;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
     if (truth.clipped_axes(k) == 0) {
-      estimate.rates[k].w_WI_I_rad_s.x() += 50.0;  // must count nowhere
+      estimate.rates[k].w_WI_I_rad_s.x() += 50.0;  // this error must not affect any score
     } else if (truth.depth_rad_s(k) >= 1.0) {
       estimate.rates[k].w_WI_I_rad_s.x() += 3.0;
       ++deep;
@@ -101,7 +101,7 @@ TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
   Estimate estimate = perfect_estimate(recording);
   for (RateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
-    rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither
+    rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither clipped nor affected
   }
   const auto values = scores(Kind::rate, estimate, recording);
   EXPECT_EQ(values.at("rate_coverage_3sigma"), 1.0);

@@ -53,13 +53,13 @@ sim::Recording hand_made() {
 TEST(MotionSummary, OfAMotionMadeByHand) {
   const sim::Recording recording = hand_made();
   const MotionSummary motion = summarise_motion(recording.sensors, recording.truth);
-  EXPECT_NEAR(motion.path_m, 2.0, 1.1e-3);  // a step of 1 mm at either end
+  EXPECT_NEAR(motion.path_m, 2.0, 1.1e-3);  // an additional step of 1 mm at either end
   EXPECT_NEAR(motion.moving_s, 1.0, 1e-9);
   EXPECT_NEAR(motion.rest_at_end_s, 0.5, 1e-3);
   EXPECT_DOUBLE_EQ(motion.peak_rate_rad_s, 20.0);
   EXPECT_DOUBLE_EQ(motion.peak_accel_m_s2, 90.0);
   EXPECT_NEAR(motion.flight_share, 0.25, 1e-3);
-  EXPECT_EQ(motion.impacts, 2u);  // the third comes too soon after the second
+  EXPECT_EQ(motion.impacts, 2u);  // the third impact is too close to the second
   EXPECT_EQ(motion.samples, 100u);
   EXPECT_EQ(motion.clipped_samples, 100u);
   EXPECT_EQ(motion.axis_clipped_samples, (std::array<std::size_t, 3>{0, 100, 20}));

@@ -5,7 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// Made once.
+/// The recording is generated once.
 inline const sim::Recording& rig() {
   static const sim::Recording recording = testing::synthetic_rig();
   return recording;

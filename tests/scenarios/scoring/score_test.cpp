@@ -86,7 +86,7 @@ TEST(RateScores, ASegmentIsJudgedByItsMeanAndTheWorstSampleByItself) {
   }
   const auto wild = scores(Kind::rate, alternating, rig()), shifted = scores(Kind::rate, offset, rig());
   EXPECT_NEAR(wild.at("rate_error_clipped_max_rad_s"), 2.0, 1e-12);
-  EXPECT_LT(wild.at("rate_error_segment_max_rad_s"), 0.1);  // one sample more of a sign, over at least twenty
+  EXPECT_LT(wild.at("rate_error_segment_max_rad_s"), 0.1);  // one sample more with this sign, of at least twenty
   EXPECT_NEAR(shifted.at("rate_error_segment_max_rad_s"), 2.0, 1e-12);
 }
 
@@ -229,7 +229,7 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   const std::size_t half = estimate.poses.size() / 2;
   for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
     estimate.poses[k].covariance.diagonal().head<3>().setConstant(0.01 * 0.01);
-    if (k > 0) estimate.poses[k].p_WA_m.x() += 0.029;  // the first pose aligns the two
+    if (k > 0) estimate.poses[k].p_WA_m.x() += 0.029;  // the first pose aligns both trajectories
   }
   EXPECT_EQ(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 1.0);
   for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.x() += 0.002;

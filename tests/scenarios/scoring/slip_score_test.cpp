@@ -110,7 +110,7 @@ TEST(SlipScores, AFalseEventAndALostOneCount) {
   const auto values =
       scores(Kind::position, claims_within(recording, {{2.0, 3.0}, {5.3, 5.4}, {7.0, 7.2}, {8.0, 8.2}}), recording);
   EXPECT_EQ(values.at("slip_precision"), 0.5);
-  EXPECT_EQ(values.at("slip_recall"), 0.5);  // a quarter of the second event is not half of it
+  EXPECT_EQ(values.at("slip_recall"), 0.5);  // a quarter of the second event is less than half of it
 }
 
 TEST(SlipScores, WeakAndShortEventsAreNobodysLossAndNobodysFault) {

@@ -51,7 +51,7 @@ TEST(MedianBootstrap, AgreesWithResamplesMadeOneByOne) {
     const auto share_at_most = [&](double end) {
       return below[static_cast<std::size_t>(std::clamp(std::floor(end), 1.0, static_cast<double>(n))) - 1];
     };
-    // medians are whole or half numbers: the share jumps past 2.5 and 97.5 % at the end itself
+    // medians are multiples of a half: the share crosses 2.5 and 97.5 % exactly at the end
     EXPECT_LE(share_at_most(interval.low - 1.0), 0.025 + 0.004) << n;
     EXPECT_GE(share_at_most(interval.low + 1.0), 0.025 - 0.004) << n;
     EXPECT_LE(share_at_most(interval.high - 1.0), 0.975 + 0.004) << n;

@@ -65,7 +65,7 @@ TEST(PartialDependence, IntervalsHoldTheTruthAsOftenAsTheySay) {
       }
     }
     EXPECT_EQ(all, 500 * 8);
-    const double most = centre == Centre::mean ? 0.98 : 0.995;  // the exact interval of 15 values is of 96.5 %
+    const double most = centre == Centre::mean ? 0.98 : 0.995;  // the exact interval of 15 values has a level of 96.5 %
     EXPECT_GT(held, all * 0.94);
     EXPECT_LT(held, all * most);
     EXPECT_LT(held_end, all * 0.9);

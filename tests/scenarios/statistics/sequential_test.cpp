@@ -62,7 +62,7 @@ TEST(SequentialSignTest, SpendsWhatItSays) {
     EXPECT_NEAR(fair.positive + fair.negative, last.spent(), 1e-12);
     EXPECT_NEAR(fair.positive, fair.negative, 1e-12);
     EXPECT_LE(last.spent(), 0.1);
-    EXPECT_GT(last.spent(), 0.05);  // the rest is lost to whole numbers
+    EXPECT_GT(last.spent(), 0.05);  // whole numbers use a part of the risk
   }
 }
 

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::string kOverlap = "map_overlap";            // higher is better
-const std::string kCoverage = "rate_coverage_3sigma";  // has a target
+const std::string kCoverage = "rate_coverage_3sigma";  // this metric has a target
 
 /// Values contains the values of a method on the seeds 1, 2, ...; a missing value means that the run failed.
 using Values = std::vector<std::optional<double>>;

@@ -32,7 +32,7 @@ Outcome outcome_of(std::uint64_t seed) {
   outcome.scores = {{kError, 0.01 + 0.002 * number},
                     {kShare, 0.9 + 0.002 * number},
                     {kNees, 0.4 + 0.1 * number},
-                    {kOffset, 1e-4 * (number - 8.0)},  // early and late
+                    {kOffset, 1e-4 * (number - 8.0)},  // alternates between early and late
                     {"map_failed", 0.0},
                     {"estimate_cpu_s", number}};
   return outcome;

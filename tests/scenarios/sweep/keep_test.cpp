@@ -96,7 +96,7 @@ TEST_F(KeepTest, WhichDrawsFollowsFromTheRows) {
     for (const auto& [seed, value] : std::initializer_list<std::pair<std::uint64_t, std::optional<double>>>{
              {1, 0.1}, {2, 0.5}, {3, failed}, {4, 0.5}, {5, 0.2}, {6, nan}}) {
       add(seed, "rolling", value);
-      add(seed, "oracle", 1.0 - value.value_or(0.0));  // is given the truth: says nothing of what to keep
+      add(seed, "oracle", 1.0 - value.value_or(0.0));  // an oracle, which does not affect the kept draws
     }
     add(7, "tumble", 0.3);
   }

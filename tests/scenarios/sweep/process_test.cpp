@@ -31,7 +31,7 @@ std::string read_all(Process& process) {
 }
 
 TEST(Process, HandsOverWhatTheChildWrites) {
-  const std::string large(300000, 'x');  // more than a pipe holds
+  const std::string large(300000, 'x');  // larger than the buffer of a pipe
   Process process([&](int fd) { write_all(fd, large); }, false);
   EXPECT_EQ(read_all(process), large);
   EXPECT_TRUE(process.wait().normal);

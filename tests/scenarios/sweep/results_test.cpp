@@ -74,7 +74,7 @@ TEST_F(ResultsTest, DrawsAndCertificatesComeBack) {
     results.store(DrawValues{"hill", 3, {{"motion_path_m", 7.5}, {"motion_several_axes_share", std::nan("")}}});
     results.store(DrawValues{"hill", 3, {{"motion_path_m", 8.5}}});
     results.store(certificate);
-    results.store(certificate);  // replaces itself
+    results.store(certificate);  // replaces the same certificate
   }
   const Results results(path(), Results::Mode::read_only);
   const std::vector<DrawValues> draws = results.draws();

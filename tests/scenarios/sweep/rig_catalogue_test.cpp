@@ -51,7 +51,7 @@ TEST(HillSuite, DrawsOnThirtySeeds) {
 /// A RigExpected describes the purpose of a scenario.
 struct RigExpected {
   const char* scenario;
-  const char* touched;  ///< beginning of the name of a surface that the rig meets, the ground apart; "" for none
+  const char* touched;  ///< prefix of a surface (not the ground) that the rig touches; "" for none
   double fall_least_m;  ///< from the highest point to the end
   double flight_least_s;
 };
@@ -126,7 +126,7 @@ double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
 
 // the expected values are those of RepoIMU's pendulum, segment 3: models/README.md
 TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
-  std::size_t railed_force = 0;  // of all draws: a whip may fall between two of the accelerometer's readings
+  std::size_t railed_force = 0;  // over all draws, because a whip may be between two accelerometer readings
   for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
     const sim::Recording recording = sim::simulate(
         sim::BuiltSituation(draw(tree_data(), load_scenario(tree_data(), "swing"), seed), tree_data().models()));
@@ -136,9 +136,9 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
     double fastest_rad_s = 0.0;
     for (std::size_t k = 0; k < rate.size(); ++k) {
       beyond += std::abs(rate[k].z()) > 10.29;
-      railed_force += imu.accel_m_s2[k].x() > 18.9;  // the element's scale: 3 sigma below 19.5
+      railed_force += imu.accel_m_s2[k].x() > 18.9;  // the scale of the element: 3 sigma below 19.5
       fastest_rad_s = std::max(fastest_rad_s, rate[k].norm());
-      EXPECT_LT(imu.gyro_rad_s[k].cwiseAbs().maxCoeff(), 12.0);  // a tilt of 3 sigma moves the rail by some 10 %
+      EXPECT_LT(imu.gyro_rad_s[k].cwiseAbs().maxCoeff(), 12.0);  // a tilt of 3 sigma moves the limit by about 10 %
     }
     const double share = static_cast<double>(beyond) / static_cast<double>(rate.size());
     EXPECT_GT(share, 0.003) << seed;

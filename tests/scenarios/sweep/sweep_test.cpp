@@ -23,7 +23,7 @@ Suite small_suite(std::uint64_t last_seed) {
   suite.scenarios = {"roll"};
   suite.first_seed = 1;
   suite.last_seed = last_seed;
-  suite.methods = {"rate/raw", "rolling", "icp"};  // icp is not for the sphere: left out
+  suite.methods = {"rate/raw", "rolling", "icp"};  // icp does not apply to the sphere
   suite.timeout_s = 60;
   return suite;
 }
@@ -186,7 +186,7 @@ TEST_F(SweepTest, TenMillionSeedsArePlannedOneAtATime) {
   const SweepProgress progress = sweep(data(), small_suite(10'000'000), folder_ / "a.db", options);
   EXPECT_EQ(progress.draws_total, 10'000'000u);
   EXPECT_EQ(progress.outcomes, 2u);
-  EXPECT_LT(peak_mib() - before_mib, 50.0);  // the plan of all of them at once was 4 GB
+  EXPECT_LT(peak_mib() - before_mib, 50.0);  // a plan of all draws at once would need 4 GB
 }
 
 TEST_F(SweepTest, RefusesADatabaseOfOtherScenarios) {
@@ -211,7 +211,7 @@ TEST_F(SweepTest, WrongUseIsBadInputBeforeAnythingRuns) {
   suite.scenarios = {"no_such_scenario"};
   EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
   suite = small_suite(1);
-  suite.methods = {"icp"};  // for the rig alone
+  suite.methods = {"icp"};  // only for the rig
   EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
   suite = small_suite(1);
   suite.last_seed = 0;

@@ -84,7 +84,7 @@ TEST(TrueInputs, ExactRangesLieWhereTheBeamsHit) {
   EXPECT_GT(largest_miss_m(recording.sensors, recording.truth, 17), 0.03) << "the device errs by 2 cm, one sigma";
   sim::Sensors sensors = recording.sensors;
   ASSERT_TRUE(input_named("lidar_ranges_exact").replace(sensors, recording.truth));
-  EXPECT_LT(largest_miss_m(sensors, recording.truth, 17), 1e-4);  // floats at 40 m
+  EXPECT_LT(largest_miss_m(sensors, recording.truth, 17), 1e-4);  // float rounding at 40 m
 }
 
 TEST(TrueInputs, UnbentSweepsLieRightAtOneInstant) {

@@ -72,7 +72,7 @@ TEST(AboveGround, TwoShortDipsAreNotOneLong) {
   twice.p_WB_m[100].z() += 0.5;
   EXPECT_NO_THROW(require_above_ground(slope(), twice, "lidar", kSensor_B_m));
   Truth longer = dip(0.04, 120);
-  longer.p_WB_m[31].z() += 0.5;  // out once near the start: what is left is still long
+  longer.p_WB_m[31].z() += 0.5;  // outside once near the start; the remaining interval is still long
   EXPECT_THROW(require_above_ground(slope(), longer, "lidar", kSensor_B_m), SimulationFailure);
 }
 
@@ -86,10 +86,10 @@ TEST(AboveGround, DepthIsTheDistanceFromTheTriangleAbove) {
   engine::World world = testing::world_of(
       "<mujoco><asset><hfield name='ground' nrow='2' ncol='2' size='1 1 1 0.3'/></asset><worldbody><geom type='hfield' "
       "hfield='ground'/></worldbody></mujoco>");
-  world.model->hfield_data[1] = 1.0f;  // the corner +x -y alone is high: the upper half lies level
+  world.model->hfield_data[1] = 1.0f;  // only the corner +x -y is high, so the upper half is level
   const engine::Field field(*world.model, 0);
   EXPECT_NEAR(field.depth_m({-0.5, 0.5, -0.2}), 0.2, 1e-12);
-  EXPECT_NEAR(field.depth_m({0.5, -0.5, 0.2}), 0.3 / std::sqrt(1.5), 1e-12);  // 0.5 high there, slopes of 0.5
+  EXPECT_NEAR(field.depth_m({0.5, -0.5, 0.2}), 0.3 / std::sqrt(1.5), 1e-12);  // height of 0.5 there, slopes of 0.5
   EXPECT_NEAR(field.depth_m({0.5, -0.5, 0.8}), -0.3 / std::sqrt(1.5), 1e-12);
 }
 

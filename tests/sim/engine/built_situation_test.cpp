@@ -130,7 +130,7 @@ TEST(BuiltSituation, WhatTheEngineIsSparedChangesNoBit) {
     // for a sphere the engine tests every pair, whatever a tree contains; contacts of a rig have the order of the
     // engine's tree
     whole.model->opt.disableflags = situation.robot.type == "sphere" ? mjDSBL_MIDPHASE : 0;
-    for (int i = 0; i < whole.model->ngeom; ++i) {  // a box as the compiler gives one
+    for (int i = 0; i < whole.model->ngeom; ++i) {  // a bounding box as from the compiler
       if (whole.model->geom_type[i] == mjGEOM_HFIELD)
         std::fill(whole.model->geom_aabb + 6 * i + 3, whole.model->geom_aabb + 6 * i + 6, 30.0);
     }
@@ -138,7 +138,7 @@ TEST(BuiltSituation, WhatTheEngineIsSparedChangesNoBit) {
     other.model->opt.gravity[2] *= 1.0 + 1e-9;
     const BodyState expected = fallen(std::move(whole));
     EXPECT_TRUE(same_bits(fallen(engine::copy_of(spared.world())), expected));
-    EXPECT_FALSE(same_bits(fallen(std::move(other)), expected));  // and a bit would be seen
+    EXPECT_FALSE(same_bits(fallen(std::move(other)), expected));  // negative control: a changed bit is detected
   }
 }
 

@@ -95,9 +95,9 @@ TEST(FieldContact, ContactsAreTheEngines) {
     }
     ++(*count > 0 ? touching : clear);
     several += *count > 1;
-    ASSERT_LT(difference(contacts, *count, engine), 1e-9) << "strut " << i;  // 5e-11, of the normal, is the worst
+    ASSERT_LT(difference(contacts, *count, engine), 1e-9) << "strut " << i;  // 5e-11 for the normal is the largest
   }
-  EXPECT_GT(clear, 4000);  // all kinds were there
+  EXPECT_GT(clear, 4000);  // all cases must occur
   EXPECT_GT(touching, 1000);
   EXPECT_GT(several, 700);
   EXPECT_GT(deep, 4000);
@@ -109,7 +109,7 @@ TEST(FieldContact, TheComparisonSeesAMicrometre) {
   const Eigen::Quaterniond level(Eigen::AngleAxisd(1.5, Vector3d::UnitY()));
   Vector3d at_m(0.0, 0.0, 0.5);
   std::optional<int> count = 0;
-  for (; count && *count == 0; at_m.z() -= 0.002) {  // down to the first touch
+  for (; count && *count == 0; at_m.z() -= 0.002) {  // down to the first contact
     ground.put(at_m, level);
     count = ground.ours(contacts);
   }
@@ -129,7 +129,7 @@ TEST(FieldContact, LeavesToTheEngineWhatItCannotTell) {
   EXPECT_EQ(turned.ours(contacts), std::nullopt);
   level.put({std::numeric_limits<double>::quiet_NaN(), 0, 2}, upright);
   EXPECT_EQ(level.ours(contacts), std::nullopt);
-  level.put({0, 0, -1}, upright);  // below the foot
+  level.put({0, 0, -1}, upright);  // below the base
   EXPECT_EQ(level.ours(contacts), std::nullopt);
   level.put({0, 0, 0.25}, upright);  // its lower end is in the ground
   EXPECT_EQ(level.ours(contacts), std::nullopt);

@@ -73,7 +73,7 @@ TEST_F(Flight, CentreOfMassFeelsNothing) {
     before = after;
   }
   EXPECT_LT(largest, 1e-6);        // measured 3e-12
-  EXPECT_GT(largest_beside, 1.0);  // 1 cm beside it: w^2 r = 3.2 m/s^2
+  EXPECT_GT(largest_beside, 1.0);  // 1 cm off: w^2 r = 3.2 m/s^2
 }
 
 TEST_F(Flight, WrenchActsAtTheCentreOfMassInWorldAxes) {

@@ -59,8 +59,8 @@ TEST(Prism, OutOfReachAndWithin) {
   EXPECT_EQ(meet({0.2, 0.2, 0.51}, {0.3, 0.3, 2.0}, kLevel, 0.5, closest), Meeting::apart);
   EXPECT_EQ(meet({0.4, -0.51, -1.0}, {0.4, -2.0, -1.0}, kLevel, 0.5, closest), Meeting::apart);
   EXPECT_EQ(meet({0.2, 0.2, -0.1}, {0.3, 0.3, 2.0}, kLevel, 0.5, closest), Meeting::pierced);
-  EXPECT_EQ(meet({-1.0, 0.3, -0.2}, {2.0, 0.3, -0.2}, kLevel, 0.5, closest), Meeting::pierced);  // right through
-  EXPECT_EQ(meet({0.2, 0.2, 1e-6}, {0.3, 0.3, 2.0}, kLevel, 0.5, closest), Meeting::pierced);    // all but touching
+  EXPECT_EQ(meet({-1.0, 0.3, -0.2}, {2.0, 0.3, -0.2}, kLevel, 0.5, closest), Meeting::pierced);  // through the prism
+  EXPECT_EQ(meet({0.2, 0.2, 1e-6}, {0.3, 0.3, 2.0}, kLevel, 0.5, closest), Meeting::pierced);    // nearly touching
   EXPECT_EQ(meet({-0.6, 0.3, -0.2}, {-0.1, -0.7, -0.2}, kLevel, 0.1, closest), Meeting::apart);  // past the corner
 }
 

@@ -102,7 +102,7 @@ TEST(Patch, BurstSpinsTheSphereThereAndNowhereElse) {
     }
   }
   EXPECT_GT(labelled * 0.0005, 0.3);
-  EXPECT_GT(rolled_m, 1.2);  // the way is 1 m: pure rolling is visibly wrong
+  EXPECT_GT(rolled_m, 1.2);  // the path is 1 m, so pure rolling has a large error
   EXPECT_NEAR(truth.p_WB_m.back().x(), 1.0, 0.02);
 }
 

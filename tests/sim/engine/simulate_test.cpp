@@ -54,7 +54,7 @@ DeadReckoning integrate(const Recording& recording) {
 
 TEST(Simulate, IntegralOfTheSamplesIsTheMotionThroughImpacts) {
   const DeadReckoning r = integrate(simulate(built(tumble_down(4.0, 2000.0))));
-  EXPECT_GT(r.peak_m_s2, 60.0);  // it did hit the ground
+  EXPECT_GT(r.peak_m_s2, 60.0);  // it must hit the ground
   EXPECT_GT(r.peak_rad_s, 6.0);
   EXPECT_NEAR(r.attitude_rad, 0.0, 1e-8);
   EXPECT_NEAR(r.velocity_m_s, 0.0, 1e-7);
@@ -94,7 +94,7 @@ TEST(Simulate, TruthIsCompleteAndBeginsAtRest) {
   EXPECT_EQ(r.sensors.imus[0].time_ns.size(), 200u);
   double fastest = 0.0;
   for (std::size_t k = 0; k < 1000; ++k) fastest = std::max(fastest, truth.v_WB_m_s[k].norm());
-  EXPECT_LT(fastest, 0.005);  // the push begins at 0.5 s
+  EXPECT_LT(fastest, 0.005);  // the push starts at 0.5 s
   ASSERT_FALSE(truth.contacts.empty());
   for (const ContactTruth& contact : truth.contacts) {
     ASSERT_GE(contact.surface_id, 0);
@@ -107,7 +107,7 @@ TEST(Simulate, TruthIsCompleteAndBeginsAtRest) {
   for (const ContactTruth& contact : truth.contacts) {
     if (contact.time_ns == 250'000'000) weight_n += contact.normal_force_n * contact.normal_W.z();
   }
-  EXPECT_NEAR(weight_n, 8.0 * 9.80665, 2.0);  // friction carries a little on the relief
+  EXPECT_NEAR(weight_n, 8.0 * 9.80665, 2.0);  // friction supports a part of it on the relief
 }
 
 TEST(Simulate, CentreOfMassOffItsPlaceMovesTheTrueMountingAndNotTheCalibration) {
@@ -165,7 +165,7 @@ TEST(Simulate, NeverMovingFailsTheDraw) {
 TEST(Simulate, StayingInTheGroundFailsTheDraw) {
   Situation situation = tumble_down(4.0, 100.0);
   situation.motion.values.set("lift_m_s", 10.0);
-  situation.robot.values.set("contact_time_s", 0.15);  // padding so soft that the ground swallows the cage
+  situation.robot.values.set("contact_time_s", 0.15);  // padding so soft that the cage sinks into the ground
   EXPECT_THROW(
       {
         try {

@@ -35,7 +35,7 @@ TEST(Allan, AgreesWithTheDefinitionOnASeriesWorkedByHand) {
   for (std::size_t i = 0; i + 3 < series.size(); ++i)
     sum_2 += std::pow((series[i + 2] + series[i + 3] - series[i] - series[i + 1]) / 2.0, 2);
   const auto curve = allan_deviation(series, 0.5, 10);
-  ASSERT_EQ(curve.size(), 2u);  // clusters of 1 and 2: a ninth of 18 samples
+  ASSERT_EQ(curve.size(), 2u);  // clusters of 1 and 2: at most a ninth of 18 samples
   EXPECT_NEAR(curve[0].deviation, std::sqrt(sum_1 / 2.0 / 17.0), 1e-14);
   EXPECT_NEAR(curve[1].deviation, std::sqrt(sum_2 / 2.0 / 15.0), 1e-14);
   EXPECT_EQ(curve[1].tau_s, 1.0);
@@ -47,20 +47,22 @@ TEST(Allan, WhiteNoiseFallsWithTheRootOfTime) {
   int inside = 0;
   for (const AllanPoint& point : curve) {
     const double expected = white_deviation(0.3 * std::sqrt(0.01), point.tau_s);
-    const AllanInterval interval = confidence_interval(point, AllanNoise::white, 3.5);  // false alarm 0.05 % a point
+    // false alarm rate 0.05 % per point
+    const AllanInterval interval = confidence_interval(point, AllanNoise::white, 3.5);
     EXPECT_LT(interval.low, expected) << point.tau_s << " s";
     EXPECT_GT(interval.high, expected) << point.tau_s << " s";
     const AllanInterval narrow = confidence_interval(point, AllanNoise::white, 1.0);
     inside += narrow.low < expected && expected < narrow.high ? 1 : 0;
   }
-  EXPECT_GT(inside, 6);  // of some 20 points two thirds; neighbours are dependent
+  EXPECT_GT(inside, 6);  // two thirds of about 20 points; neighbours are correlated
 }
 
 TEST(Allan, RandomWalkRisesWithTheRootOfTime) {
   const double step = 0.02, period_s = 0.1;
   const auto curve = allan_deviation(walk(50'000, step), period_s);
   for (const AllanPoint& point : curve) {
-    if (point.cluster < 10) continue;  // a walk in steps is 1 + 1/(2 m^2) above the continuous one's variance
+    // the variance of a discrete random walk is 1 + 1/(2 m^2) times that of the continuous one
+    if (point.cluster < 10) continue;
     const double expected = walk_deviation(step / std::sqrt(period_s), point.tau_s);
     const AllanInterval interval = confidence_interval(point, AllanNoise::walk, 3.5);
     EXPECT_LT(interval.low, expected) << point.tau_s << " s";
@@ -95,7 +97,7 @@ TEST(Allan, GaussMarkovTendsToItsTwoLimits) {
   EXPECT_NEAR(gauss_markov_deviation(0.1, 100.0, 0.02) / walk_deviation(0.1 * std::sqrt(2.0 / 100.0), 0.02), 1.0, 1e-3);
   EXPECT_NEAR(gauss_markov_deviation(0.1, 1.0, 1e4) / white_deviation(0.1 * std::sqrt(2.0), 1e4), 1.0, 1e-3);
   EXPECT_NEAR(gauss_markov_deviation(0.1, 100.0, 0.0999999) / gauss_markov_deviation(0.1, 100.0, 0.1000001), 1.0, 1e-5);
-  EXPECT_NEAR(gauss_markov_deviation(1.0, 100.0, 189.0), 0.6174, 1e-3);  // its peak: 0.437 sqrt(2), at 1.89 T
+  EXPECT_NEAR(gauss_markov_deviation(1.0, 100.0, 189.0), 0.6174, 1e-3);  // maximum: 0.437 sqrt(2), at 1.89 T
 }
 
 TEST(Allan, MeanOfAxesCountsThemAll) {

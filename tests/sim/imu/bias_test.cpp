@@ -77,7 +77,7 @@ TEST(BiasStage, InRunHasAFlatFloorAtItsFigure) {
   const Bias::Params params{.in_run = 3.0, .in_run_s = 1000.0};
   for (double tau_s = 5.0; tau_s <= 500.0; tau_s *= 1.3)
     EXPECT_NEAR(Bias::in_run_deviation(params, tau_s), 3.0, 0.05 * 3.0) << tau_s << " s";
-  EXPECT_LT(Bias::in_run_deviation(params, 1e5), 0.6);  // bounded: a walk would go on rising
+  EXPECT_LT(Bias::in_run_deviation(params, 1e5), 0.6);  // bounded, whereas a random walk would continue to grow
 }
 
 TEST(BiasStage, InRunFollowsItsClosedForm) {
@@ -85,7 +85,8 @@ TEST(BiasStage, InRunFollowsItsClosedForm) {
   const auto curve = curve_of(params, 0.02, 2000.0, 3);
   ASSERT_GT(curve.size(), 15u);
   for (const AllanPoint& point : curve) {
-    if (point.cluster < 10) continue;  // the process is sampled, not averaged: 1 + 1/(2 m^2) in the variance
+    // the process is sampled, not averaged: the variance is 1 + 1/(2 m^2) times as large
+    if (point.cluster < 10) continue;
     const double expected = Bias::in_run_deviation(params, point.tau_s);
     const AllanInterval interval = confidence_interval(point, AllanNoise::flicker, 3.5);
     EXPECT_LT(interval.low, expected) << point.tau_s << " s";
@@ -102,7 +103,7 @@ TEST(BiasStage, SameStreamSameBiasWhereverItIsCut) {
   const Bias::Params params{0.1, 0.2, 10.0, 0.05};
   Bias whole(params, 0.01, Stream(7, "test"));
   for (int k = 0; k < 50; ++k) whole.next();
-  Bias rest = whole;  // the state is the object
+  Bias rest = whole;  // the object is the state
   for (int k = 0; k < 50; ++k) ASSERT_EQ(whole.next(), rest.next());
 }
 

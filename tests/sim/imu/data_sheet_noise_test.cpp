@@ -132,7 +132,8 @@ TEST_P(DataSheetNoise, BiasInstabilityOfAnHourIsTheFloor) {
 
 TEST_P(DataSheetNoise, RandomWalkOfAnHourAgrees) {
   const Curves curves = at_rest(only({"gyro_bias_walk_rad_s_sqrt_s", "accel_bias_walk_m_s2_sqrt_s"}), kHour_s, 13);
-  if (number("gyro_bias_walk_rad_s_sqrt_s") == 0.0) {  // the sheet states none: a constant, but for the last bits
+  // the sheet states no random walk: constant except for the last bits
+  if (number("gyro_bias_walk_rad_s_sqrt_s") == 0.0) {
     EXPECT_EQ(curves.gyro.front().deviation, 0.0);
     EXPECT_LT(curves.accel.front().deviation, 1e-14);
     return;

@@ -88,7 +88,8 @@ TEST(Elements, OneAtItsRailReadsAPlaneAndMovesTheAxesBeside) {
     // the readings of unsaturated elements are right nevertheless
     ASSERT_NEAR(1.01 * reading.x() + 0.03 * reading.y() - 0.05 * reading.z(),
                 1.01 * signal.x() + 0.03 * signal.y() - 0.05 * signal.z(), 1e-12);
-    ASSERT_GT(std::abs(reading.x() - signal.x()), 0.05 * 2.0 * 0.9);  // 5 % of 2 rad/s or more: no small thing
+    // 5 % of at least 2 rad/s, which is a large effect
+    ASSERT_GT(std::abs(reading.x() - signal.x()), 0.05 * 2.0 * 0.9);
   }
 }
 
@@ -103,7 +104,7 @@ TEST(Elements, TwoAtTheirRailsLeaveOneTruthAndThreeNone) {
   flags = 0;
   const Vector3d three = clip(elements, {14.0, -13.0, 15.0}, &flags), others = clip(elements, {20.0, -25.0, 13.0});
   EXPECT_EQ(flags, 0b111);
-  EXPECT_NEAR((three - others).norm(), 0.0, 1e-12);  // only the signs are left
+  EXPECT_NEAR((three - others).norm(), 0.0, 1e-12);  // only the signs remain
   EXPECT_NEAR((tilted() * three - Vector3d(kRail, -kRail, kRail)).norm(), 0.0, 1e-12);
 }
 
@@ -127,7 +128,7 @@ TEST(Elements, TheFlagIsThatOfTheElementAndNotOfTheAxis) {
   EXPECT_EQ(clip({axes, Vector3d::Zero()}, {10.3, 0.0, 0.0}, &flags), Vector3d(10.3, 0.0, 0.0));
   EXPECT_EQ(flags, 0);
   axes(0, 0) = 1.0;
-  axes(0, 1) = 0.05;  // and 10.1 is not, but 5 % of 9 about y are sensed too
+  axes(0, 1) = 0.05;  // 10.1 does not, but the element also senses 5 % of 9 about y
   clip({axes, Vector3d::Zero()}, {10.1, 9.0, 0.0}, &flags);
   EXPECT_EQ(flags, 0b001);
 }
@@ -150,7 +151,7 @@ TEST(Elements, AreDrawnAsStated) {
   for (int device = 0; device < kDevices; ++device) {
     const Elements drawn(params, Stream(static_cast<std::uint64_t>(device), "imu.gyro.elements"));
     const Matrix3d errors = drawn.axes() - Matrix3d::Identity();
-    ASSERT_LE(errors.cwiseAbs().maxCoeff(), 0.06 + 1e-12);  // cut at three standard deviations
+    ASSERT_LE(errors.cwiseAbs().maxCoeff(), 0.06 + 1e-12);  // limited to three standard deviations
     squares += errors.cwiseAbs2();
     offsets += drawn.offset().cwiseAbs2();
   }

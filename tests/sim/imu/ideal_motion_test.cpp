@@ -147,7 +147,7 @@ TEST(IdealMotion, SamplesIntegrateToTheMotionOfTheEngine) {
   EXPECT_LT(d.velocity_m_s, 1e-9);
   double peak_m_s2 = 0.0;
   for (const Vector3d& f : recording.sensors.imus[0].accel_m_s2) peak_m_s2 = std::max(peak_m_s2, f.norm());
-  EXPECT_GT(peak_m_s2, 40.0);  // it did hit the ground
+  EXPECT_GT(peak_m_s2, 40.0);  // it must hit the ground
 }
 
 TEST(IdealMotion, PlainMeansWouldNotIntegrateToTheMotion) {

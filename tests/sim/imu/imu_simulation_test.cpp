@@ -76,7 +76,7 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
 
 TEST(ImuSimulation, MountingTurnsTheAxes) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
-  T_BI.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();  // y of I is z of B
+  T_BI.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();  // y of I equals z of B
   const SimulatedImu r = simulated(turning(5.0, 0.1, 0.0), ideal(), T_BI);
   ASSERT_EQ(r.record.gyro_rad_s.size(), 10u);
   EXPECT_NEAR((r.record.gyro_rad_s[5] - Vector3d(0, 5, 0)).norm(), 0.0, 1e-9);
@@ -109,7 +109,8 @@ TEST(ImuSimulation, RailBeforeTheMeanCutsAnOscillationThatTheMeanHides) {
   sensor.values.set("clip_after_low_pass", 1);
   const SimulatedImu after = simulated(truth, sensor);
   ASSERT_EQ(before.record.accel_m_s2.size(), 20u);
-  EXPECT_LT(before.record.accel_m_s2[5].x(), 18.0);  // measured 12.98: the upper halves are cut, the lower ones less
+  // measured 12.98: the upper halves are clipped, the lower ones less
+  EXPECT_LT(before.record.accel_m_s2[5].x(), 18.0);
   EXPECT_EQ(before.record.clip_flags[5], 0b001000);
   EXPECT_NEAR(after.record.accel_m_s2[5].x(), 20.0, 1e-9);
   EXPECT_EQ(after.record.clip_flags[5], 0);
@@ -324,7 +325,7 @@ TEST(ImuSimulation, HandoverQuietensSlowAxes) {
                                                              {"gyro_handover_rad_s", 1.745},
                                                              {"gyro_precise_noise_rad_s_sqrt_hz", 0.001}})
     sensor.values.set(name, value);
-  const SimulatedImu r = simulated(turning(5.0, 10.0), sensor);  // z turns fast
+  const SimulatedImu r = simulated(turning(5.0, 10.0), sensor);  // fast rotation about z
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k)
     sum += (r.record.gyro_rad_s[k] - r.truth.rate_rad_s[k]).cwiseAbs2();

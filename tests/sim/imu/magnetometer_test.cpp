@@ -67,7 +67,7 @@ TEST(MagneticField, SourcesKeepTheirDistanceAndFollowTheSeed) {
   for (const MagneticDipole& dipole : field.dipoles) {
     double nearest_m = 1e9;
     for (const Vector3d& p : path) nearest_m = std::min(nearest_m, (p - dipole.p_W_m).norm());
-    EXPECT_GE(nearest_m, 0.4 - 0.01);  // held against every other position of the path, 1 cm apart
+    EXPECT_GE(nearest_m, 0.4 - 0.01);  // compared with every other position of the path, 1 cm apart
     EXPECT_LE(nearest_m, 1.5);
     EXPECT_GE(dipole.moment_W_a_m2.norm(), 5.0 / 3.0 - 1e-12);
     EXPECT_LE(dipole.moment_W_a_m2.norm(), 15.0 + 1e-12);
@@ -169,7 +169,7 @@ TEST(ImuMagnetometer, SourcesDisturbTheFieldBesideThePath) {
   }
   EXPECT_GT(largest, 1e-6);            // a dipole of 5 A m^2 at a metre makes 0.5 to 1 uT
   EXPECT_LT(largest, 2e-4);            // 15 A m^2 at 0.4 m makes 47 uT
-  EXPECT_GT(largest, 3.0 * smallest);  // local
+  EXPECT_GT(largest, 3.0 * smallest);  // a local disturbance
   EXPECT_EQ(disturbed.record.earth_field_W_t, calm.record.earth_field_W_t);
 }
 

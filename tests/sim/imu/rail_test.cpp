@@ -35,7 +35,7 @@ TEST(RailStage, ClampsEachAxisAndFlagsIt) {
   Rail clamp = rail({.level = 10.5});
   std::uint8_t flags = 0;
   EXPECT_EQ(clamp({11.0, -10.6, 10.5}, 3, flags), Vector3d(10.5, -10.5, 10.5));
-  EXPECT_EQ(flags, 0b011000);  // exactly at the rail is not beyond it
+  EXPECT_EQ(flags, 0b011000);  // a value exactly at the saturation limit does not exceed it
 }
 
 TEST(RailStage, EveryKindLeavesWhatIsWithinTheRailAlone) {
@@ -57,9 +57,9 @@ TEST(RailStage, PlateauDiffersBetweenAxesAndSigns) {
   const Vector3d high = plateau(Vector3d::Constant(20), 0, flags), low = plateau(Vector3d::Constant(-20), 0, flags);
   const std::set<double> levels = {high.x(), high.y(), high.z(), -low.x(), -low.y(), -low.z()};
   EXPECT_EQ(levels.size(), 6u);
-  for (const double level : levels) EXPECT_NEAR(level, 10.5, 0.6 + 1e-12);  // cut at three standard deviations
+  for (const double level : levels) EXPECT_NEAR(level, 10.5, 0.6 + 1e-12);  // limited to three standard deviations
   plateau(Vector3d::Zero(), 0, flags);
-  EXPECT_EQ(plateau(Vector3d::Constant(30), 0, flags), high);  // the same every time
+  EXPECT_EQ(plateau(Vector3d::Constant(30), 0, flags), high);  // the same in every event
   EXPECT_NE(rail({.level = 10.5, .axis_spread = 0.2}, 2)(Vector3d::Constant(20), 0, flags), high);
 }
 
@@ -76,7 +76,7 @@ TEST(RailStage, PlateauDiffersFromOneClippingToTheNextAndKeepsWithinOne) {
     sum += level - 10.5;
     x_of(plateau, 3.0);
   }
-  EXPECT_GT(levels.size(), static_cast<std::size_t>(kEvents) - 10);  // a few are cut at three standard deviations
+  EXPECT_GT(levels.size(), static_cast<std::size_t>(kEvents) - 10);  // a few are limited to three standard deviations
   EXPECT_NEAR(sum / kEvents, 0.0, 5.0 * 0.1 / std::sqrt(kEvents));   // false alarm 6e-7
 }
 
@@ -93,10 +93,10 @@ TEST(RailStage, WrapChangesTheSignAndLosesWholeTurns) {
 
 TEST(RailStage, SlowRecoveryFadesWithItsTime) {
   Rail slow = rail({.level = 10.0, .recovery_s = 0.05, .recovery_share = 0.3});
-  for (int k = 0; k < 2000; ++k) ASSERT_EQ(x_of(slow, 12.0), 10.0);  // a second: fully charged
-  EXPECT_NEAR(x_of(slow, 1.0), 4.0, 1e-6);                           // 1 and 0.3 of the rail
+  for (int k = 0; k < 2000; ++k) ASSERT_EQ(x_of(slow, 12.0), 10.0);  // one second, until it is fully charged
+  EXPECT_NEAR(x_of(slow, 1.0), 4.0, 1e-6);                           // 1 and 0.3 of the saturation limit
   for (int k = 1; k < 100; ++k) x_of(slow, 1.0);
-  EXPECT_NEAR(x_of(slow, 1.0), 1.0 + 3.0 * std::exp(-1.0), 1e-6);  // 100 periods are one time
+  EXPECT_NEAR(x_of(slow, 1.0), 1.0 + 3.0 * std::exp(-1.0), 1e-6);  // 100 periods are one time constant
   for (int k = 0; k < 4000; ++k) x_of(slow, 1.0);
   EXPECT_NEAR(x_of(slow, 1.0), 1.0, 1e-12);
 }
@@ -117,7 +117,7 @@ TEST(RailStage, OffsetHoldsASignalBelowTheRailAtItAndFlagsIt) {
   std::uint8_t flags = 0;
   EXPECT_EQ(slow({8.0, 0, 0}, 0, flags).x(), 10.0);
   EXPECT_EQ(flags, 0b001);
-  for (int k = 0; k < 2000; ++k) x_of(slow, 8.0);  // it does not hold itself there for ever
+  for (int k = 0; k < 2000; ++k) x_of(slow, 8.0);  // the recovery does not keep itself active forever
   EXPECT_NEAR(x_of(slow, 8.0), 8.0, 1e-6);
 }
 

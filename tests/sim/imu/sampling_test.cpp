@@ -38,12 +38,12 @@ TEST(Sampling, IsOffWithoutAWindowOrARateOfItsOwn) {
 TEST(Sampling, AWindowIsThePlainMeanOfItsLastSteps) {
   Sampling four = sampling({.window_s = 0.002});
   four.add(step(8.0, 0b001));
-  EXPECT_EQ(four.output().delivered.x(), 8.0);  // before the window is full: of what there is
+  EXPECT_EQ(four.output().delivered.x(), 8.0);  // before the window is full, the mean of the available values
   for (const double value : {1.0, 2.0, 3.0}) four.add(step(value));
   EXPECT_EQ(four.output().delivered, Vector3d::Constant(3.5));
   EXPECT_EQ(four.output().unclipped, Vector3d::Constant(7.0));
   EXPECT_EQ(four.output().railed, 0b001);
-  four.add(step(6.0, 0b010));  // the 8 has left
+  four.add(step(6.0, 0b010));  // the value 8 has left the window
   EXPECT_EQ(four.output().delivered, Vector3d::Constant(3.0));
   EXPECT_EQ(four.output().railed, 0b010);
 }
@@ -56,7 +56,7 @@ TEST(Sampling, ARateOfItsOwnHoldsTheLastReading) {
     held.add(step(k));
     const double now = held.output().delivered.x();
     if (k > 20 && now != last) {
-      ASSERT_EQ(now, k);  // a new reading is the step's own
+      ASSERT_EQ(now, k);  // a new reading is that of the step
       changes.push_back(k);
     }
     last = now;
@@ -149,7 +149,7 @@ TEST(SampledDevice, ALogFasterThanItsSensorRepeats) {
     accel += r.record.accel_m_s2[k] == r.record.accel_m_s2[k - 1];
     ASSERT_EQ(r.truth.gyro_unclipped_rad_s[k] == r.truth.gyro_unclipped_rad_s[k - 1],
               r.record.gyro_rad_s[k] == r.record.gyro_rad_s[k - 1]);
-    ASSERT_NE(r.truth.rate_rad_s[k], r.truth.rate_rad_s[k - 1]);  // the truth goes on
+    ASSERT_NE(r.truth.rate_rad_s[k], r.truth.rate_rad_s[k - 1]);  // the truth continues to change
   }
   EXPECT_NEAR(gyro / 96.0, 0.60, 0.02);
   EXPECT_NEAR(accel / 96.0, 0.75, 0.02);

@@ -17,7 +17,7 @@ double gain(double cutoff_hz, double tone_hz) {
   constexpr double kRate_hz = 2000.0;
   LowPass low_pass(cutoff_hz, kRate_hz);
   double in_phase = 0.0, quadrature = 0.0;
-  constexpr int kFirst = 2000, kCount = 2000;  // one second: whole periods of whole-number tones
+  constexpr int kFirst = 2000, kCount = 2000;  // one second, which contains whole periods for integer frequencies
   for (int k = 0; k < kFirst + kCount; ++k) {
     const double phase = 2.0 * std::numbers::pi * tone_hz * k / kRate_hz;
     const double y = low_pass(Vector3d(std::sin(phase), 0, 0)).x();
@@ -109,7 +109,7 @@ TEST(RangeStage, ChangesEachAxisWithHysteresis) {
     return range.pick(1.0, 0.1);
   };
   EXPECT_EQ(after({1.0, 3.0, -2.5}), Vector3d(0.1, 1.0, 1.0));
-  EXPECT_EQ(after({1.95, 1.95, -1.7}), Vector3d(0.1, 1.0, 0.1));  // y: not yet below 1.8; z is
+  EXPECT_EQ(after({1.95, 1.95, -1.7}), Vector3d(0.1, 1.0, 0.1));  // y: not yet below 1.8, but z is
   EXPECT_EQ(after({-2.01, 1.79, -1.95}), Vector3d(1.0, 0.1, 0.1));
 }
 

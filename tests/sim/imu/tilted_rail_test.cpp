@@ -65,7 +65,7 @@ std::pair<double, int> off_plane(const SimulatedImu& r, const Vector3d& row, dou
   int windows = 0;
   for (std::size_t k = 1; k + 1 < r.record.gyro_rad_s.size(); ++k) {
     const auto whole = [&](std::size_t i) { return r.truth.gyro_unclipped_rad_s[i].z() > kRail_rad_s + 1.5; };
-    if (!whole(k - 1) || !whole(k) || !whole(k + 1)) continue;  // at the rail at every moment of the window
+    if (!whole(k - 1) || !whole(k) || !whole(k + 1)) continue;  // at the saturation limit during the whole window
     largest = std::max(largest, std::abs(row.dot(r.record.gyro_rad_s[k]) - level));
     ++windows;
   }
@@ -101,7 +101,8 @@ TEST(TiltedRail, FreeElementsAreRightAndFreeAxesAreNot) {
       if ((r.record.clip_flags[k] >> i & 1) == 0) {
         ASSERT_NEAR(deficit[i], 0.0, 1e-12) << k;
       } else {
-        ASSERT_GE(deficit[i] * axes.row(i).dot(r.truth.gyro_unclipped_rad_s[k]), 0.0) << k;  // outwards
+        // the deficit points outwards
+        ASSERT_GE(deficit[i] * axes.row(i).dot(r.truth.gyro_unclipped_rad_s[k]), 0.0) << k;
       }
     }
     if (r.record.clip_flags[k] == 0) {
@@ -112,7 +113,7 @@ TEST(TiltedRail, FreeElementsAreRightAndFreeAxesAreNot) {
     }
   }
   EXPECT_GT(clipped, 100);
-  EXPECT_GT(largest, 0.1);  // unflagged axes, off by some hundredths of 5 rad/s
+  EXPECT_GT(largest, 0.1);  // unflagged axes have errors of some hundredths of 5 rad/s
 }
 
 TEST(TiltedRail, CannotBeSeenWhileNothingClips) {
@@ -136,7 +137,7 @@ TEST(TiltedRail, CannotBeSeenWhileNothingClips) {
   EXPECT_THAT(b.record.clip_flags, testing::Each(0));
   const Truth fast = wobbling(1.0, 1.0);
   const SimulatedImu c = simulated(fast, upright), d = simulated(fast, tilted);
-  EXPECT_NE(c.record.gyro_rad_s, d.record.gyro_rad_s);  // and can when something does
+  EXPECT_NE(c.record.gyro_rad_s, d.record.gyro_rad_s);  // negative control: with clipping, they differ
   EXPECT_EQ(c.truth.gyro_unclipped_rad_s, d.truth.gyro_unclipped_rad_s);
 }
 
@@ -174,9 +175,9 @@ TEST(TiltedRail, GivenElementsAreThoseOfTheDeviceAndChangeNoOtherDraw) {
 TEST(TiltedRail, AccelerometerHasElementsOfItsOwn) {
   const Numbers numbers = {{"accel_rail_m_s2", 9.0}, {"accel_element_misalignment", 0.05}};
   const SimulatedImu r =
-      simulated(wobbling(1.0, 0.1), device(numbers, 2000.0));  // a sample a step: no mean hides the plane
+      simulated(wobbling(1.0, 0.1), device(numbers, 2000.0));  // one sample per step, so that no mean hides the plane
   ASSERT_EQ(r.truth.accel_elements.size(), 3u);
-  EXPECT_TRUE(r.truth.gyro_elements.empty());  // upright: nothing to say
+  EXPECT_TRUE(r.truth.gyro_elements.empty());  // upright elements: the list is empty
   int clipped = 0;
   for (std::size_t k = 0; k < r.record.accel_m_s2.size(); ++k) {
     for (int i = 0; i < 3; ++i) {

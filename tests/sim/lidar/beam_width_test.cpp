@@ -81,7 +81,7 @@ TEST(BeamWidth, AnEdgeGivesAMixedReturnBetweenItsSurfaces) {
     near_rays += near;
     both.add((near ? kNear_m : kFar_m) * d.norm(), near ? 0.3 : 0.8, 1.0 / d.norm());
   }
-  ASSERT_GT(near_rays, 2);  // both surfaces take part
+  ASSERT_GT(near_rays, 2);  // both surfaces must contribute
   ASSERT_LT(near_rays, 14);
   ASSERT_EQ(out.record.range_m.size(), 10000u);
   const double range = both.moment / both.energy;

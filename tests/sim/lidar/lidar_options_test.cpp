@@ -30,7 +30,7 @@ using Settings = std::vector<std::pair<const char*, double>>;
 struct Option {
   const char* name;
   Settings on;
-  Settings off;  ///< switched off, with its auxiliary IMUs at values that would show
+  Settings off;  ///< option off, with its related numbers at visible values
 };
 
 void PrintTo(const Option& option, std::ostream* out) {
@@ -129,7 +129,8 @@ TEST(RosetteLidar, FieldOfViewIsTheDataSheets) {
 TEST(SpinningLidar, DeskewIdentityThroughImpacts) {
   Stream chance(7, "test.motion");
   Motion motion = resting(0.2);
-  for (std::size_t i = 1; i < motion.q_WB.size(); ++i) {  // up to 20 rad/s and 5 m/s, other ones every half millisecond
+  // up to 20 rad/s and 5 m/s, with new values every half millisecond
+  for (std::size_t i = 1; i < motion.q_WB.size(); ++i) {
     const Vector3d turn = 0.01 * Vector3d(chance.uniform(-1, 1), chance.uniform(-1, 1), chance.uniform(-1, 1));
     motion.q_WB[i] = motion.q_WB[i - 1] * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     motion.p_WB_m[i] =

@@ -127,7 +127,7 @@ TEST(SpinningLidar, FaultyDriverStampsCompressPackets) {
   std::uint32_t worst_ns = 0;
   for (std::size_t i = 0; i < 32000; ++i)
     worst_ns = std::max(worst_ns, right.record.offset_ns[i] - faulty.record.offset_ns[i]);
-  EXPECT_EQ(worst_ns, 600000u);  // the published error: up to 0.6 ms
+  EXPECT_EQ(worst_ns, 600000u);  // the published error of up to 0.6 ms
   EXPECT_EQ(faulty.record.offset_ns[24 * 16], right.record.offset_ns[24 * 16]);
 }
 
@@ -328,7 +328,7 @@ TEST(LidarSimulation, IntensityIsReflectivityTimesCosine) {
   }
 }
 
-/// The robot turns and its post turns with it: the post hides the same firings whatever the pose.
+/// The robot and its post rotate together, so the post hides the same firings for any pose.
 TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
   const engine::World world = testing::world_of(
       "<mujoco><worldbody><geom type='box' size='3 5 2'/>"

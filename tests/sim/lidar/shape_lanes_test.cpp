@@ -57,7 +57,7 @@ Shape random_shape(Stream& chance, ShapeKind kind, int number) {
   Shape shape;
   shape.kind = kind;
   shape.size_m = Vector3d(chance.uniform(0.1, 3.0), chance.uniform(0.1, 3.0), chance.uniform(0.1, 3.0));
-  if (kind == ShapeKind::plane && number % 3 == 0) shape.size_m.x() = 0.0;  // without edge
+  if (kind == ShapeKind::plane && number % 3 == 0) shape.size_m.x() = 0.0;  // unbounded
   shape.p_FS_m = normals(chance);
   const Vector3d axis = normals(chance).normalized();
   if (number % 4 != 0) shape.R_FS = Eigen::AngleAxisd(chance.uniform(0.0, 3.0), axis).toRotationMatrix();
@@ -86,7 +86,7 @@ TEST_P(ShapeLanes, AreCastRayOfEach) {
           << "shape " << n << ", ray " << i;
     }
   }
-  EXPECT_GT(met, 1000);  // of 32 000; a plane is met from its front alone
+  EXPECT_GT(met, 1000);  // of 32 000; a plane is hit only from its front
 }
 
 INSTANTIATE_TEST_SUITE_P(, ShapeLanes,

@@ -53,7 +53,7 @@ TEST(Throw, LeavesTheHandWithTheStatedVelocityAndSpin) {
   const Truth truth = simulate(built(situation)).truth;
   const std::size_t released = 1601;  // 0.5 s of rest and 0.3 s of throw
   const Vector3d expected(3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 4.0);
-  EXPECT_NEAR((truth.v_WB_m_s[released] - expected).norm(), 0.0, 0.02);  // 1 mm of sag of the hand; one step of gravity
+  EXPECT_NEAR((truth.v_WB_m_s[released] - expected).norm(), 0.0, 0.02);  // the hand sags by 1 mm; one step of gravity
   EXPECT_NEAR((truth.w_WB_B_rad_s[released] - Vector3d(0, 0, 9.0)).norm(), 0.0, 0.02);
   // the path is then a parabola: there is no force at the centre of mass until the body lands, 0.8 s later
   EXPECT_NEAR(truth.f_B_m_s2[released + 1000].norm(), 0.0, 1e-6);
@@ -123,7 +123,7 @@ TEST(Twirl, SpinsAboutXInStrokesAndKeepsTheGripInTheHand) {
   EXPECT_LE(strokes, 7);
   EXPECT_LT(beside, 1.0);
   EXPECT_LT(farthest, 0.05);
-  EXPECT_LT(largest_step_m_s(truth), 0.05);  // no jump: 100 m/s^2 at most
+  EXPECT_LT(largest_step_m_s(truth), 0.05);  // without jumps: at most 100 m/s^2
 }
 
 // without sway the path is x = a sin u, y = b sin 2u, walked `loops` times over 2 pi, with the heading along it

@@ -48,7 +48,7 @@ TEST(Stream, SeedAndNameBothMatter) {
 
 TEST(Stream, BlocksAreTheSequenceAndNeedNoHistory) {
   Stream stream(7, "lidar.range");
-  const Block later = stream.block(1);  // asked for before its turn
+  const Block later = stream.block(1);  // requested before earlier blocks
   stream.bits();
   stream.bits();
   EXPECT_EQ(stream.bits(), (std::uint64_t{later[1]} << 32) | later[0]);

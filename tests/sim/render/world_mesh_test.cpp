@@ -48,7 +48,7 @@ TEST(Tessellation, EnclosesTheVolumeOfThePrimitive) {
       {shape_of(ShapeKind::capsule, {r, h, 0}), 2 * pi * r * r * h + 4.0 / 3.0 * pi * r * r * r}};
   for (const auto& [shape, expected] : cases) {
     const Tessellation fine = tessellate(shape, 128, 1.0), coarse = tessellate(shape, 8, 1.0);
-    // an inscribed polygon of n corners has 1 - 2/3 (pi / n)^2 of the circle's area, and a ball loses twice that
+    // an inscribed polygon of n corners has 1 - 2/3 (pi / n)^2 of the circle's area; a ball loses twice this share
     EXPECT_NEAR(volume(fine), expected, 1.5e-3 * expected) << static_cast<int>(shape.kind);
     EXPECT_GT(volume(coarse), 0.6 * expected) << static_cast<int>(shape.kind);
     EXPECT_LE(volume(coarse), (1.0 + 1e-6) * expected) << "inscribed";
@@ -100,7 +100,7 @@ TEST(WorldMesh, OfAPlaneIsAFieldOfOneCellThatLooksUp) {
   const auto floor = std::find_if(parts.begin(), parts.end(), [](const MeshPart& part) { return part.rows == 2; });
   ASSERT_NE(floor, parts.end());
   ASSERT_EQ(floor->vertices_m.size(), 4u);
-  const auto& v = floor->vertices_m;  // the first triangle of a cell: here, the next, the one above it
+  const auto& v = floor->vertices_m;  // corners of the first triangle of a cell: this one, the next, and the one above
   EXPECT_GT((v[1] - v[0]).cross(v[3] - v[0]).z(), 0.0f);
 }
 

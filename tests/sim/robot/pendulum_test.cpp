@@ -119,7 +119,7 @@ TEST(Reach, TurnsTheJointsToThePoseOrAsNearAsTheyLetIt) {
   const auto position_m = [&] { return Vector3d(Eigen::Map<const Vector3d>(data->xpos + 3 * world.robot_body)); };
   engine::reach(world, T_WB, *data);
   EXPECT_NEAR((position_m() - state.p_WB_m).norm(), 0.0, 1e-4);
-  T_WB.translation().x() += 50.0;  // out of reach: towards it, as far as its attitude lets it
+  T_WB.translation().x() += 50.0;  // out of reach: as near as possible with its attitude
   engine::reach(world, T_WB, *data);
   const Vector3d towards = position_m() - Vector3d(0, 0, kHeight_m);
   EXPECT_TRUE(towards.allFinite());

@@ -77,7 +77,7 @@ TEST(Series, StopsAtItsRangeAndHasAStep) {
   ReadingErrors coarse;
   coarse.quantum = 4.0;
   EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 8.0);
-  coarse.high = 7.5;  // 7 is nearest to 8, which is beyond
+  coarse.high = 7.5;  // 7 would be rounded to 8, which exceeds the limit
   EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 7.5);
 }
 

@@ -49,7 +49,7 @@ TEST(ContactLabel, TheTimeFollowsTheInertia) {
 TEST(ContactLabel, ASpunSphereSlipsUntilItRolls) {
   FreeSphere sphere(level_floor(0.1));
   const Truth truth = sphere.launch({0, 0, kRadius_m}, Vector3d::Zero(), {0, 10.0, 0}, 1.0);
-  // the contact point begins with r w instead of v0
+  // the contact point starts with r w instead of v0
   const double expected_s = slide_time_s(10.0 * kRadius_m, 0.1, sphere.mass_ratio());
   EXPECT_NEAR(first_s(truth, ContactLabel::grip), expected_s, kBlur_s);
   EXPECT_EQ(truth.label[static_cast<std::size_t>(expected_s / 0.001)], ContactLabel::slip);

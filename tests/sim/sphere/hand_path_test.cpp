@@ -43,7 +43,7 @@ TEST(Path, HasItsLengthShapeAndHeading) {
   EXPECT_LT((l.back() - l.front() - Vector2d(1.0, 1.0)).norm(), 1e-12);
   const auto eight = path({PathShape::eight, 5.0});
   EXPECT_LT((eight.back() - eight.front()).norm(), 1e-12);
-  EXPECT_LT((eight[eight.size() / 2] - eight.front()).norm(), 0.01);  // through its crossing
+  EXPECT_LT((eight[eight.size() / 2] - eight.front()).norm(), 0.01);  // passes through its crossing
   EXPECT_GT((path({PathShape::free, 3.0}, 1).back() - path({PathShape::free, 3.0}, 2).back()).norm(), 0.01);
   const auto swaying = path({PathShape::line, 4.0, 0.0, 0.3, 2.0});
   double widest_m = 0.0;
@@ -61,7 +61,7 @@ TEST(Tremor, HasItsRootMeanSquareAndIsSmooth) {
     steepest = std::max(steepest, std::abs(tremor.at(0.001 * (k + 1)) - tremor.at(0.001 * k)) / 0.001);
   }
   EXPECT_NEAR(std::sqrt(power / kSamples), 2.0, 0.05);  // 400 s of 0.7 Hz
-  // eight waves of amplitude a_i = c / f_i have at most the slope 16 pi c, and c <= 2 * 9 Hz * sqrt(2 / 8)
+  // eight waves of amplitude a_i = c / f_i have a slope of at most 16 pi c, and c <= 2 * 9 Hz * sqrt(2 / 8)
   EXPECT_LT(steepest, 16.0 * std::numbers::pi * 9.0);
 }
 
@@ -107,7 +107,7 @@ TEST(HandPath, IsUnsteadyAsItsSeedSays) {
   situation.motion.values.set("hand_seed", 7.0);
   const Truth other = simulate(built(situation)).truth;
   EXPECT_GT((other.p_WB_m.back() - one.p_WB_m.back()).norm(), 1e-3);
-  EXPECT_LT((other.p_WB_m[600] - one.p_WB_m[600]).norm(), 1e-9);  // at rest a hand is steady
+  EXPECT_LT((other.p_WB_m[600] - one.p_WB_m[600]).norm(), 1e-9);  // a hand at rest has no tremor
 }
 
 /// Returns a path with ice on the middle of its line.
@@ -136,7 +136,7 @@ TEST(HandPath, ABurstOfTorqueOnIceSpins) {
   EXPECT_GT(static_cast<double>(count(truth, ContactLabel::slip)) * 0.0005, 0.5);
   double fastest_rad_s = 0.0;
   for (const Eigen::Vector3d& w : truth.w_WB_B_rad_s) fastest_rad_s = std::max(fastest_rad_s, w.norm());
-  EXPECT_NEAR(fastest_rad_s, 5.0 * 0.6 / kRadius_m, 0.35 * 5.0 * 0.6 / kRadius_m);  // strokes vary the speed
+  EXPECT_NEAR(fastest_rad_s, 5.0 * 0.6 / kRadius_m, 0.35 * 5.0 * 0.6 / kRadius_m);  // pushes vary the speed
 }
 
 }  // namespace

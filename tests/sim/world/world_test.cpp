@@ -30,7 +30,7 @@ long count_of(const engine::World& world, const std::string& prefix) {
 /// Returns the height of the highest surface under a position, by the engine's ray.
 double top_m(const engine::World& world, double x_m, double y_m) {
   const engine::DataPtr data(mj_makeData(world.model.get()));
-  data->qpos[2] = 100.0;  // the robot out of the way
+  data->qpos[2] = 100.0;  // moves the robot out of the way
   data->qpos[0] = 15.0;
   mj_forward(world.model.get(), data.get());
   const mjtNum from[3] = {x_m, y_m, 30.0}, down[3] = {0, 0, -1};
@@ -71,7 +71,7 @@ TEST_P(RigWorld, LetsTheRigRestAtTheStart) {
     Situation situation = tumble_down(0.8, 100.0);
     situation.world.type = GetParam();
     situation.seed = seed;
-    const Truth truth = simulate(built(situation)).truth;  // the push begins at 0.5 s
+    const Truth truth = simulate(built(situation)).truth;  // the push starts at 0.5 s
     EXPECT_LT((truth.p_WB_m[900] - truth.p_WB_m[0]).norm(), 0.002) << "seed " << seed;
   }
 }
