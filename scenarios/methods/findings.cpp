@@ -90,7 +90,7 @@ bool any_of(const Estimate& estimate, bool (*about)(About)) {
 const char* kept(const std::string& text) {
   static std::mutex lock;
   static std::set<std::string> all;
-  const std::scoped_lock locked(lock);
+  const std::lock_guard<std::mutex> locked(lock);
   return all.insert(text).first->c_str();
 }
 

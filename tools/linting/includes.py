@@ -22,7 +22,7 @@ _HEADERS = {
     "atomic": "atomic",
     "bit": "bit_cast bit_ceil countr_zero endian popcount",
     "cctype": "isalnum isalpha isdigit islower tolower toupper",
-    "charconv": "from_chars to_chars",
+    "charconv": "chars_format from_chars to_chars",
     "chrono": "chrono milli",
     "cmath": """acos asin atan atan2 atanh cbrt ceil comp_ellint_1 copysign cos ellint_1 erfc exp exp2 expm1 floor fmax fmin fmod hypot
         isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nan nanf nextafter pow remainder round signbit sin sqrt tan

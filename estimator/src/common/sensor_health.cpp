@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -61,8 +61,8 @@ const Meaning& meaning(Kind kind) {
 
 std::string six_digits(double value) {
   std::array<char, 32> text{};
-  const int length = std::snprintf(text.data(), text.size(), "%.6g", value);
-  return std::string(text.data(), static_cast<std::size_t>(length));
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return std::string(text.data(), end.ptr);
 }
 
 /// Returns the margin of a value beyond its bound, see HealthFinding::confidence.

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <string>
 
-#include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 
 namespace tumble {
@@ -14,6 +13,19 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kUnitSilent_s = 0.5;  // time without readings after which a unit is reported
+
+/// If the forces of all units contradict gravity, so does the merged force. A single such unit disagrees with the
+/// others.
+void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHealth& health) {
+  const auto verdict = [&](std::size_t unit) {
+    return checks.rest_gravity.magnitude_verdict(checks.rest_gravity_state[unit]);
+  };
+  bool all = true;
+  for (std::size_t unit = 0; unit < count; ++unit) all = all && !verdict(unit).ok();
+  if (all) health.add(Kind::force_at_rest, verdict(0), "imu", "", {}, 1.0);
+  for (std::size_t unit = 0; unit < count && !all; ++unit)
+    health.add(Kind::unit_disagrees, verdict(unit), unit_name(unit, count), "", {}, 1.0);
+}
 
 }  // namespace
 
@@ -33,24 +45,11 @@ SensorHealth RollingOdometry::health() const {
               "", last_ns);
     imu_merge_.add_finding(imu_merge_state_->units[unit], name, out);
   }
-  add_forces_at_rest(out);
-  add_findings(plausibility_, plausibility_state_, "imu", out);
-  const ImuPlausibility::State& state = plausibility_state_;
+  add_forces_at_rest(checks_, count, out);
+  add_findings(checks_.plausibility, checks_.plausibility_state, "imu", out);
   ImuMerge::add_findings(imu_merge_state_->senses.detected(), ImuMerge::lever_arm_agreement(*imu_merge_state_),
-                         confirms_gyro(plausibility_, state), out);
+                         confirms_gyro(checks_.plausibility, checks_.plausibility_state), out);
   return out;
-}
-
-/// If the forces of all units contradict gravity, so does the merged force. A single such unit disagrees with the
-/// others.
-void RollingOdometry::add_forces_at_rest(SensorHealth& health) const {
-  const std::size_t count = params_.units.size();
-  const auto verdict = [&](std::size_t unit) { return rest_gravity_.magnitude_verdict(rest_gravity_state_[unit]); };
-  bool all = true;
-  for (std::size_t unit = 0; unit < count; ++unit) all = all && !verdict(unit).ok();
-  if (all) health.add(Kind::force_at_rest, verdict(0), "imu", "", {}, 1.0);
-  for (std::size_t unit = 0; unit < count && !all; ++unit)
-    health.add(Kind::unit_disagrees, verdict(unit), unit_name(unit, count), "", {}, 1.0);
 }
 
 /// Adds the frozen axes. A unit whose readings are replaced by those of the other units is `unit_frozen`.

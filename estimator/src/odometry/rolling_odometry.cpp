@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "rolling_odometry_params.hpp"
-#include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble {
 
@@ -58,8 +57,8 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       rails_state_(rails_.start()),
       outlier_filters_(filters_of(params)),
       frozen_axis_detectors_(frozen_axis_detectors(params)),
-      rest_gravity_({.gravity_m_s2 = params.gravity_m_s2}),
-      plausibility_(plausibility_params(params.gravity_m_s2, 0.0)),
+      checks_{RestGravity({.gravity_m_s2 = params.gravity_m_s2}),
+              ImuPlausibility(plausibility_params(params.gravity_m_s2, 0.0))},
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -83,10 +82,7 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       delayed_samples_(other.delayed_samples_),
       frozen_axis_detectors_(other.frozen_axis_detectors_),
       frozen_(other.frozen_),
-      rest_gravity_(other.rest_gravity_),
-      rest_gravity_state_(other.rest_gravity_state_),
-      plausibility_(other.plausibility_),
-      plausibility_state_(other.plausibility_state_),
+      checks_(other.checks_),
       whole_(other.whole_),
       results_(other.results_),
       returned_count_(other.returned_count_),
@@ -202,8 +198,8 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   sample_clock_state_ = stamps;
   frozen_ = frozen;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    rest_gravity_.step(samples[k], rest_gravity_state_[k]);
-    RestGravity::limit_memory(rest_gravity_state_[k]);
+    checks_.rest_gravity.step(samples[k], checks_.rest_gravity_state[k]);
+    RestGravity::limit_memory(checks_.rest_gravity_state[k]);
   }
   rails_.observe(samples, rails_state_);
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -295,8 +291,8 @@ void RollingOdometry::start_run() {
     unit.count = 0;
   }
   delayed_samples_.reset();
-  rest_gravity_state_ = {};
-  plausibility_state_ = {};
+  checks_.rest_gravity_state = {};
+  checks_.plausibility_state = {};
   whole_.reset();
   stamp_order_state_ = {};
   start_ = T_W_run_ = std::nullopt;
@@ -321,8 +317,8 @@ Status RollingOdometry::process_accepted_sample(const ImuSample& merged) {
   initialise_pose();
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
   if (!status.ok()) return status;
-  plausibility_.step(merged, plausibility_state_);
-  ImuPlausibility::limit_memory(plausibility_state_);
+  checks_.plausibility.step(merged, checks_.plausibility_state);
+  ImuPlausibility::limit_memory(checks_.plausibility_state);
   return {};
 }
 

@@ -69,10 +69,10 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.with_nan("held", s.delayed_samples_);
   visit.scratch(s.frozen_axis_detectors_);
   visit("frozen", s.frozen_);
-  visit.scratch(s.rest_gravity_);  // derived from the parameters
-  visit("gravity", s.rest_gravity_state_);
-  visit.scratch(s.plausibility_);  // derived from the parameters
-  visit("plausibility", s.plausibility_state_);
+  visit.scratch(s.checks_.rest_gravity);  // derived from the parameters
+  visit("gravity", s.checks_.rest_gravity_state);
+  visit.scratch(s.checks_.plausibility);  // derived from the parameters
+  visit("plausibility", s.checks_.plausibility_state);
   visit.scratch(s.whole_);  // finish() computes the results again
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.results_.begin() + static_cast<std::ptrdiff_t>(s.returned_count_),

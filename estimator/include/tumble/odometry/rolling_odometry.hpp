@@ -11,14 +11,11 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/attitude/detail/imu_plausibility.hpp"
-#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
-#include "tumble/common/sensor_health.hpp"
-#include "tumble/odometry/detail/merge_recordings.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/unit_alignment.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
@@ -26,8 +23,6 @@
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace tumble {
-
-struct MergedFindings;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
@@ -229,7 +224,6 @@ class RollingOdometry {
   bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   void add_frozen(const Frozen& frozen, SensorHealth& health) const;
-  void add_forces_at_rest(SensorHealth& health) const;
 
   Params params_;
   StampOrder stamp_order_;
@@ -251,10 +245,7 @@ class RollingOdometry {
   std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all IMUs while OutlierFilter delays one IMU
   std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one detector per IMU
   Frozen frozen_{};
-  RestGravity rest_gravity_;
-  std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state_{};
-  ImuPlausibility plausibility_;  ///< of the merged readings
-  ImuPlausibility::State plausibility_state_;
+  MergedChecks checks_;                          ///< and their states
   std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
   std::vector<RollingEstimate> results_;
   std::size_t returned_count_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
+#include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
@@ -83,6 +85,14 @@ ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> sampl
 struct MergedFindings {
   MergedRecordings merged;
   ImuFindings findings;
+};
+
+/// Checks of several IMUs while samples arrive, and their states.
+struct MergedChecks {
+  RestGravity rest_gravity;
+  ImuPlausibility plausibility;                                                   ///< of the merged readings
+  std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one per unit
+  ImuPlausibility::State plausibility_state{};
 };
 
 /// Checks merged IMUs: the faults of units, the merged readings, and the differences between the units, which also
