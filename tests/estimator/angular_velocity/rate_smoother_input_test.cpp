@@ -73,7 +73,8 @@ TEST(RateSmootherInput, LongGapsSeparateTheRatesAndNotTheCalibration) {
   for (std::size_t k = 50; k < tumble.samples.size(); ++k) tumble.samples[k].time_ns += 20'000'000'000;
   const std::vector<RateState> found = sound_rates(tumble.samples, report);
   for (std::size_t k = 0; k < found.size(); ++k) {
-    if (k < 40 || k > 60) EXPECT_LT((found[k].w_WI_I_rad_s - expected[k].w_WI_I_rad_s).norm(), 0.1) << k;
+    if (k >= 40 && k <= 60) continue;
+    EXPECT_LT((found[k].w_WI_I_rad_s - expected[k].w_WI_I_rad_s).norm(), 0.1) << k;
   }
 }
 
