@@ -318,8 +318,7 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 - The published mapping method reduces the median localisation errors at least as much as in the paper. On the
   simulated runs most similar to the paper, the published method also raises the map overlap as in the paper.
 - With the published recovery, some mapping failures remain in our simulation. Some simulated motions are faster
-  than the motions of the paper. The paper registers its maps to a reference map. Our simulation does not register
-  maps.
+  than the motions of the paper.
 
 ## What differs from the paper
 
@@ -348,8 +347,8 @@ contact with the ground.
 
 {rates}
 The table shows the median rate error by the number of clipped sensing elements of the gyro. The centre of mass is
-either exact, or inexact by up to 20 mm. One sensing element is clipped in {one} of the clipped samples, and two or
-three elements are clipped in {more}. The published method corrects only one axis.
+either exact, or inexact by up to 20 mm. One element is clipped in {one} of the clipped samples, and two or three
+elements in {more}. The published method corrects only one axis.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
