@@ -365,7 +365,7 @@ The figure of attitude distances shows the first simulated run of the scenario `
 
 {ways}
 - If a cell of the column *paper* has two lengths, the first is from rotation alone and the second from fusion.
-  Single values in this column are from fusion.
+  Single values in the column *paper* are from fusion.
 - The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The medians of the
   true leg lengths are {true_legs}.
 - On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than during rolling

@@ -51,7 +51,7 @@ bool is_livox_type(const std::string& type) {
 // Checks the layout against the data before the conversion.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   if (message.is_bigendian != 0)
-    throw BadInput(where + ": points are big-endian; only little-endian points are supported");
+    throw BadInput(fmt::format("{}: points are big-endian; only little-endian points are supported", where));
   const std::uint64_t tight = std::uint64_t{message.width} * message.point_step;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(message.row_step, tight);
   Cloud out;
