@@ -291,8 +291,8 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 `hill` (seeds {first} to {last}).
 
 {headline}
-- The column *paper* shows numbers from the paper. If a cell of this column has two numbers, the first belongs to
-  the raw gyro and the second to the published method.
+- The column *paper* shows numbers from the paper. If a cell of the column *paper* has two numbers, the first
+  belongs to the raw gyro and the second to the published method.
 - The column *raw gyro* shows the published mapping method with clipped gyro readings (`rate/raw`, `slam/icp_raw`).
 - The column *published* shows the published method with the constants of the authors' launch files (`rate/saave`,
   `slam/published`).
