@@ -49,7 +49,8 @@ BenchDraw draw_from(const ordered_json& node) {
   if (!status) throw BadInput("unknown status '" + node.at("status").get<std::string>() + "'");
   draw.status = *status;
   for (const auto& [metric, value] : node.at("values").items()) {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) throw BadInput("'" + metric + "' is not a number");
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      throw BadInput(fmt::format("the value of '{}' is not a number", metric));
     draw.values[metric] = value.get<double>();
   }
   return draw;
@@ -57,7 +58,7 @@ BenchDraw draw_from(const ordered_json& node) {
 
 BenchResult result_from(const ordered_json& node) {
   if (!node.is_object() || node.value("format", "") != kFormat)
-    throw BadInput(std::string("this line does not have the format '") + kFormat + "'");
+    throw BadInput(fmt::format("this line does not have the format '{}'", kFormat));
   const ordered_json version = node.value("format_version", ordered_json());
   if (version != kBenchFormatVersion)
     throw BadInput(fmt::format("format_version is {}; it must be {}", version.dump(), kBenchFormatVersion));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/complication.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
 #include <span>
@@ -221,7 +223,7 @@ std::vector<Complication> complications(const Scenario& scenario) {
     std::vector<Complication> own;
     add(place, place, is_imu ? of_imu() : of_lidar(), sensor.numbers, own);
     add(place, place + ".mount_error", of_mounting(), sensor.mount_error, own);
-    if (is_imu && !primary && !own.empty()) own = {joined(place + ": all errors of this sensor", own)};
+    if (is_imu && !primary && !own.empty()) own = {joined(fmt::format("{}: all errors of this sensor", place), own)};
     out.insert(out.end(), own.begin(), own.end());
     primary = primary && !is_imu;
   }

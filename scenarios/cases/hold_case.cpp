@@ -38,9 +38,11 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
       needed += (needed.empty() ? "" : ", ") + line.what;
   }
   std::string doc = fmt::format(
-      "The method {} fails ({}) on a simplified form of draw {} of scenario {}. The failure still needs: {}", method,
-      shrunk.failure, seed, scenario, needed.empty() ? "no single part that can be removed" : needed);
-  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " other parts were not tried";
+      "The method {} fails ({}) on a simplified form of draw {} of scenario {}. Removing any of these parts removes "
+      "the "
+      "failure: {}",
+      method, shrunk.failure, seed, scenario, needed.empty() ? "none" : needed);
+  if (not_tried > 0) doc += fmt::format(". The number of untried parts is {}", not_tried);
   return doc + ".";
 }
 
@@ -83,17 +85,17 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
   }
   const auto is_better = [&](const std::string& what) {
     result.better = true;
-    result.fault = what + "; run the command again with '--accept' to store the new result";
+    result.fault = fmt::format("{}; run the command again with '--accept' to store the new result", what);
   };
   if (!result.fails) {
     is_better("cured: " + how_it_fails(result));
   } else if (to_string(outcome.status) != expected.status) {
-    result.fault = fmt::format("fails with status '{}', but the accepted result has the status '{}'",
+    result.fault = fmt::format("the run fails with status '{}', but the accepted result has the status '{}'",
                                to_string(outcome.status), expected.status);
   } else if (expected.value.has_value() != result.value.has_value()) {
-    result.fault =
-        expected.metric + (result.value ? " has no accepted value, but has the value " + four_digits(*result.value)
-                                        : " has no value, but the accepted result has one");
+    result.fault = result.value ? fmt::format("{} has the value {}, but the accepted result has no value",
+                                              expected.metric, four_digits(*result.value))
+                                : fmt::format("{} has no value, but the accepted result has a value", expected.metric);
   } else if (result.value) {
     const MetricInfo& info = metric_info(expected.metric);
     const double was = *expected.value, is = *result.value;
@@ -115,20 +117,22 @@ Expectation accepted(const Expectation& expected, const Outcome& outcome) {
 }
 
 void require_known(const Scenario& scenario) {
-  if (!scenario.named_case) throw BadInput(scenario.file + ": key 'case' is missing; a named case needs it");
+  if (!scenario.named_case)
+    throw BadInput(fmt::format("{}: key 'case' is missing; a named case needs it", scenario.file));
   for (const Expectation& expected : scenario.named_case->expected) {
     const std::string place = scenario.file + ": expect: ";
     const std::vector<MethodPointer> found = find_methods(expected.method);
     if (found.size() != 1)
-      throw BadInput(place + "'" + expected.method + "' must name exactly one method, for example 'slam/NAME'");
+      throw BadInput(
+          fmt::format("{}method '{}' must name exactly one method, for example 'slam/NAME'", place, expected.method));
     if (!outcome_status_named(expected.status)) throw BadInput(place + "unknown status '" + expected.status + "'");
     const auto known = metrics();
     const auto is_it = [&](const Metric& metric) {
       return metric.info.name == expected.metric && metric.kind == found.front()->info.kind;
     };
     if (!expected.metric.empty() && std::none_of(known.begin(), known.end(), is_it))
-      throw BadInput(place + "'" + expected.metric + "' is not a metric of kind " +
-                     to_string(found.front()->info.kind));
+      throw BadInput(fmt::format("{}'{}' is not a metric of kind {}", place, expected.metric,
+                                 to_string(found.front()->info.kind)));
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/same_failure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -23,8 +25,8 @@ bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) 
 
 SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : status_(outcome.status) {
   if (status_ == OutcomeStatus::killed)
-    throw BadInput("the machine ended the run (status 'killed'), so the run gives no result for the method: " +
-                   outcome.message);
+    throw BadInput(fmt::format(
+        "the machine ended the run (status 'killed'), so the run gives no result for the method: {}", outcome.message));
   if (status_ != OutcomeStatus::ok) return;
   if (!failure.metric.empty() && is_beyond(outcome, failure.metric, failure.limit)) {
     metric_ = failure.metric;
@@ -38,18 +40,14 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
     metric_ = condemned->metric;  // 0 is good, 1 is bad
     return;
   }
-  std::ostringstream text;
-  text << "the run does not fail: its status is 'ok', and no metric fails";
+  std::string text = "the run does not fail: its status is 'ok', and no metric fails";
   if (!failure.metric.empty()) {
     const Score* const score = find_score(outcome.scores, failure.metric);
-    text << ", " << failure.metric << " is ";
-    if (score != nullptr) {
-      text << score->value << ", which is not worse than the limit " << failure.limit;
-    } else {
-      text << "missing";
-    }
+    text += score != nullptr ? fmt::format(", {} is {:g}, which is not worse than the limit {:g}", failure.metric,
+                                           score->value, failure.limit)
+                             : fmt::format(", {} is missing", failure.metric);
   }
-  throw BadInput(text.str());
+  throw BadInput(text);
 }
 
 bool SameFailure::holds(const Outcome& outcome) const {

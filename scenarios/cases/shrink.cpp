@@ -120,9 +120,9 @@ class Shrinking {
   /// Returns why the failure of a run differs from that of the original run; empty if both are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
-      return "the control method also fails: " + options_.control->info.name;
+      return fmt::format("the control method also fails: {}", options_.control->info.name);
     if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
-      return "the failure has another cause: the true input " + cure_->name + " does not cure the failure";
+      return fmt::format("the failure has another cause: the true input {} does not cure the failure", cure_->name);
     return "";
   }
 

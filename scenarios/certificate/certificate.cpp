@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/certificate/certificate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +48,7 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw BadInput("the certificate has no row '" + name + "'" + suggestion(name, known));
+      throw BadInput(fmt::format("the certificate has no row '{}'{}", name, suggestion(name, known)));
     }
   }
   return selected;

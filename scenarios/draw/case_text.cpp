@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/case_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -21,14 +23,15 @@ Expectation expectation_from(const YamlNode& node) {
   out.method = fields.at("method").text();
   const std::string run = fields.at("run").text();
   if (run != kFails && run != kHolds) {
-    fields.at("run").fail("is '" + run + "'; it must be '" + kFails + "' or '" + kHolds + "'");
+    fields.at("run").fail(fmt::format("the value is '{}'; it must be '{}' or '{}'", run, kFails, kHolds));
   }
   out.fails = run == kFails;
   out.status = fields.at("status").identifier();
   if (fields.contains("metric")) out.metric = fields.at("metric").text();
   const auto number = [&](const std::string& key, std::optional<double>& value) {
     if (!fields.contains(key)) return;
-    if (out.metric.empty()) fields.at(key).fail("this key needs key 'metric', which names the metric of the value");
+    if (out.metric.empty())
+      fields.at(key).fail("this key needs the key 'metric', which names the metric of this value");
     value = fields.at(key).number();
   };
   number("worse_than", out.worse_than);

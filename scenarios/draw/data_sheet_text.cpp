@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <sstream>
 
 #include "scenarios/draw/scenario_text.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
@@ -16,13 +15,11 @@ DataSheet::Entry parse_entry(const std::string& name, const YamlNode& node, cons
   const auto fields = node.fields(kKeys);
   DataSheet::Entry entry{name, fields.at("value").number(), fields.at("unit").text(), fields.at("source").text()};
   if (entry.unit != parameter.unit) {
-    fields.at("unit").fail(fmt::format("the value is '{}'; it must be '{}'", entry.unit, parameter.unit));
+    fields.at("unit").fail(fmt::format("the unit is '{}'; it must be '{}'", entry.unit, parameter.unit));
   }
   if (!(entry.value >= parameter.low && entry.value <= parameter.high)) {
-    std::ostringstream text;
-    text << "is " << entry.value << " " << parameter.unit << "; it must be within [" << parameter.low << ", "
-         << parameter.high << "]";
-    fields.at("value").fail(text.str());
+    fields.at("value").fail(fmt::format("the value is {:g} {}; it must be within [{:g}, {:g}]", entry.value,
+                                        parameter.unit, parameter.low, parameter.high));
   }
   return entry;
 }

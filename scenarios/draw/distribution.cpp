@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/distribution.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -30,9 +32,9 @@ std::string count_problem(const Distribution& d) {
     case Shape::log_uniform:
       return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
     case Shape::normal:
-      return n == 2 || n == 4 ? "" : "the distribution normal needs [mean, sigma] or [mean, sigma, low, high]";
+      return n == 2 || n == 4 ? "" : "the distribution 'normal' needs [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
-      return n >= 1 ? "" : "the distribution choice must list at least one value";
+      return n >= 1 ? "" : "the distribution 'choice' must list at least one value";
   }
   return "unknown shape";
 }
@@ -57,7 +59,8 @@ std::string normal_problem(const std::vector<double>& numbers) {
     const double kept = sigma > 0.0 ? normal_below((high - mean) / sigma) - normal_below((low - mean) / sigma)
                                     : (mean >= low && mean <= high ? 1.0 : 0.0);
     if (!(kept >= kLeastKept))
-      text << "[" << low << ", " << high << "] contains less than 1 % of the normal distribution; widen [low, high]";
+      text << fmt::format("[{:g}, {:g}] contains less than 1 % of the normal distribution; widen [low, high]", low,
+                          high);
   }
   return text.str();
 }
@@ -104,7 +107,7 @@ std::string find_problem(const Distribution& d) {
       return normal_problem(d.numbers);
     case Shape::log_uniform: {
       if (std::min(d.numbers[0], d.numbers[1]) <= 0.0)
-        return "the distribution log_uniform needs numbers greater than 0";
+        return "the distribution 'log_uniform' needs numbers greater than 0";
       return range_problem(d.numbers[0], d.numbers[1]);
     }
     case Shape::constant:

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/fixed_number.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <sstream>
 
 #include "scenarios/draw/registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
@@ -21,10 +22,9 @@ using Numbers = std::map<std::string, Distribution>;
 
 Distribution constant(const Scenario& scenario, const std::string& key, double value, const sim::Parameter& parameter) {
   if (!(value >= parameter.low && value <= parameter.high)) {
-    std::ostringstream text;
-    text << "is " << value << " " << parameter.unit << "; it must be within [" << parameter.low << ", "
-         << parameter.high << "]";
-    fail(scenario, key, text.str());
+    fail(scenario, key,
+         fmt::format("the value is {:g} {}; it must be within [{:g}, {:g}]", value, parameter.unit, parameter.low,
+                     parameter.high));
   }
   return {Distribution::Shape::constant, {value}, 0};
 }
@@ -80,7 +80,8 @@ void fix_number(Scenario& scenario, const std::string& key, double value) {
   } else if (place == "sensors") {
     fix_of_sensor(scenario, key, rest, value, registry);
   } else {
-    fail(scenario, key, "the scenario has no number with the key '" + place + "'" + suggestion(place, kPlaces));
+    fail(scenario, key,
+         fmt::format("the scenario has no number with the key '{}'{}", place, suggestion(place, kPlaces)));
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/fixed_scenario.hpp"
 
+#include <fmt/format.h>
+
 #include "scenarios/draw/case_text.hpp"
 #include "scenarios/draw/drawn_numbers.hpp"
 #include "scenarios/draw/yaml_text.hpp"
@@ -58,8 +60,8 @@ Scenario fixed_as(Scenario scenario, const sim::Situation& situation) {
 std::string to_yaml(const Scenario& scenario) {
   const std::vector<DrawnNumber> drawn = drawn_numbers(scenario);
   if (!drawn.empty())
-    throw BadInput("scenario " + scenario.name + ": " + drawn.front().place +
-                   " is drawn from a distribution; it must be a fixed number");
+    throw BadInput(fmt::format("scenario {}: {} is drawn from a distribution; it must be a fixed number", scenario.name,
+                               drawn.front().place));
   std::string out = "# SPDX-License-Identifier: BSD-3-Clause\nname: " + yaml_word(scenario.name) +
                     "\ndoc: " + yaml_word(scenario.doc) + "\n";
   if (scenario.named_case) out += to_yaml(*scenario.named_case);

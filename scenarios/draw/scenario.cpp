@@ -40,14 +40,15 @@ Scenario load_scenario(const DataRoot& data, const std::string& name) {
   const std::vector<std::string> cases = case_names(data);
   const bool is_case = std::binary_search(cases.begin(), cases.end(), name);
   if (is_case && std::filesystem::exists(data.catalogue() / (name + ".yaml")))
-    throw BadInput("'" + name + "' names both a scenario and a named case; rename one of them");
+    throw BadInput(fmt::format("a scenario and a named case have the same name, '{}'; rename one of them", name));
   const std::filesystem::path path = is_case ? data.regressions() / (name + ".yaml") : find_scenario(data, cases, name);
   Scenario scenario = parse_scenario(read_text_file(path), path.string(), registry);
   if (scenario.name != name) {
     throw BadInput(
-        fmt::format("{}: name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));
+        fmt::format("{}: the name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));
   }
-  if (is_case && !scenario.named_case) throw BadInput(path.string() + ": key 'case' is missing; a named case needs it");
+  if (is_case && !scenario.named_case)
+    throw BadInput(fmt::format("{}: key 'case' is missing; a named case needs it", path.string()));
   return scenario;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 #include "scenarios/draw/case_text.hpp"
 #include "scenarios/draw/drawn_numbers.hpp"
@@ -48,10 +47,9 @@ Distribution parse_checked(const YamlNode& node, const sim::Parameter& parameter
   if (!problem.empty()) node.fail(problem);
   for (const double point : support_points(out)) {
     if (point >= parameter.low && point <= parameter.high) continue;
-    std::ostringstream text;
-    text << (out.shape == Shape::constant ? "is " : "can reach ") << point << " " << parameter.unit
-         << "; it must be within [" << parameter.low << ", " << parameter.high << "]";
-    node.fail(text.str());
+    node.fail(fmt::format("the value {} {:g} {}; it must be within [{:g}, {:g}]",
+                          out.shape == Shape::constant ? "is" : "can reach", point, parameter.unit, parameter.low,
+                          parameter.high));
   }
   return out;
 }

@@ -65,7 +65,8 @@ void require_one_document(const std::string& text, const std::string& file) {
   Counter counter(text, file);
   if (!parser.HandleNextDocument(counter)) throw BadInput(file + ": is empty");
   if (parser.HandleNextDocument(counter))
-    throw BadInput(file + ": the file must contain one YAML document, but contains more than one document");
+    throw BadInput(
+        fmt::format("{}: the file must contain one YAML document, but contains more than one document", file));
 }
 
 std::string join(const std::string& place, const std::string& name) {
@@ -84,7 +85,7 @@ std::string read_text_file(const std::filesystem::path& path) {
   std::ifstream stream = open_regular_file(path);
   std::error_code error;
   if (std::filesystem::file_size(path, error) > kLargestFile || error) {
-    throw BadInput(path.string() + ": the file is larger than 4 MiB");
+    throw BadInput(fmt::format("{}: the file is larger than 4 MiB", path.string()));
   }
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (stream.bad()) throw BadInput(path.string() + ": cannot be read");
@@ -93,7 +94,7 @@ std::string read_text_file(const std::filesystem::path& path) {
 
 std::string suggestion(const std::string& name, std::span<const std::string> known) {
   const std::string near = sim::nearest_name(name, known);
-  if (!near.empty()) return "; did you mean '" + near + "'?";
+  if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
   if (known.empty()) return "; there are no valid names";
   std::string text = "; known names:";
   for (const std::string& each : known) text += " " + each;
@@ -119,7 +120,7 @@ void YamlNode::fail(const std::string& what) const {
 }
 
 std::string YamlNode::any_text() const {
-  if (!node_.IsScalar()) fail(std::string("the value must be text; it is ") + kind_of(node_));
+  if (!node_.IsScalar()) fail(fmt::format("the value must be text; it is {}", kind_of(node_)));
   return node_.Scalar();
 }
 
@@ -133,7 +134,7 @@ std::string YamlNode::identifier() const {
   const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
   if (!lower(name[0]) || !std::all_of(name.begin(), name.end(), allowed)) {
-    fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
+    fail(fmt::format("the name '{}' must be a lower-case letter followed by letters, digits and underscores", name));
   }
   if (name.size() > kIdentifierMax) {
     fail(fmt::format("the name has {} characters; it must have at most {}", name.size(), kIdentifierMax));
@@ -149,18 +150,18 @@ double YamlNode::number_or_infinity() const {
 }
 
 double YamlNode::parse_number(bool infinity_allowed) const {
-  if (!node_.IsScalar()) fail(std::string("the value must be a number; it is ") + kind_of(node_));
+  if (!node_.IsScalar()) fail(fmt::format("the value must be a number; it is {}", kind_of(node_)));
   const std::string& written = node_.Scalar();
   // The parser gives the tag "!" to quoted text.
-  if (node_.Tag() == "!") fail("the value must be a number; it is the text \"" + written + "\"");
+  if (node_.Tag() == "!") fail(fmt::format("the value must be a number; it is the text \"{}\"", written));
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
   double value = 0.0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
-  if (error == std::errc::result_out_of_range) fail("'" + written + "' is too large for a double");
-  if (error != std::errc() || stop != end) fail("the value must be a number; it is '" + written + "'");
-  if (!std::isfinite(value)) fail("the value must be finite; it is '" + written + "'");
+  if (error == std::errc::result_out_of_range) fail(fmt::format("the number '{}' is too large for a double", written));
+  if (error != std::errc() || stop != end) fail(fmt::format("the value must be a number; it is '{}'", written));
+  if (!std::isfinite(value)) fail(fmt::format("the value must be finite; it is '{}'", written));
   return value;
 }
 
@@ -170,12 +171,12 @@ std::uint64_t YamlNode::unsigned_integer() const {
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
   if (error != std::errc() || stop != end)
-    fail("the value must be an integer from 0 to 2^64-1; it is '" + written + "'");
+    fail(fmt::format("the value must be an integer from 0 to 2^64-1; it is '{}'", written));
   return value;
 }
 
 std::vector<YamlNode> YamlNode::items() const {
-  if (!node_.IsSequence()) fail(std::string("the value must be a list; it is ") + kind_of(node_));
+  if (!node_.IsSequence()) fail(fmt::format("the value must be a list; it is {}", kind_of(node_)));
   std::vector<YamlNode> out;
   for (const YAML::Node& item : node_)
     out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
@@ -183,7 +184,7 @@ std::vector<YamlNode> YamlNode::items() const {
 }
 
 std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
-  if (!node_.IsMap()) fail(std::string("the value must be a map of keys and values; it is ") + kind_of(node_));
+  if (!node_.IsMap()) fail(fmt::format("the value must be a map of keys and values; it is {}", kind_of(node_)));
   std::vector<std::pair<std::string, YamlNode>> out;
   std::set<std::string> seen;
   for (const auto& entry : node_) {

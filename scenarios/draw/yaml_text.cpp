@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/yaml_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -12,7 +14,7 @@
 namespace tumble::scenarios {
 
 std::string yaml_number(double value, const std::string& place) {
-  if (std::isnan(value)) throw BadInput(place + ": the value is not a number");
+  if (std::isnan(value)) throw BadInput(fmt::format("{}: the value is not a number", place));
   if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
   std::array<char, 32> text;
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);

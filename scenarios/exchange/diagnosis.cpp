@@ -55,7 +55,7 @@ std::optional<RecordingFinding> lost_items(const std::string& name, const char* 
   if (missing < kLeastLost || share <= kLostShareMax) return std::nullopt;
   return RecordingFinding{
       name,
-      fmt::format("{} of {} {} are lost ({}, limit {}); the longest step is {} s", missing,
+      fmt::format("{} of {} {} are lost ({}, limit {}); the longest gap lasts {} s", missing,
                   missing + std::ssize(times_ns), items, percent_text(share), percent_text(kLostShareMax),
                   rounded(1e-9 * static_cast<double>(longest_ns))),
       "record without loss, for example with larger queues or a faster disk; the estimators bridge gaps up to 1 s"};

@@ -45,7 +45,8 @@ std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
   if (const std::optional<AxisLabels> labels = plausibility.better_axis_labels(state)) return labels_text(*labels);
   const Status verdict = plausibility.verdict(state);
   return verdict.ok() ? ""
-                      : "caution: the readings are inconsistent with each other or with gravity: " + verdict.message();
+                      : fmt::format("caution: the readings are inconsistent with each other or with gravity: {}",
+                                    verdict.message());
 }
 
 std::vector<std::string> imu_notes(const Imported& recording) {

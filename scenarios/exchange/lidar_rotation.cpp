@@ -198,8 +198,8 @@ std::string pairs_text(const RotationAgreement& found) {
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
-      "if the rates are in {}, the lidar rotates {} times as far as the gyro measures (accurate to {}){}; this ratio "
-      "must be within 0.5 and 2",
+      "if the gyro is read in {}, the lidar rotates {} times as far as the gyro measures (accurate to {}){}; this "
+      "ratio must be from 0.5 to 2",
       degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";

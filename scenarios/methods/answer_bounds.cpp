@@ -68,7 +68,7 @@ void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
 /// Checks that a covariance is finite, with variances of at least 0 and correlations of at most 1.
 template <int N>
 void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& where) {
-  if (!C.allFinite()) throw BadInput(where + ": the covariance has a value that is not finite");
+  if (!C.allFinite()) throw BadInput(fmt::format("{}: the covariance has a value that is not finite", where));
   if (const double least = C.diagonal().minCoeff(); least < 0.0)
     throw BadInput(fmt::format("{}: a variance is {:g}; it must be at least 0", where, least));
   for (int i = 0; i < N; ++i) {
@@ -114,7 +114,7 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
   const std::string name = file.filename().string();
   // Rejects symbolic links, which could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
-    throw BadInput(name + ": this path is not a regular file; the method must write a regular file");
+    throw BadInput(fmt::format("{}: this path is not a regular file; the method must write a regular file", name));
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw BadInput(name + ": " + error.message());

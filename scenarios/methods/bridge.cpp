@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -209,7 +211,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   require_length(place, "intensity", record.intensity.size(), points);
   for (std::size_t k = 0; k < sweeps; ++k) {
     if (record.sweep_first[k] > record.sweep_first[k + 1]) {
-      throw BadInput(place + ".sweep_first must not decrease, but decreases at sweep " + std::to_string(k));
+      throw BadInput(fmt::format("{}.sweep_first must not decrease, but decreases at sweep {}", place, k));
     }
   }
   require_length(place, "position_L_m", points, record.sweep_first[sweeps]);

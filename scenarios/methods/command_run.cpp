@@ -28,7 +28,7 @@ std::string without_trailing_folder(std::string text, const std::filesystem::pat
 }
 
 std::string with_output_tail(const std::string& what, const CommandEnd& end) {
-  return what + (end.output_tail.empty() ? "" : "; the command printed at the end: " + end.output_tail);
+  return what + (end.output_tail.empty() ? "" : fmt::format("; the command printed at the end: {}", end.output_tail));
 }
 
 void require_done(const CommandEnd& end) {
@@ -36,8 +36,9 @@ void require_done(const CommandEnd& end) {
   if (end.how == CommandEnd::How::timed_out)
     throw NoAnswer(
         NoAnswer::Why::timed_out,
-        with_output_tail(end.reason + "; to change the limit, set the key time_limit_s in the method's description",
-                         end));
+        with_output_tail(
+            fmt::format("{}; to change the limit, set the key time_limit_s in the method's description", end.reason),
+            end));
   throw NoAnswer(NoAnswer::Why::crashed, with_output_tail(end.reason, end));
 }
 
@@ -47,7 +48,8 @@ std::string reported_version(Command command, const std::string& place) {
   if (end.how != CommandEnd::How::done) throw BadInput(place + with_output_tail(end.reason, end));
   const std::string said = read_text_file(command.transcript);
   if (said.empty())
-    throw BadInput(place + "the version command printed nothing; it must print a text that identifies this version");
+    throw BadInput(
+        fmt::format("{}the version command printed nothing; it must print a text that identifies this version", place));
   return fmt::format("{}; the digest of the complete output is {:016x}",
                      said.substr(0, std::min(said.find('\n'), kFirstLineMax)), XXH3_64bits(said.data(), said.size()));
 }

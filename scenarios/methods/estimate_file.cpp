@@ -167,7 +167,8 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
     if (!flagged) continue;
     const std::int64_t uncertain = table.integer(row, 2);
     if (uncertain != 0 && uncertain != 1) {
-      throw BadInput(fmt::format("{}:{}: uncertain is {}; it must be 0 or 1", path.string(), row.line, uncertain));
+      throw BadInput(
+          fmt::format("{}:{}: column 'uncertain' is {}; it must be 0 or 1", path.string(), row.line, uncertain));
     }
     estimate.uncertain.push_back(uncertain == 1);
   }
@@ -227,8 +228,8 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   for (const Table::Row& row : poses.rows) {
     const std::int64_t index = poses.integer(row, 0);
     if (index < 0 || index >= static_cast<std::int64_t>(estimate.sweeps.size())) {
-      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) +
-                     ": the row belongs to a sweep that the estimate does not contain: sweep " + std::to_string(index));
+      throw BadInput(fmt::format("{}:{}: the row belongs to a sweep that the estimate does not contain: sweep {}",
+                                 poses.path.string(), row.line, index));
     }
     estimate.sweeps[static_cast<std::size_t>(index)].trajectory.push_back(read_pose(poses, row, 1, 2));
   }
@@ -243,9 +244,9 @@ void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, 
     pose.p_WA_m = read_vector(table, row, 1);
     pose.q_WA = read_quaternion(table, row, 4, true);
     if (all_finite && !(pose.p_WA_m.allFinite() && pose.q_WA.coeffs().allFinite()))
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": the pose is not finite");
+      throw BadInput(fmt::format("{}:{}: the pose is not finite", path.string(), row.line));
     if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": time stamps must increase");
+      throw BadInput(fmt::format("{}:{}: time stamps must increase", path.string(), row.line));
     poses.push_back(pose);
   }
 }
@@ -295,10 +296,11 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
 
 void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
   if (std::error_code error; !std::filesystem::exists(path, error))
-    throw BadInput(path.string() + ": the file does not exist, so the folder does not contain an estimate");
+    throw BadInput(
+        fmt::format("{}: the file does not exist, so the folder does not contain an estimate", path.string()));
   std::ifstream file = open_regular_file(path);
   const json header = json::parse(file, nullptr, false);
-  if (!header.is_object()) throw BadInput(path.string() + ": the file is not a JSON object");
+  if (!header.is_object()) throw BadInput(fmt::format("{}: the file is not a JSON object", path.string()));
   const JsonMembers reader(path, header);
   if (reader.member("format") != kFormatVersion) reader.complain("format", std::to_string(kFormatVersion));
   method = reader.text("method");
@@ -326,7 +328,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
                     const std::string& sensors_digest) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw BadInput(folder.string() + ": cannot create the folder: " + error.message());
+  if (error) throw BadInput(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   // Files of an earlier estimate are removed, because they would be read as part of this estimate.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);

@@ -154,7 +154,7 @@ void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescript
       fields.at(key).fail("this key applies only to a command, but the method is a Python function");
   out.python = out.file.parent_path() / fields.at("python").text();
   if (!std::filesystem::is_regular_file(out.python))
-    fields.at("python").fail("'" + out.python.string() + "' is not a file");
+    fields.at("python").fail(fmt::format("this path is not a file: {}", out.python.string()));
   out.function = fields.contains("function") ? fields.at("function").text() : to_string(out.kind);
   if (fields.contains("interpreter"))
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());

@@ -30,7 +30,7 @@ constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,
 
 std::string header_line(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw BadInput(file.filename().string() + ": the command did not write this file");
+  if (!stream) throw BadInput(fmt::format("{}: the command did not write this file", file.filename().string()));
   std::string line;
   std::getline(stream, line);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -97,7 +97,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
 /// Reads poses from a TUM file; the description states their frame.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw BadInput(file.filename().string() + ": the command did not write this file");
+    throw BadInput(fmt::format("{}: the command did not write this file", file.filename().string()));
   Kind kind{};
   std::string method;
   Estimate estimate = read_estimate(file, kind, method, description.frame);
@@ -164,7 +164,7 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto given = [](const auto& columns) {
     return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
   };
-  if (!given(place)) throw BadInput(file.filename().string() + ": the columns x, y and z are missing");
+  if (!given(place)) throw BadInput(fmt::format("{}: the columns x, y and z are missing", file.filename().string()));
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto vector = [k](const auto& columns) -> Eigen::Vector3f {

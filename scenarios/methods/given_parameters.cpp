@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/given_parameters.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <utility>
 
@@ -28,7 +30,8 @@ GivenParameter parsed(const std::string& text) {
     good = error == std::errc() && stop == end;
   }
   if (!good)
-    throw BadInput("'" + text + "': must have the form METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5");
+    throw BadInput(
+        fmt::format("'{}' must have the form METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5", text));
   return out;
 }
 
@@ -65,8 +68,8 @@ std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std:
       }
     }
     if (!concerned)
-      throw BadInput("'" + text + "': the parameter belongs to no method of this run; add the method '" + given.method +
-                     "'");
+      throw BadInput(
+          fmt::format("'{}': the parameter belongs to no method of this run; add the method '{}'", text, given.method));
   }
   std::vector<Method> out;
   for (std::size_t k = 0; k < methods.size(); ++k) out.push_back(with(*methods[k], chosen[k]));

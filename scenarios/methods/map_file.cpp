@@ -41,7 +41,7 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
   std::size_t points = 0;
   for (const std::string& line : expected) {
     std::string found;
-    if (!std::getline(file, found)) throw BadInput(path.string() + ": the header is truncated");
+    if (!std::getline(file, found)) throw BadInput(fmt::format("{}: the header is truncated", path.string()));
     const std::string prefix = "element vertex ";
     if (line.starts_with(prefix) && found.starts_with(prefix)) {
       const char* end = found.data() + found.size();
@@ -49,7 +49,8 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
       if (error == std::errc() && stop == end) continue;
     }
     if (found != line)
-      throw BadInput(path.string() + ": '" + shortened(found) + "' in the header; this line must be '" + line + "'");
+      throw BadInput(
+          fmt::format("{}: a line of the header is '{}'; it must be '{}'", path.string(), shortened(found), line));
   }
   return points;
 }

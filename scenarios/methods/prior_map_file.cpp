@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/prior_map_file.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Core>
 #include <fstream>
 #include <iterator>
@@ -32,7 +33,7 @@ VectorColumns find(const Cloud& cloud, const std::string& prefix) {
 std::vector<MapPoint> from_cloud(const std::filesystem::path& path) {
   const Cloud cloud = read_cloud(path);
   const VectorColumns position = find(cloud, "");
-  if (!position) throw BadInput(path.string() + ": the file has no columns x y z");
+  if (!position) throw BadInput(fmt::format("{}: the file has no columns x y z", path.string()));
   VectorColumns normal = find(cloud, "n");
   if (!normal) normal = find(cloud, "normal_");
   if (!normal) {
@@ -67,7 +68,7 @@ std::vector<MapPoint> read_prior_map(const std::filesystem::path& path) {
   std::vector<MapPoint> points;
   const Status status = load_map(std::as_bytes(std::span(text)), points);
   if (!status.ok())
-    throw BadInput(path.string() + ": " + status.message() + "; a map is a .tumblemap, .pcd or .ply file");
+    throw BadInput(fmt::format("{}: {}; a map is a .tumblemap, .pcd or .ply file", path.string(), status.message()));
   return points;
 }
 

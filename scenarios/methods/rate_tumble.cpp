@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -90,7 +92,7 @@ Method calibrating_method(const Method& method, RigCalibrationUse& learning) {
   const std::string name = full_name(method.info);
   const bool batch = name == "rate/tumble";
   if (!batch && name != "rate/tumble_lag") {
-    throw BadInput("'" + name + "' does not calibrate the rig; use 'rate/tumble' or 'rate/tumble_lag'");
+    throw BadInput(fmt::format("method '{}' does not calibrate the rig; use 'rate/tumble' or 'rate/tumble_lag'", name));
   }
   Method out = method;
   out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,

@@ -73,7 +73,8 @@ MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
     if (full_name(own.info) == full_name(method->info))
-      throw BadInput(file + ": " + full_name(own.info) + " is the name of a built-in method; choose another name");
+      throw BadInput(
+          fmt::format("{}: {} is the name of a built-in method; choose another name", file, full_name(own.info)));
   }
   return method;
 }
@@ -104,7 +105,7 @@ std::string full_name(const MethodInfo& info) {
 std::string MethodInfo::why_not(const Subject& subject) const {
   const bool known = !robots.empty() && !subject.robot.empty();
   if (known && std::find(robots.begin(), robots.end(), subject.robot) == robots.end())
-    return "does not support the robot '" + subject.robot + "'";
+    return fmt::format("does not support the robot '{}'", subject.robot);
   if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, but the recording has none";
   return {};
 }
@@ -165,7 +166,7 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
       if (is_new) {
         found.push_back(std::move(method));
       } else if (is_method_file(name) && before->second != name) {
-        throw BadInput(fmt::format("'{}' and '{}' have the same name, {}; give each method its own name",
+        throw BadInput(fmt::format("methods '{}' and '{}' have the same name, {}; give each method its own name",
                                    before->second, name, full_name(method->info)));
       }
     }

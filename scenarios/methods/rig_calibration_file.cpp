@@ -167,7 +167,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
 CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   std::ifstream file = open_regular_file(path);
   const json object = json::parse(file, nullptr, false);
-  if (!object.is_object()) throw BadInput(path.string() + ": the file is not a JSON object");
+  if (!object.is_object()) throw BadInput(fmt::format("{}: the file is not a JSON object", path.string()));
   const CalibrationReader reader(path, object);
   for (const char* key : kKeys) {
     if (!object.contains(key)) reader.complain(key, "missing");

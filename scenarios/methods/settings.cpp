@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/settings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <utility>
 
 namespace tumble::scenarios {
@@ -52,7 +53,7 @@ void SettingsTable::add(const std::string& field_name, double value, const Field
   sim::Parameter row{texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.meaning};
   const bool stated = matches_any(field_name, options_.stated);
   if (stated) {
-    row.doc = texts_.emplace_back(std::string(field.meaning) + "; default: the value in the recording, if any");
+    row.doc = texts_.emplace_back(fmt::format("{}; default: the value in the recording, if any", field.meaning));
     stated_.insert(row.name);
   }
   if (whole) whole_.insert(row.name);
@@ -95,9 +96,7 @@ sim::Values resolve_settings(const std::string& place, const sim::Values& given,
     };
     if (any(&SettingsTable::is_stated) && !given.has(name)) continue;
     if (any(&SettingsTable::is_whole) && value != std::floor(value)) {
-      std::ostringstream text;
-      text << place << "." << name << " is " << value << "; it must be a whole number";
-      throw sim::InvalidSituation(text.str());
+      throw sim::InvalidSituation(fmt::format("{}.{} is {:g}; it must be a whole number", place, name, value));
     }
     out.set(name, value);
   }

@@ -2,6 +2,7 @@
 #include "scenarios/processes/command.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,8 +108,8 @@ CommandEnd run_command(const Command& command) {
     end.reason = "cannot be started: " + problem;
   } else if (!ended) {
     end.how = CommandEnd::How::timed_out;
-    end.reason = "the command did not end within its time limit of " +
-                 std::to_string(static_cast<long long>(command.time_limit_s)) + " s";
+    end.reason = fmt::format("the command did not end within its time limit of {} s",
+                             static_cast<long long>(command.time_limit_s));
   } else if (!last.normal) {
     end.how = CommandEnd::How::failed;
     end.reason = last.describe();

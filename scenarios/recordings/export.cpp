@@ -60,8 +60,8 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   ExportNames names = export_names(sensors);
   Notes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
-    left_out.push_back("'" + series.name + "', a " + series.kind +
-                       ", is left out, because bags have no message type for this sensor");
+    left_out.push_back(fmt::format("sensor '{}' ({}) is left out, because bags have no message type for this sensor",
+                                   series.name, series.kind));
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
@@ -133,7 +133,7 @@ Notes export_recording(const path& recording, const std::string& format, const p
   for (const std::string& name : export_formats()) known += " " + name;
   const std::string near = sim::nearest_name(format, export_formats());
   throw BadInput(fmt::format("unknown format '{}'{} (known formats:{})", format,
-                             near.empty() ? "" : "; did you mean '" + near + "'?", known));
+                             near.empty() ? "" : fmt::format("; did you mean '{}'?", near), known));
 }
 
 }  // namespace tumble::scenarios

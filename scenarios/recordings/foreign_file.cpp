@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/foreign_file.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
 #include <string_view>
@@ -37,8 +39,10 @@ const char* kind_of(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& kind) {
-  throw BadInput(path.string() + ": is " + kind + "; it must be a recording (FILE.h5); 'tumble import " +
-                 path.string() + " -o FILE.h5' converts bags, sweeps and tables");
+  throw BadInput(
+      fmt::format("{}: this path is {}; it must be a recording (FILE.h5); 'tumble import {} -o FILE.h5' converts bags, "
+                  "sweeps and tables",
+                  path.string(), kind, path.string()));
 }
 
 }  // namespace

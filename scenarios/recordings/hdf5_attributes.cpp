@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -60,7 +62,7 @@ void Group::write_number(const std::string& name, Scalar scalar, const void* val
 Handle Group::open_attribute(const std::string& name) const {
   if (!has_attribute(name)) fail(name, "attribute is missing");
   Handle attribute(H5Aopen(group_.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (!attribute.valid()) fail(name, "the attribute cannot be read" + last_error());
+  if (!attribute.valid()) fail(name, fmt::format("the attribute cannot be read{}", last_error()));
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
   if (H5Sget_simple_extent_npoints(space.get()) != 1) fail(name, "the attribute must have a single value");
   return attribute;
@@ -73,14 +75,15 @@ std::string Group::text_attribute(const std::string& name) const {
   if (H5Tis_variable_str(type.get()) > 0) {  // as h5py writes them
     char* text = nullptr;
     if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr)
-      fail(name, "the attribute cannot be read" + last_error());
+      fail(name, fmt::format("the attribute cannot be read{}", last_error()));
     std::string out(text);
     H5free_memory(text);
     return out;
   }
   std::string text(H5Tget_size(type.get()), '\0');
   if (text.size() > kLongestText) fail(name, "the text is longer than 16 MiB, which is the maximum");
-  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) fail(name, "the attribute cannot be read" + last_error());
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0)
+    fail(name, fmt::format("the attribute cannot be read{}", last_error()));
   return until_zero(text.data(), text.size());
 }
 
@@ -91,7 +94,7 @@ double Group::double_attribute(const std::string& name) const {
   if (kind != H5T_FLOAT && kind != H5T_INTEGER) fail(name, "the attribute must be a number");
   double value = 0.0;
   if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0)
-    fail(name, "the attribute cannot be read" + last_error());
+    fail(name, fmt::format("the attribute cannot be read{}", last_error()));
   return value;
 }
 
@@ -100,7 +103,8 @@ std::int64_t Group::int_attribute(const std::string& name) const {
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
   if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "the attribute must be an integer");
   std::int64_t value = 0;
-  if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) fail(name, "the attribute cannot be read" + last_error());
+  if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0)
+    fail(name, fmt::format("the attribute cannot be read{}", last_error()));
   // HDF5 limits values that exceed the range of the type
   if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max())
     fail(name, "the attribute is too large for a signed 64-bit integer");
@@ -118,7 +122,7 @@ std::uint64_t Group::uint_attribute(const std::string& name) const {
   }
   std::uint64_t value = 0;
   if (H5Aread(attribute.get(), H5T_NATIVE_UINT64, &value) < 0)
-    fail(name, "the attribute cannot be read" + last_error());
+    fail(name, fmt::format("the attribute cannot be read{}", last_error()));
   return value;
 }
 

@@ -127,7 +127,7 @@ void Group::read_segment(const Handle& dataset, const std::string& name, std::si
 Handle Group::open_dataset(const std::string& name) const {
   if (!has(name)) fail(name, "dataset is missing");
   Handle dataset(H5Dopen2(group_.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid()) fail(name, "the dataset cannot be read" + last_error());
+  if (!dataset.valid()) fail(name, fmt::format("the dataset cannot be read{}", last_error()));
   return dataset;
 }
 
@@ -141,7 +141,8 @@ std::size_t Group::count_rows(const Handle& dataset, const std::string& name, st
   const bool same_dimensions = H5Sget_simple_extent_ndims(space.get()) == wanted;
   if (same_dimensions) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
   if (!same_dimensions || extent[1] != columns) {
-    fail(name, "the dataset must have the shape N" + (columns == 1 ? std::string() : " x " + std::to_string(columns)));
+    fail(name, fmt::format("the dataset must have the shape N{}",
+                           (columns == 1 ? std::string() : " x " + std::to_string(columns))));
   }
   const std::uint64_t row_bytes = columns * size_of(scalar);
   const std::uint64_t most_rows = H5Dget_storage_size(dataset.get()) * kBestDeflation / row_bytes;

@@ -2,6 +2,7 @@
 #include "scenarios/recordings/hdf5_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +29,7 @@ Handle open_file(const std::filesystem::path& path) {
   if (file.valid()) return file;
   const std::string reason = last_error();
   if (std::error_code error; std::filesystem::file_size(path, error) == 0) throw BadInput(path.string() + ": is empty");
-  throw BadInput(path.string() + ": the file is truncated, damaged or not an HDF5 file" + reason);
+  throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
 /// At close, the callback takes ownership of the HDF5 driver's memory, instead of freeing it. The superblock is
@@ -69,12 +70,12 @@ Handle create_file(const std::string& name, const std::string& label, const Hand
   // File format 1.10 has a checksum on all metadata, so that HDF5 detects flipped bits.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
-    throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
+    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // equal recordings give equal files
   Handle file(H5Fcreate(label.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
-  if (!file.valid()) throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
+  if (!file.valid()) throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   return file;
 }
 
@@ -83,7 +84,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   constexpr std::size_t kGrowth = std::size_t{16} << 20;
   H5FD_file_image_callbacks_t calls = keep_image_in(image);
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
-    throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
+    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   }
   // The name must differ from those of existing files, because HDF5 would first read such a file into memory.
   return create_file(name, name + " in memory", access);
@@ -92,12 +93,12 @@ Handle create_in_memory(const std::string& name, void** image) {
 Handle create_on_disk(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (H5Pset_fapl_sec2(access.get()) < 0)
-    throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
+    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   Handle file = create_file(name, path.string(), access);
   // Disk space is reserved after the creation, because the creation truncates the file.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
-    throw BadInput(name + ": the file cannot be prepared for writing" + last_error());
+    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   const int error = posix_fallocate(*static_cast<int*>(descriptor), 0, static_cast<off_t>(most_bytes));
   if (error != 0) throw BadInput(name + ": cannot be written: " + std::generic_category().message(error));
   return file;
@@ -105,7 +106,7 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
 
 Group root_of(const Handle& file, const std::string& name) {
   Handle root(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose);
-  if (!root.valid()) throw BadInput(name + ": the file has no root group" + last_error());
+  if (!root.valid()) throw BadInput(fmt::format("{}: the file has no root group{}", name, last_error()));
   return Group(std::move(root), name, "");
 }
 
@@ -155,7 +156,7 @@ void Group::fail(const std::string& name, const std::string& what) const {
 Group Group::open(const std::string& name) const {
   if (!has(name)) fail(name, "is missing");
   Handle group(H5Gopen2(group_.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) fail(name, "the group cannot be read" + last_error());
+  if (!group.valid()) fail(name, fmt::format("the group cannot be read{}", last_error()));
   return Group(std::move(group), file_, place_ + "/" + name);
 }
 
@@ -196,7 +197,7 @@ MemoryFile::~MemoryFile() {
 std::span<const std::byte> MemoryFile::close() {
   root_ = Group();
   file_ = Handle();
-  if (image_ == nullptr) throw BadInput(name_ + ": the file cannot be assembled in memory");
+  if (image_ == nullptr) throw BadInput(fmt::format("{}: the file cannot be assembled in memory", name_));
   return {static_cast<const std::byte*>(image_), stated_length(image_)};
 }
 
@@ -214,12 +215,12 @@ void DiskFile::close() {
   std::array<char, kSuperblockBytes> head{};
   std::error_code error;
   if (!std::ifstream(path_, std::ios::binary).read(head.data(), head.size()))
-    throw BadInput(name_ + ": the file cannot be assembled in memory");
+    throw BadInput(fmt::format("{}: the file cannot be assembled in memory", name_));
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
   // A close that failed midway reports no error; superblock and file length agree only in a complete file.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
-    throw BadInput(name_ + ": the file cannot be assembled in memory" + last_error());
+    throw BadInput(fmt::format("{}: the file cannot be assembled in memory{}", name_, last_error()));
 }
 
 }  // namespace tumble::scenarios::hdf5

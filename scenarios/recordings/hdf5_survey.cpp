@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/hdf5_survey.hpp"
 
+#include <fmt/format.h>
+
 #include "scenarios/errors.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/recordings/hdf5_file.hpp"
@@ -41,7 +43,8 @@ void require_survivable(const std::filesystem::path& path) {
   Process child([&](int) { survey(path); }, false);
   const Process::End end = child.wait();
   if (!end.normal) {
-    throw BadInput(path.string() + ": the file is damaged: the HDF5 library cannot read it (" + end.describe() + ")");
+    throw BadInput(
+        fmt::format("{}: the file is damaged: the HDF5 library cannot read it ({})", path.string(), end.describe()));
   }
 }
 

@@ -99,7 +99,7 @@ void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
                                   columns.normal_force_n.size(), columns.surface_id.size()}) {
     if (other != columns.time_ns.size())
-      throw BadInput(file + ": truth/contacts: the datasets must have the same length");
+      throw BadInput(fmt::format("{}: truth/contacts: the datasets must have the same length", file));
   }
 }
 
@@ -116,8 +116,9 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
-    root.fail("format", std::string("the file is not a recording of this program: the attribute must be '") +
-                            kRecordingFormat + "'; 'tumble import' converts HDF5 files of BROAD");
+    root.fail("format", fmt::format("the file is not a recording of this program: the attribute must be '{}'; 'tumble "
+                                    "import' converts HDF5 files of BROAD",
+                                    kRecordingFormat));
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {
@@ -129,9 +130,9 @@ void require_format(const hdf5::Group& root) {
 hdf5::Group truth_group(const hdf5::InputFile& file, const std::filesystem::path& path) {
   require_format(file.root());
   if (!file.root().has("truth"))
-    throw BadInput(
-        path.string() +
-        ": the recording has no truth; only simulated recordings and recordings with a reference have truth");
+    throw BadInput(fmt::format(
+        "{}: the recording has no truth; only simulated recordings and recordings with a reference have truth",
+        path.string()));
   return file.root().open("truth");
 }
 

@@ -40,7 +40,7 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
-    return std::string(name) + " must be a rigid transform (rotation and translation)";
+    return fmt::format("{} must be a rigid transform (rotation and translation)", name);
   return "";
 }
 
@@ -70,11 +70,11 @@ std::string text_problem(const char* name, const std::string& text) {
   for (const unsigned char c : text) {
     const bool continues = (c & 0xc0) == 0x80;
     if (continues != (following > 0) || (following == 0 && (c < 0x20 || c == 0x7f)) || c >= 0xf8) {
-      return std::string(name) + " must be UTF-8 text without control characters";
+      return fmt::format("{} must be UTF-8 text without control characters", name);
     }
     following = continues ? following - 1 : c >= 0xf0 ? 3 : c >= 0xe0 ? 2 : c >= 0xc0 ? 1 : 0;
   }
-  return following == 0 ? "" : std::string(name) + " must be UTF-8 text without control characters";
+  return following == 0 ? "" : fmt::format("{} must be UTF-8 text without control characters", name);
 }
 
 /// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and their
@@ -111,7 +111,7 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
                        lidar.sweep_first.size(), sweeps);
   }
   if (lidar.sweep_first.front() != 0 || lidar.sweep_first.back() != points) {
-    return "sweep_first must increase from 0 to the number of points, " + std::to_string(points);
+    return fmt::format("sweep_first must increase from 0 to the number of points, {}", points);
   }
   if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first decreases";
   const auto stuck = [](std::int64_t a, std::int64_t b) { return a >= b; };

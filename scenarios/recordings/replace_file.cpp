@@ -188,9 +188,10 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {
-    throw BadInput(folder.string() +
-                   ": the folder contains files, which would mix with the files of this run; choose a new folder or "
-                   "empty this folder");
+    throw BadInput(
+        fmt::format("{}: the folder contains files, which would mix with the files of this run; choose a new folder or "
+                    "empty this folder",
+                    folder.string()));
   }
   on_signal_.emplace(folder, made_ ? Unfinished::Kind::folder : Unfinished::Kind::contents);
 }
@@ -225,7 +226,7 @@ void require_not_an_input(const fs::path& output, std::span<const fs::path> inpu
   for (const fs::path& input : inputs) {
     const std::optional<struct stat> other = input.empty() ? std::nullopt : status_of(input);
     if (other && other->st_dev == own->st_dev && other->st_ino == own->st_ino) {
-      throw BadInput(output.string() + ": the file is both input and output; choose another output name");
+      throw BadInput(fmt::format("{}: the file is both input and output; choose another output name", output.string()));
     }
   }
 }

@@ -131,7 +131,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     }
     table.rows.push_back(std::move(row));
   }
-  if (header_due) throw BadInput(path.string() + ": the file is empty; it must begin with '" + header + "'");
+  if (header_due) throw BadInput(fmt::format("{}: the file is empty; it must begin with '{}'", path.string(), header));
   return table;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -74,7 +76,7 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
     return BinnedMetric{base, axis, edges<kAxis>()[kBin], edges<kAxis>()[kBin + 1]}.name();
   };
   all.push_back({{name("rate_error_median_rad_s"), Unit::rad_s,
-                  "median rate error (norm) over clipped samples " + words, Sense::lower},
+                  fmt::format("median rate error (norm) over clipped samples {}", words), Sense::lower},
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 50>});
   all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s,

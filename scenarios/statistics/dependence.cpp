@@ -80,8 +80,8 @@ Interval centre_of(std::span<const double> values, Centre centre) {
   if (centre == Centre::median) return median_interval(values);
   for (const double value : values) {
     if (value != 0.0 && value != 1.0)
-      throw BadInput(
-          fmt::format("dependence: a value is {}; for a share, each value must be 0 or 1", std::to_string(value)));
+      throw BadInput(fmt::format("partial dependence: an outcome is {}; a failure rate needs outcomes of 0 or 1",
+                                 std::to_string(value)));
   }
   const auto count = static_cast<std::int64_t>(std::count(values.begin(), values.end(), 1.0));
   return share_interval(count, static_cast<std::int64_t>(values.size()));

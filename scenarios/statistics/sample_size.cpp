@@ -20,7 +20,8 @@ namespace {
 void require(const Plan& plan) {
   for (const auto& [name, value] : {std::pair{"risk", plan.risk}, std::pair{"power", plan.power}}) {
     if (!(value > 0.0 && value < 1.0))
-      throw BadInput(fmt::format("plan: {} is {}; it must be within (0, 1)", name, std::to_string(value)));
+      throw BadInput(
+          fmt::format("sample size: {} is {}; it must be greater than 0 and less than 1", name, std::to_string(value)));
   }
 }
 

@@ -149,8 +149,8 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
     throw BadInput(fmt::format("{}: this file stores the question '{}', but this run asks '{}'; choose another file",
                                database.string(), known, asked));
   if (!results.outcomes().empty())
-    throw BadInput(database.string() +
-                   ": this file contains draws from a run without this question; choose another file");
+    throw BadInput(fmt::format("{}: this file contains draws from a run without this question; choose another file",
+                               database.string()));
   results.set_note(kQuestionNote, asked);
 }
 

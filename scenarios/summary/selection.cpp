@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/selection.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -20,7 +22,7 @@ void require_named(const std::string& what, std::span<const std::string> names, 
     if (known.contains(name)) continue;
     const std::string near = sim::nearest_name(name, std::vector<std::string>(known.begin(), known.end()));
     throw BadInput("the results contain no " + what + " '" + name + "'" +
-                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
+                   (near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
   }
 }
 

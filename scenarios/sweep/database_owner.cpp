@@ -2,6 +2,7 @@
 #include "scenarios/sweep/database_owner.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -73,8 +74,9 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
       const std::string holder = who_holds(fd);
       close(fd);
       if (error != EWOULDBLOCK) fail_to_lock(lock_, error);
-      throw BadInput(database.string() + ": " + holder +
-                     " is writing to this database; choose another file, or wait until that process ends");
+      throw BadInput(
+          fmt::format("{}: {} is writing to this database; choose another file, or wait until that process ends",
+                      database.string(), holder));
     }
     if (is_at(lock_, fd)) {
       fd_ = fd;

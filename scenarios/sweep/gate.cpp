@@ -145,7 +145,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
     result.fault =
-        "the metric has no value, in contrast to the accepted run, at seed " + std::to_string(found.lost.front());
+        fmt::format("the metric has no value, in contrast to the accepted run, at seed {}", found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -282,10 +282,10 @@ void require_acceptable(const GateRun& run) {
     const std::string what =
         "cannot accept this run: " + method.scenario + ", " + to_string(method.kind) + "/" + method.method;
     for (std::size_t k = 0; k < run.seeds.size(); ++k) {
-      if (!method.status[k]) throw BadInput(what + " has no result at seed " + std::to_string(run.seeds[k]));
+      if (!method.status[k]) throw BadInput(fmt::format("{} has no result at seed {}", what, run.seeds[k]));
     }
     if (std::find(method.status.begin(), method.status.end(), OutcomeStatus::ok) == method.status.end()) {
-      throw BadInput(what + " has no result with status ok");
+      throw BadInput(fmt::format("{} has no result with status ok", what));
     }
   }
 }

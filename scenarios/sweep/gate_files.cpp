@@ -56,9 +56,9 @@ std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   std::vector<std::uint64_t> seeds;
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     std::uint64_t seed = 0;
-    if (!read_number(line.cells[i], seed)) line.fail("'" + line.cells[i] + "' is not a seed");
+    if (!read_number(line.cells[i], seed)) line.fail(fmt::format("the header cell '{}' is not a seed", line.cells[i]));
     if (!seeds.empty() && seed <= seeds.back())
-      line.fail("seeds must increase from column to column; found " + line.cells[i]);
+      line.fail(fmt::format("seeds must increase from column to column; found {}", line.cells[i]));
     seeds.push_back(seed);
   }
   return seeds;
@@ -82,8 +82,8 @@ void require_method(const GateLine& line, const MethodRun& run, std::span<const 
   try {
     find_methods(full_name(run.kind, run.method));
   } catch (const BadInput& error) {
-    line.fail(std::string(error.what()) +
-              " (to use a method that a file describes, give the file: --method FILE.yaml)");
+    line.fail(
+        fmt::format("{} (to use a method that a file describes, give the file: --method FILE.yaml)", error.what()));
   }
 }
 
@@ -99,8 +99,8 @@ void read_values(const GateLine& line, MethodRun& run) {
   const std::vector<std::string> known = held_metrics(run.kind);
   const std::string& metric = line.cells[3];
   if (std::find(known.begin(), known.end(), metric) == known.end()) {
-    line.fail("'" + metric + "' is not a metric that the gate checks for methods of kind " + to_string(run.kind) +
-              suggestion(metric, known));
+    line.fail(fmt::format("'{}' is not a metric that the gate checks for methods of kind {}{}", metric,
+                          to_string(run.kind), suggestion(metric, known)));
   }
   const auto [place, is_new] = run.values.try_emplace(metric);
   if (!is_new) line.fail("'" + metric + "' occurs twice");
@@ -108,7 +108,7 @@ void read_values(const GateLine& line, MethodRun& run) {
     double value = std::numeric_limits<double>::quiet_NaN();
     const bool none = line.cells[i].empty();
     if (!none && (!read_number(line.cells[i], value) || !std::isfinite(value))) {
-      line.fail("'" + line.cells[i] + "' is not a finite number");
+      line.fail(fmt::format("the cell '{}' is not a finite number", line.cells[i]));
     }
     place->second.push_back(value);
   }
@@ -161,7 +161,7 @@ GateRun parse_gate_run(const std::string& text, const std::string& file, std::sp
     else
       read_row(line, described, run);
   }
-  if (run.methods.empty()) throw BadInput(file + ": has no accepted results");
+  if (run.methods.empty()) throw BadInput(fmt::format("{}: has no accepted results", file));
   return run;
 }
 
@@ -178,7 +178,7 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   Gate gate;
   gate.suite = fields.at("suite").text();
   if (!is_file && gate.suite != name)
-    fields.at("suite").fail(fmt::format("the value is '{}'; it must be '{}'", gate.suite, name));
+    fields.at("suite").fail(fmt::format("the suite is '{}'; it must be '{}'", gate.suite, name));
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);

@@ -2,6 +2,7 @@
 #include "scenarios/sweep/results.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <string_view>
@@ -74,7 +75,7 @@ Results::Results(const std::filesystem::path& path, Mode mode) {
     impl_->check(mode);
   } catch (const SQLite::Exception& error) {
     if (error.getErrorCode() == kSqliteBusy) throw BadInput(path.string() + ": " + kBusy);
-    throw BadInput(path.string() + ": the file is not a usable results database: " + error.what());
+    throw BadInput(fmt::format("{}: the file is not a usable results database: {}", path.string(), error.what()));
   }
 }
 

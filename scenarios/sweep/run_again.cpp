@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/run_again.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -67,9 +69,10 @@ Setting setting_from(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(begin, end, setting.value);
   if (setting.key.empty() || begin == end || error != std::errc() || stop != end || !std::isfinite(setting.value))
-    throw BadInput("'" + text +
-                   "': must have the form KEY=NUMBER, for example world.rock_count=10; keys that vary together are "
-                   "joined with '+'");
+    throw BadInput(
+        fmt::format("'{}' must have the form KEY=NUMBER, for example world.rock_count=10; keys that vary together are "
+                    "joined with '+'",
+                    text));
   return setting;
 }
 

@@ -43,7 +43,7 @@ std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) 
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
-      node.fail("a key is empty or occurs twice in '" + text + "'");
+      node.fail(fmt::format("a key is empty or occurs twice in '{}'", text));
     }
     keys.push_back(key);
   }
@@ -59,7 +59,7 @@ Variation read_variation(const DataRoot& data, const Suite& suite, const std::st
     }
     curve.values.push_back(value);
   }
-  if (curve.values.empty()) node.fail("no values are given for '" + text + "'");
+  if (curve.values.empty()) node.fail(fmt::format("no values are given for '{}'", text));
   try {
     check(curve, data, suite.scenarios, suite.first_seed);
   } catch (const BadInput& error) {
@@ -221,7 +221,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;
-  suite.doc = "runs every method on the scenario " + name;
+  suite.doc = fmt::format("runs every method on the scenario {}", name);
   suite.scenarios = {name};
   suite.methods = every_method();
   return suite;
@@ -264,7 +264,7 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
     Suite suite = read_suite(data, path);
     if (suite.name != name)
       throw BadInput(
-          fmt::format("{}: name is '{}'; it must be the name of the file, '{}'", path.string(), suite.name, name));
+          fmt::format("{}: the name is '{}'; it must be the name of the file, '{}'", path.string(), suite.name, name));
     return suite;
   }
   const std::vector<std::string> scenarios = scenario_names(data), cases = case_names(data);
@@ -276,7 +276,7 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
   }
   suites.insert(suites.end(), cases.begin(), cases.end());
   suites.insert(suites.end(), scenarios.begin(), scenarios.end());
-  throw BadInput("unknown suite or scenario '" + name + "'" + suggestion(name, suites));
+  throw BadInput(fmt::format("unknown suite or scenario '{}'{}", name, suggestion(name, suites)));
 }
 
 }  // namespace tumble::scenarios

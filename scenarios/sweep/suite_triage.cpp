@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/suite_triage.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 
 #include <algorithm>
@@ -90,7 +91,7 @@ bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, con
     workers.push_back({index, deadline_s, Process(work, true), {}});
     return true;
   } catch (const std::system_error& error) {
-    if (workers.empty()) throw BadInput(std::string("cannot start a worker process: ") + error.what());
+    if (workers.empty()) throw BadInput(fmt::format("cannot start a worker process: {}", error.what()));
     return false;
   }
 }

@@ -167,7 +167,7 @@ class Sweep {
     try {
       workers_.emplace_back(terms_);
     } catch (const std::system_error& error) {
-      if (workers_.empty()) throw BadInput(std::string("cannot start a worker process: ") + error.what());
+      if (workers_.empty()) throw BadInput(fmt::format("cannot start a worker process: {}", error.what()));
       return false;  // retry after another process has ended
     }
     return workers_.back().give(task, deadline_s);
@@ -339,8 +339,8 @@ void require_sound(const Suite& suite, const SweepOptions& options) {
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
-      throw BadInput(std::string("'") + to_string(status) +
-                     "' cannot be run again; possible statuses: crashed, timeout, killed");
+      throw BadInput(fmt::format(
+          "runs with status '{}' cannot be repeated; possible statuses: crashed, timeout, killed", to_string(status)));
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/sweep_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -45,8 +47,8 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   const auto idle = [](const auto& each) { return each.methods.empty(); };
   if (std::all_of(scenarios_.begin(), scenarios_.end(), idle) &&
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
-    throw BadInput("suite " + suite.name +
-                   ": none of the suite's methods applies to its scenarios; add a method for this robot");
+    throw BadInput(fmt::format(
+        "suite {}: none of the suite's methods applies to its scenarios; add a method for this robot", suite.name));
   }
   // If no situation can be drawn from a scenario of the catalogue, the caller gets an exception instead of an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
@@ -63,9 +65,10 @@ void SweepPlan::require_same_recordings(const Results& results) const {
   for (const Recorded& each : recordings_) {
     for (const Outcome& row : results.outcomes_of(each.recording.name, kRecordingSeed)) {
       if (row.recording_digest.empty() || row.recording_digest == each.recording.digest) continue;
-      throw BadInput(each.recording.path.string() + ": has digest " + each.recording.digest +
-                     ", but the results belong to a recording with the digest " + row.recording_digest +
-                     "; name another database");
+      throw BadInput(
+          fmt::format("{}: the recording has the digest {}, but the results belong to a recording with the digest {}; "
+                      "name another database",
+                      each.recording.path.string(), each.recording.digest, row.recording_digest));
     }
   }
 }

@@ -64,10 +64,8 @@ std::pair<std::string, std::string> method_and_parameter(const std::string& key)
 
 void require_settable(const std::string& key, const sim::Parameter& parameter, double value) {
   if (value >= parameter.low && value <= parameter.high) return;
-  std::ostringstream text;
-  text << "'" << key << "' is " << value << " " << parameter.unit << "; it must be within [" << parameter.low << ", "
-       << parameter.high << "]";
-  throw BadInput(text.str());
+  throw BadInput(fmt::format("key '{}' is {:g} {}; it must be within [{:g}, {:g}]", key, value, parameter.unit,
+                             parameter.low, parameter.high));
 }
 
 void check_parameter(const std::string& key, std::span<const double> values) {
@@ -75,14 +73,14 @@ void check_parameter(const std::string& key, std::span<const double> values) {
   const Method& method = *find_methods(name).front();
   const sim::Parameter* const parameter = find_parameter(method.info.parameters, number);
   if (parameter == nullptr) {
-    throw BadInput(fmt::format("'{}': unknown parameter '{}' of method {}{}", key, number, name,
+    throw BadInput(fmt::format("key '{}': unknown parameter '{}' of method {}{}", key, number, name,
                                suggestion(number, names_of(method.info.parameters))));
   }
   const auto is_whole = [&](const SettingsTable* stage) { return stage->is_whole(parameter->name); };
   const bool whole = std::any_of(method.info.settings.begin(), method.info.settings.end(), is_whole);
   for (const double value : values) {
     require_settable(key, *parameter, value);
-    if (whole && value != std::floor(value)) throw BadInput("'" + key + "' must be a whole number");
+    if (whole && value != std::floor(value)) throw BadInput(fmt::format("key '{}' must be a whole number", key));
   }
 }
 
@@ -90,11 +88,12 @@ void check_given(const std::string& key, std::span<const double> values, const S
   const GivenError& error = given_error(key);
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
-    throw BadInput(fmt::format("'{}': the first sensor of scenario {} must be an IMU", key, scenario.name));
+    throw BadInput(fmt::format("key '{}': the first sensor of scenario {} must be an IMU", key, scenario.name));
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
-  if (error.needs_lidar && !lidar) throw BadInput(fmt::format("'{}': scenario {} has no lidar", key, scenario.name));
+  if (error.needs_lidar && !lidar)
+    throw BadInput(fmt::format("key '{}': scenario {} has no lidar", key, scenario.name));
 }
 
 }  // namespace
@@ -127,8 +126,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
   for (const std::string& key : variation.keys) {
     const Reach own = reach_of(key), first = reach_of(variation.keys.front());
     if (own != first) {
-      throw BadInput(fmt::format("'{}' is {} and '{}' is {}; keys of different kinds cannot vary together", key,
-                                 words(own), variation.keys.front(), words(first)));
+      throw BadInput(fmt::format("key '{}' is {}, and key '{}' is {}; keys of different kinds cannot vary together",
+                                 key, words(own), variation.keys.front(), words(first)));
     }
     if (own == Reach::method) check_parameter(key, variation.values);
     for (const std::string& name : scenarios) {

@@ -250,7 +250,7 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"},
           "a shard contains only a part of the draws");
   // the sweep detects this error after opening the database: a database that the sweep made is removed
-  refused({"--again", "ok"}, "'ok' cannot be run again");
+  refused({"--again", "ok"}, "runs with status 'ok' cannot be repeated");
   refused({}, "split the range of seeds into parts", "1..20000000");
   refused({"--shard", "1/2"}, "split the range of seeds into parts", "0..18446744073709551615");
   EXPECT_TRUE(fs::is_empty(database.parent_path())) << fs::directory_iterator(database.parent_path())->path();

@@ -105,7 +105,7 @@ class RigPage(Case):
 
     def test_it_holds_the_results(self):
         text = self.text(overlap=0.8)
-        for expected in ("−75.0 %", "2.00 rad/s", "80.0 %", "−90.0 %", "2 runs of", "8.66 rad/s"):
+        for expected in ("−75.0 %", "2.00 rad/s", "80.0 %", "−90.0 %", "2 simulated runs of", "8.66 rad/s"):
             self.assertIn(expected, text)
 
     def test_another_result_makes_it_stale(self):
@@ -115,7 +115,7 @@ class RigPage(Case):
 
     def test_draws_that_clip_two_elements_are_told_apart(self):
         self.assertEqual(rig.draws_with_one({1: self.recording(1), 2: self.recording(2), 3: self.recording(3)}), [1])
-        self.assertIn("1 of the 2 simulated runs are most similar to the paper", self.text(overlap=0.8))
+        self.assertIn("1 of 2 simulated runs that are most similar to the paper", self.text(overlap=0.8))
 
 
 class Legs(unittest.TestCase):

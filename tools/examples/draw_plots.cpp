@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/examples/draw_plots.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -95,9 +97,8 @@ std::vector<std::size_t> drawn_of(const std::vector<bool>& first) {
 }
 
 std::string RunPaths::left_out_text() const {
-  return left_out == 0
-             ? ""
-             : " There are too few colours for " + std::to_string(left_out) + " more estimates, which are left out.";
+  return left_out == 0 ? ""
+                       : fmt::format(" There are too few colours for {} more estimates, which are left out.", left_out);
 }
 
 RunPaths paths_of(const scenarios::RunResult& run) {
@@ -144,9 +145,10 @@ Plot rate_plot(const scenarios::RunResult& run) {
     plot.lines.push_back(sampled_rate("gyro reading", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
     plot.lines.back().colour = colour;
   }
-  plot.caption = std::string("The plot shows the angular velocity about the sensor's ") + "xyz"[axis] +
-                 " axis, which clips most often. The gyro is saturated where its line is flat. Drag to zoom; "
-                 "double-click to reset.";
+  plot.caption = fmt::format(
+      "The plot shows the angular velocity about the sensor's {} axis, which clips most often. The gyro is saturated "
+      "where its line is flat. Drag to zoom; double-click to reset.",
+      "xyz"[axis]);
   plot.x_title = "time [s]";
   plot.y_title = "rate [rad/s]";
   plot.over_time = true;
@@ -165,9 +167,10 @@ Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths) {
     cut = cut || shown.points_W_m.size() < paths.paths[i].points_W_m.size();
     plot.lines.push_back(path_line(paths.methods[i], static_cast<int>(i), 1.8, shown));
   }
-  plot.caption =
-      "The plot shows the path from above, with equal scales on both axes. Each estimate starts at the true position." +
-      paths.left_out_text();
+  plot.caption = fmt::format(
+      "The plot shows the path from above, with equal scales on both axes. Each estimate starts at the true "
+      "position.{}",
+      paths.left_out_text());
   if (cut) plot.caption += " A diverged path is cut at the border of the picture.";
   plot.x_title = "x [m]";
   plot.y_title = "y [m]";

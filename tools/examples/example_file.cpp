@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -82,18 +84,18 @@ fs::path unfinished(const fs::path& folder) {
 
 std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw BadInput(path.string() + ": the file cannot be read; give a regular file");
+  if (!file) throw BadInput(fmt::format("{}: the file cannot be read; give a regular file", path.string()));
   try {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   } catch (const std::ios_base::failure& error) {  // opening a folder succeeds, but reading it fails
-    throw BadInput(path.string() + ": the file cannot be read: " + error.what());
+    throw BadInput(fmt::format("{}: the file cannot be read: {}", path.string(), error.what()));
   }
 }
 
 /// The list may come from an untrusted source, so only files in the list's folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
-    throw BadInput("'" + name + "' must be the name of a " + what + " in the same folder");
+    throw BadInput(fmt::format("'{}' must be the name of a {} in the same folder", name, what));
   return name;
 }
 
@@ -145,7 +147,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.replay = replay_name(from);
   std::error_code error;
   if (pictures == Pictures::read && !example.replay.empty() && !fs::is_regular_file(folder / example.replay, error))
-    throw BadInput((folder / example.replay).string() + ": the file cannot be read");
+    throw BadInput(fmt::format("{}: the file cannot be read", (folder / example.replay).string()));
   return example;
 }
 
@@ -156,7 +158,7 @@ json read_list(const fs::path& folder) {
   if (fs::status(path, error).type() == fs::file_type::not_found) return json();
   json list = json::parse(read_bytes(path));
   if (list.at("format") != kFormat || list.at("version") != kVersion)
-    throw BadInput("is not a list of examples of version " + std::to_string(kVersion));
+    throw BadInput(fmt::format("this file is not a list of examples of version {}", kVersion));
   return list;
 }
 
@@ -262,7 +264,8 @@ void write_examples(const fs::path& folder, const std::vector<std::string>& exam
     std::error_code error;
     if (!fs::exists(unfinished(folder) / name, error)) continue;  // the file was moved already
     fs::rename(unfinished(folder) / name, folder / name, error);
-    if (error) throw BadInput((folder / name).string() + ": the file cannot be written: " + error.message());
+    if (error)
+      throw BadInput(fmt::format("{}: the file cannot be written: {}", (folder / name).string(), error.message()));
   }
   discard_unfinished(folder);
   for (const std::string& name : before) {
@@ -299,7 +302,7 @@ fs::path set_damaged_aside(const fs::path& folder) {
   std::error_code error;
   for (int k = 2; fs::exists(aside, error); ++k) aside = name + "." + std::to_string(k);
   fs::copy_file(list_file(folder), aside, error);
-  if (error) throw BadInput(aside.string() + ": the file cannot be written: " + error.message());
+  if (error) throw BadInput(fmt::format("{}: the file cannot be written: {}", aside.string(), error.message()));
   return aside;
 }
 

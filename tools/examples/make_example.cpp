@@ -53,8 +53,9 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
   example.pictures.push_back(
       {"maps",
        "maps next to each other, coloured by error",
-       "The picture shows these maps, from left to right: " + names +
-           ". The colour of each point shows its distance to the true surface, from 0 (blue) to 1 m or more (red).",
+       fmt::format("The picture shows these maps, from left to right: {}. The colour of each point shows its distance "
+                   "to the true surface, from 0 (blue) to 1 m or more (red).",
+                   names),
        {},
        sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
@@ -79,11 +80,12 @@ Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {
 }
 
 void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
-  ExamplePicture picture{"scene",
-                         "the robot along its path, with true and estimated paths",
-                         "The picture shows the robot at equal distances along its path." + paths.left_out_text(),
-                         {{"truth", kTruthColour}},
-                         {}};
+  ExamplePicture picture{
+      "scene",
+      "the robot along its path, with true and estimated paths",
+      fmt::format("The picture shows the robot at equal distances along its path.{}", paths.left_out_text()),
+      {{"truth", kTruthColour}},
+      {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i)
     picture.legend.emplace_back(paths.methods[i], static_cast<int>(i));
   // many closely spaced spheres would hide the path

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/pictures/webp.hpp"
 
+#include <fmt/format.h>
 #include <webp/encode.h>
 #include <webp/mux.h>
 
@@ -43,10 +44,10 @@ class WebpPicture {
 
 WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::make_unique<Impl>()) {
   if (width < 1 || height < 1 || width > WEBP_MAX_DIMENSION || height > WEBP_MAX_DIMENSION)
-    throw std::invalid_argument("a WebP picture has " + std::to_string(width) + " by " + std::to_string(height) +
-                                " pixels; width and height must be from 1 to " + std::to_string(WEBP_MAX_DIMENSION));
+    throw std::invalid_argument(fmt::format("a WebP picture has {} by {} pixels; width and height must be from 1 to {}",
+                                            width, height, WEBP_MAX_DIMENSION));
   if (!(quality >= 0.0f && quality <= 100.0f))
-    throw std::invalid_argument("quality is " + std::to_string(quality) + "; it must be within [0, 100]");
+    throw std::invalid_argument(fmt::format("quality is {}; it must be within [0, 100]", std::to_string(quality)));
   impl_->width = width;
   impl_->height = height;
   WebPAnimEncoderOptions options;

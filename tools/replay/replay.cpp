@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/replay/replay.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -29,9 +31,9 @@ constexpr float kAround_m = 2.5f;  ///< distance from the path within which the 
 void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     if (lidar.offset_ns.size() != lidar.position_L_m.size())
-      throw scenarios::BadInput("replay: lidar '" + lidar.name + "' has " + std::to_string(lidar.position_L_m.size()) +
-                                " points and " + std::to_string(lidar.offset_ns.size()) +
-                                " time stamps; the numbers must be equal");
+      throw scenarios::BadInput(
+          fmt::format("replay: lidar '{}' has {} points and {} time stamps; the numbers must be equal", lidar.name,
+                      lidar.position_L_m.size(), lidar.offset_ns.size()));
   }
 }
 

@@ -153,11 +153,12 @@ std::string caption_of(const Curve& curve) {
   const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return what + curve.metric + " against " + axis + ", with each value applied to every draw.";
+      return fmt::format("{}{} against {}, with each value applied to every draw.", what, curve.metric, axis);
     case Curve::Source::samples:
-      return what + curve.metric + " over the clipped samples of a draw that lie in each bin of " + axis + ".";
+      return fmt::format("{}{} over the clipped samples of a draw that lie in each bin of {}.", what, curve.metric,
+                         axis);
     case Curve::Source::draws:
-      return what + curve.metric + " against " + axis + " of the draw, in bins with equal numbers of draws.";
+      return fmt::format("{}{} against {} of the draw, in bins with equal numbers of draws.", what, curve.metric, axis);
   }
   return what;
 }

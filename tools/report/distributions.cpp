@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/distributions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,8 +22,8 @@ using nlohmann::json;
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
-  return " For scenarios with more draws, the plot shows only " + std::to_string(kBoxPoints) +
-         " draws, at equal steps of rank.";
+  return fmt::format(" For scenarios with more draws, the plot shows only {} draws, at equal steps of rank.",
+                     kBoxPoints);
 }
 
 json shaded(const Spread& spread) {
@@ -50,8 +52,9 @@ json layout_of(const Spread& spread) {
 /// Returns the caption of the histograms of one quantity.
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
-  std::string out = "The histogram shows the distribution over the draws: " + spread.quantity + ".";
-  if (!spread.published.empty()) out += " Published value for the rig: " + spread.published + " " + spread.unit + ".";
+  std::string out = fmt::format("The histogram shows the distribution over the draws: {}.", spread.quantity);
+  if (!spread.published.empty())
+    out += fmt::format(" Published value for the rig: {} {}.", spread.published, spread.unit);
   return out + thinned_text(spreads);
 }
 

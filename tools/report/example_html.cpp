@@ -48,7 +48,7 @@ std::string plots_html(const Example& example, const Palette& palette, std::vect
 
 std::string example_html(const ShownExample& shown, const Palette& palette, std::vector<Figure>& figures) {
   const Example& example = shown.example;
-  std::string out = "<p>" + escaped(example.choice) + ". The sweep ran this draw again for the page";
+  std::string out = fmt::format("<p>{}. The sweep ran this draw again for the page", escaped(example.choice));
   out += shown.of_these_results ? "; the recording has the same digest as in the results.</p>\n"
                                 : ". The pictures do not match these results, because another build or an earlier run "
                                   "created the pictures.</p>\n";
@@ -76,7 +76,7 @@ std::string moving_html(const ShownExample& shown) {
   // the browser selects still or animated picture without a script; without a still picture, the animation is always
   // shown
   if (!example.moving.empty() && has_picture) {
-    out += "<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"" + still + "\">";
+    out += fmt::format("<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"{}\">", still);
   }
   out += "<img alt=\"" + escaped(has_picture ? example.pictures.front().alternative : example.motion) + "\" src=\"" +
          (example.moving.empty() ? still : html::webp_address(example.moving)) + "\"></picture><figcaption>" +

@@ -50,10 +50,12 @@ std::string draws_text(const Summary& summary) {
 /// Describes the input data of the methods and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
-    return "The data are " + draws_text(content.summary) +
-           " from simulation with known truth. All methods received the same recordings.";
-  return "All methods received the same recordings (" + names_text(content.summary.scenarios, "of them") +
-         ") and are scored against the truth or the reference that each recording contains.";
+    return fmt::format("The data are {} from simulation with known truth. All methods received the same recordings.",
+                       draws_text(content.summary));
+  return fmt::format(
+      "All methods received the same recordings ({}) and are scored against the truth or the reference that each "
+      "recording contains.",
+      names_text(content.summary.scenarios, "of them"));
 }
 
 /// Describes the tasks of the contests.
@@ -99,8 +101,9 @@ std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
   if (!std::isfinite(own.value)) {
     const scenarios::MetricComparison& row = result.row;
-    if (!std::isfinite(row.median)) return row.contest.method + " failed on at least half of the draws";
-    if (!std::isfinite(row.against_median)) return row.contest.against + " failed on at least half of the draws";
+    if (!std::isfinite(row.median)) return fmt::format("{} failed on at least half of the draws", row.contest.method);
+    if (!std::isfinite(row.against_median))
+      return fmt::format("{} failed on at least half of the draws", row.contest.against);
     return "one of the two methods failed on at least half of the draws";
   }
   const std::string value = styled_value(result.row.metric, own.value, true);

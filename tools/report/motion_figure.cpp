@@ -97,7 +97,7 @@ std::string caption_of(const MotionMap& map) {
       "largest values in published campaigns",
       draws, shown < draws ? fmt::format("; {} of the draws are shown as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
-  return out + ". The two maxima of a draw may occur at different instants.";
+  return fmt::format("{}. The two maxima of a draw may occur at different instants.", out);
 }
 
 }  // namespace

@@ -298,8 +298,9 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
 Figure cost_figure(const Summary& summary, const Palette& palette) {
   Figure figure;
   figure.id = "cost";
-  figure.caption = "The plot shows the CPU time of one estimate. Each point shows one draw; a box has at most " +
-                   std::to_string(kBoxPoints) + " points.";
+  figure.caption = fmt::format(
+      "The plot shows the CPU time of one estimate. Each point shows one draw; a box has at most {} points.",
+      kBoxPoints);
   std::set<Kind> kinds;
   for (const Section& section : summary.sections) kinds.insert(section.kind);
   Boxes boxes(scenarios::estimate_cost().name, palette);

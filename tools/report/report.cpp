@@ -162,7 +162,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   }
   // errors of the pictures must not hide the scores
   for (const std::string& what : found.unreadable)
-    content.warnings.push_back("The page cannot show some pictures of single draws: " + what);
+    content.warnings.push_back(fmt::format("The page cannot show some pictures of single draws: {}", what));
   if (!found.unreadable.empty()) return;
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }

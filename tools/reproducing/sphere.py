@@ -181,7 +181,7 @@ def page(runs: Runs, turns: dict[str, list[Turning]], legs: dict[str, list[Leg]]
 
 
 def jitter_table(steps: dict[str, np.ndarray]) -> Table:
-    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in ATTITUDES)])
+    table = Table(["quantity", "paper", *(LABELS[m] for m in ATTITUDES)])
     table.add("rms step at standstill", "0.229° (Madgwick), 0.0084° (complementary)",
               *(number(np.degrees(rms(np.linalg.norm(steps[m], axis=1)))) + "°" for m in ATTITUDES))
     return table
@@ -208,9 +208,9 @@ def distance_table(turns: dict[str, list[Turning]]) -> Table:
 
 
 def leg_table(legs: dict[str, list[Leg]]) -> Table:
-    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in POSITIONS)])
-    printed_slip = ("leg 1.52 m (rotation alone), 1.13 m (fusion)", "leg 1.47 m (rotation alone), 0.93 m (fusion)", "−10 to +10 % (fusion)", "all")
-    printed_slide = ("leg 0.81 m (rotation alone), 1.02 m (fusion)", "leg 0.48 m (rotation alone), 0.46 m (fusion)", "-", "1 of 2 (fusion)")
+    table = Table(["quantity", "paper", *(LABELS[m] for m in POSITIONS)])
+    printed_slip = ("1.52 m; 1.13 m", "1.47 m; 0.93 m", "−10 to +10 %", "all")
+    printed_slide = ("0.81 m; 1.02 m", "0.48 m; 0.46 m", "-", "1 of 2")
     for scenario, printed in ((SLIP, printed_slip), (SLIDE, printed_slide)):
         draws = legs[scenario]
         for k, which in enumerate(("first", "second")):
@@ -228,10 +228,10 @@ def leg_errors(legs: list[Leg], method: str) -> list[float]:
 
 
 def room_table(maps: dict[int, dict[str, np.ndarray]]) -> Table:
-    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in MAPS)])
+    table = Table(["quantity", "paper", *(LABELS[m] for m in MAPS)])
     below = {m: sum(int(np.sum(points[m][:, 2] < -BELOW_M)) for points in maps.values()) for m in MAPS}
     total = {m: sum(len(points[m]) for points in maps.values()) for m in MAPS}
-    table.add(f"map points below −{BELOW_M} m", "shown, not counted",
+    table.add(f"map points below −{BELOW_M} m", "not counted",
               *(f"{below[m]} of {total[m]} ({share(below[m] / max(1, total[m]))})" for m in MAPS))
     return table
 
@@ -311,18 +311,18 @@ PAGE = """# The rolling sphere: the paper next to our simulation
 The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI
 2021) roll a sphere with a diameter of 29 cm by hand. The published attitude filter Autogain switches between
 Madgwick's filter and a complementary filter. The published position filter fuses the rolling velocity with the
-integrated acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each
-scenario (seeds {first} to {last}). The numbers for the paper's figures come from data files that the authors
-published.
+integrated acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of
+each scenario (seeds {first} to {last}). The numbers for the paper's figures come from data files published by the
+authors.
 
 ## What is reproduced
 
-- The attitude from Madgwick's filter jumps at standstill, in the paper and in our simulation. The attitude steps of
-  the complementary filter are more than ten times smaller.
-- At the pace of the paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar errors. The error of
-  Autogain changes more slowly.
-- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter: above 2.1 rad/s, Autogain uses
-  Madgwick's step with weight 1.
+- In the paper and in our simulation, the attitude from Madgwick's filter jumps at standstill. The attitude steps
+  of the complementary filter are more than ten times smaller than the steps of Madgwick's filter.
+- At the pace of the paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar errors. The attitude
+  error of Autogain changes more slowly than the error of Madgwick's filter.
+- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter. Above 2.1 rad/s, Autogain
+  corrects the attitude only with the step of Madgwick's filter.
 
 ## What differs from the paper
 
@@ -340,38 +340,41 @@ published.
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at
-most twice the gain times the sample time: 0.092° at our 4 ms, and 0.229° at 10 ms. Successive steps of Madgwick's
-filter have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. At a correlation near −1, the
-filter alternates between two attitudes.
+A step is the rotation of the estimated attitude between two successive samples (figure 2 of the paper). A step of
+Madgwick's filter is at most twice the gain times the sample time. The largest step of Madgwick's filter is 0.092°
+at our sample time of 4 ms, and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a correlation
+of {lag1} in our simulation, and −0.83 in the paper's data. With a correlation near −1, the filter alternates
+between two attitudes.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). A step is the change of
-the distance between samples at 120 Hz. The second difference is the change of the step. Each cell is a median over
-the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a
-log of the paper's authors. The total variation of the paper's data covers 20.2 s and includes noise of the optical
-tracker.
+The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). In the table of
+distances, a step is the change of the distance between samples at 120 Hz. The second difference is the change
+between successive steps. Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in
+`slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log of the paper's authors. The paper's data for the total
+variation cover 20.2 s and include noise of the optical tracker.
 
 {distance}
-![distance to the truth and its derivative](sphere_distance.png)
+![distance to the truth](sphere_distance.png)
 
-The figure of distances shows the first simulated run of `slow_roll`.
+The figure of attitude distances shows the first simulated run of the scenario `slow_roll`.
 
 ## The L of 1 m × 1 m with slip and with slide
 
 {ways}
-- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The true lengths of
-  the legs (medians) are {true_legs}.
-- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than in rolling without
-  slip. On slippery patches of the scenario `slide_l`, a hand slows the rotation to at most 0.7 times the rate of
-  rolling without slip.
-- The column *published fusion* uses the radius of the sphere, 0.145 m. The column *published fusion, radius 0.29 m*
-  uses the diameter in place of the radius, as the authors' code does. While the velocity from the accelerometer is
-  near zero, the published fusion halves the rolling velocity. The doubled radius partly cancels this factor, and
-  gives nearly the leg lengths of the paper.
+- If a cell of the column *paper* has two lengths, the first is from rotation alone and the second from fusion.
+  Single values in the column *paper* are from fusion.
+- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The medians of the
+  true leg lengths are {true_legs}.
+- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than during rolling
+  without slip. On slippery patches of the scenario `slide_l`, a hand slows the rotation to at most 0.7 times the
+  rate of rolling without slip.
+- The column *published fusion* uses the radius of the sphere, 0.145 m. The column *published fusion, radius 0.29
+  m* uses the diameter in place of the radius, as the authors' code does. While the velocity from the accelerometer
+  is near zero, the published fusion halves the rolling velocity. The doubled radius partly cancels the halved
+  velocity, and gives nearly the leg lengths of the paper.
 
 ![paths with slip](sphere_slip.png)
 
@@ -379,14 +382,16 @@ The figure of distances shows the first simulated run of `slow_roll`.
 
 ![errors of the legs](sphere_legs.png)
 
-The figures of paths show three simulated runs of `slip_l` and of `slide_l` from above. In the scenario `slip` of the
-figure of leg errors, the sphere rolls 1 m in 2 to 5 s, faster than in the paper (5 to 9 s).
+The figures of paths show three simulated runs of `slip_l` and of `slide_l` from above. The figure of leg errors
+also shows the scenario `slip`. In the scenario `slip`, the sphere rolls 1 m in 2 to 5 s. The sphere of the paper
+needs 5 to 9 s.
 
 ## The map of a room
 
 {rooms}
-The table counts map points more than 0.1 m below the floor, in {rooms_draws} simulated runs of `roll` in a furnished
-room. The sphere of the paper rolls 4 m in 5 s. The figure shows the map of seed {map_seed} from the side.
+The table counts map points more than 0.1 m below the floor. The table covers {rooms_draws} simulated runs of the
+scenario `roll` in a furnished room. The sphere of the paper rolls 4 m in 5 s. The figure shows the map of seed
+{map_seed} from the side.
 
 ![the map from the side](sphere_map.png)
 """

@@ -45,7 +45,7 @@ Table::Table(std::string title, std::vector<std::string> header)
 
 void Table::add_row(std::vector<std::string> cells) {
   if (cells.size() > header_.size())
-    throw std::logic_error("table '" + title_ + "': a row has more cells than the header");
+    throw std::logic_error(fmt::format("table '{}': a row has more cells than the header", title_));
   cells.resize(header_.size());
   rows_.push_back(std::move(cells));
 }

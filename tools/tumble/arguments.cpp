@@ -27,7 +27,7 @@ using scenarios::BadInput;
 std::uint64_t parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
   if (!scenarios::read_number(text, seed))
-    throw BadInput("--seed is '" + text + "'; a seed must be a whole number from 0 to 2^64 - 1");
+    throw BadInput(fmt::format("--seed is '{}'; a seed must be a whole number from 0 to 2^64 - 1", text));
   return seed;
 }
 
@@ -38,8 +38,9 @@ std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text) {
       dots == std::string::npos
           ? scenarios::read_number(text, first) && scenarios::read_number(text, last)
           : scenarios::read_number(text.substr(0, dots), first) && scenarios::read_number(text.substr(dots + 2), last);
-  if (!read) throw BadInput("--seeds is '" + text + "'; write A..B with whole numbers A and B, for example 1..40");
-  if (last < first) throw BadInput("--seeds is '" + text + "'; the first seed must be at most the last seed");
+  if (!read)
+    throw BadInput(fmt::format("--seeds is '{}'; write A..B with whole numbers A and B, for example 1..40", text));
+  if (last < first) throw BadInput(fmt::format("--seeds is '{}'; the first seed must be at most the last seed", text));
   return {first, last};
 }
 
@@ -49,7 +50,7 @@ Shard parse_shard(const std::string& text) {
   const bool read = bar != std::string::npos && scenarios::read_number(text.substr(0, bar), shard.index) &&
                     scenarios::read_number(text.substr(bar + 1), shard.count);
   if (!read || shard.index < 1 || shard.index > shard.count || shard.count > 1000000) {
-    throw BadInput("--shard is '" + text + "'; write i/n with 1 <= i <= n <= 1000000, for example 2/8");
+    throw BadInput(fmt::format("--shard is '{}'; write i/n with 1 <= i <= n <= 1000000, for example 2/8", text));
   }
   return shard;
 }
@@ -73,7 +74,7 @@ void require_known(const std::string& what, const std::string& name, std::span<c
   const std::string near = sim::nearest_name(name, known);
   std::string line = "unknown " + what + " '" + name + "'";
   if (!near.empty()) {
-    line += "; did you mean '" + near + "'?";
+    line += fmt::format("; did you mean '{}'?", near);
   } else {
     line += "; known:";
     for (const std::string& each : known) line += " " + each;
@@ -92,7 +93,7 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
   const std::vector<scenarios::MethodPointer> found =
       scenarios::find_methods_within(std::vector<std::string>{name}, time_limit_s);
   if (found.size() == 1) return found.front();
-  std::string line = "--method " + name + " is the name of several methods; choose one of:";
+  std::string line = fmt::format("--method {} is the name of several methods; choose one of:", name);
   for (const scenarios::MethodPointer& method : found)
     line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
   throw BadInput(line);
@@ -121,7 +122,7 @@ std::string metric_of(const scenarios::Method& method, const std::string& name) 
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text) {
   if (!text.empty()) return parse_seed(text);
   if (scenario.named_case) return scenario.named_case->seed;
-  throw BadInput("--seed is missing; use --seed NUMBER to choose a draw of scenario '" + scenario.name + "'");
+  throw BadInput(fmt::format("--seed is missing; use --seed NUMBER to choose a draw of scenario '{}'", scenario.name));
 }
 
 // CLI11 does not convert a BadInput that the check throws.
@@ -147,9 +148,9 @@ int available_processors() {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw BadInput(folder.string() + ": cannot create this folder: " + error.message());
+  if (error) throw BadInput(fmt::format("{}: cannot create this folder: {}", folder.string(), error.message()));
   if (!std::filesystem::is_directory(folder, error))
-    throw BadInput(folder.string() + ": this path exists, but is not a folder; choose another path");
+    throw BadInput(fmt::format("{}: this path exists, but is not a folder; choose another path", folder.string()));
 }
 
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {
@@ -162,7 +163,7 @@ void require_ending(const std::filesystem::path& output, std::span<const std::st
   if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
   std::string allowed;
   for (const std::string_view each : endings) allowed.append(allowed.empty() ? "" : " or ").append(each);
-  throw BadInput(output.string() + ": the name of this output must end in " + allowed);
+  throw BadInput(fmt::format("{}: the name of this output must end in {}", output.string(), allowed));
 }
 
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,

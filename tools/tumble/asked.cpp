@@ -23,7 +23,8 @@ scenarios::Margin parse_margin(const std::string& option, const std::string& tex
   double value = 0.0;
   const std::string_view number = std::string_view(text).substr(0, text.size() - (relative ? 1 : 0));
   if (!scenarios::read_number(number, value) || !std::isfinite(value) || value < 0.0)
-    throw BadInput(option + " is '" + text + "'; write a number of at least 0, with or without %, for example 10%");
+    throw BadInput(
+        fmt::format("{} is '{}'; write a number of at least 0, with or without %, for example 10%", option, text));
   return {relative ? value / 100.0 : value, relative};
 }
 
@@ -32,9 +33,9 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
   std::stringstream stream(text + ":");  // the extra colon makes std::getline return an empty word after a final colon
   for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
   if (words.size() < 3 || words.size() > 4 || std::find(words.begin(), words.end(), "") != words.end())
-    throw BadInput("--until is '" + text +
-                   "'; write A:B:METRIC or A:B:METRIC:MARGIN, for example rate/tumble:rate/raw:" +
-                   scenarios::headline_metrics(scenarios::Kind::rate).front() + ":10%");
+    throw BadInput(
+        fmt::format("--until is '{}'; write A:B:METRIC or A:B:METRIC:MARGIN, for example rate/tumble:rate/raw:{}:10%",
+                    text, scenarios::headline_metrics(scenarios::Kind::rate).front()));
   std::vector<std::string> known;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(suite.methods))
     known.push_back(full_name(method->info));
@@ -61,7 +62,7 @@ Table table_of(const std::vector<scenarios::Answer>& answers, const Question& qu
           : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)
                                        : fmt::format(" by {:g}", question.margin.value),
           question.risk),
-      {"scenario", "answer", "seeds used", question.margin.value > 0.0 ? "better by it : not" : "better : worse",
+      {"scenario", "answer", "seeds used", question.margin.value > 0.0 ? "better by this : not" : "better : worse",
        "seeds needed at least"});
   table.align_right_from(2);
   for (const scenarios::Answer& each : answers) {

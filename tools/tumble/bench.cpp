@@ -60,7 +60,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
   if (suite.classes.empty())
-    throw BadInput("suite " + suite.name + " has no classes of draws; add the key 'draws' to the file of the suite");
+    throw BadInput(
+        fmt::format("suite {} has no classes of draws; add the key 'draws' to the file of the suite", suite.name));
   suite.methods = options.methods;
   return suite;
 }
@@ -86,8 +87,9 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   for (const fs::path& file : options.beside) {
     const std::vector<BenchResult> more = scenarios::read_bench_results(file);
     if (more.empty())
-      throw BadInput(file.string() +
-                     ": this file contains no bench results; 'tumble bench METHOD -o FILE.jsonl' writes bench results");
+      throw BadInput(fmt::format(
+          "{}: this file contains no bench results; 'tumble bench METHOD -o FILE.jsonl' writes bench results",
+          file.string()));
     all.insert(all.end(), more.begin(), more.end());
   }
   for (const BenchResult& each : all) scenarios::require_of_suite(each, suite);

@@ -38,7 +38,8 @@ Action declare_certify(VerbOptions& verb, const Session& session) {
   auto rows = std::make_shared<std::vector<std::string>>();
   std::string known;
   for (const scenarios::CertificateRow& row : scenarios::certificate_rows()) known += " " + row.name;
-  verb.add("--row", *rows, "measures only this row of the certificate; repeat the option for more rows:" + known)
+  verb.add("--row", *rows,
+           fmt::format("measures only this row of the certificate; repeat the option for more rows:{}", known))
       .one_at_a_time();
   return [&session, rows] { return certify(session, *rows); };
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/chosen_method.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
@@ -25,8 +27,8 @@ scenarios::MethodPointer chosen_method(const std::string& name, const scenarios:
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
-      refused = "method '" + full_name(method->info) +
-                "' needs the truth, which this verb never reads; use 'tumble run' instead";
+      refused = fmt::format("method '{}' needs the truth, which this verb never reads; use 'tumble run' instead",
+                            full_name(method->info));
     } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
       refused = "method '" + full_name(method->info) + "': it " + why;
     } else {
@@ -35,7 +37,7 @@ scenarios::MethodPointer chosen_method(const std::string& name, const scenarios:
   }
   if (fitting.empty()) throw BadInput(refused);
   if (fitting.size() > 1) {
-    std::string line = "--method " + name + " is the name of several methods; choose one of:";
+    std::string line = fmt::format("--method {} is the name of several methods; choose one of:", name);
     for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(method->info);
     throw BadInput(line);
   }

@@ -49,8 +49,9 @@ scenarios::ComparisonOptions read(const CompareOptions& options) {
   if (!options.margin.empty()) out.margin = parse_margin("--margin", options.margin);
   if (out.margin && !out.margin->relative && out.metrics.empty())
     throw BadInput(
-        "--margin " + options.margin +
-        " is in the unit of a metric, but no metric is named; add --metric, or give a percentage such as 10%");
+        fmt::format("--margin {} is in the unit of a metric, but no metric is named; add --metric, or give a "
+                    "percentage such as 10%",
+                    options.margin));
   out.risk = options.risk;
   out.power = options.power;
   return out;
@@ -200,9 +201,9 @@ int compare(const Session& session, const CompareOptions& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
   if (comparison.failures.empty())
-    throw BadInput(
-        options.database.string() +
-        ": no draw of this database has results of two of the named methods; name methods that ran on the same draws");
+    throw BadInput(fmt::format(
+        "{}: no draw of this database has results of two of the named methods; name methods that ran on the same draws",
+        options.database.string()));
   const bool apart = session.format == TableFormat::csv;
   std::vector<Table> tables = tables_of(comparison.metrics, "paired with ", [&](const MetricComparison& row) {
     return cells_of(row, asked.margin.has_value(), apart);

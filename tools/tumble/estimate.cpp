@@ -59,7 +59,7 @@ Table summary(const scenarios::Estimate& estimate) {
     count(what, states);
     if (states.empty()) return;
     const double covered_s = 1e-9 * static_cast<double>(states.back().time_ns - states.front().time_ns);
-    table.add_row({std::string("time from the first to the last of the ") + what, number_text(covered_s), "s"});
+    table.add_row({fmt::format("time from the first to the last of the {}", what), number_text(covered_s), "s"});
   };
   cover("angular rates", estimate.rates);
   cover("attitudes", estimate.attitudes);
@@ -78,8 +78,8 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const scenarios::MethodPointer chosen = chosen_method(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !method.info.calibrates_rig) {
-    throw BadInput("--learnt applies only to " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
-                   "' does not calibrate the rig");
+    throw BadInput(fmt::format("--learnt applies only to {}; '{}' does not calibrate the rig",
+                               LearntFile::learning_methods(), full_name(method.info)));
   }
   LearntFile learnt(options.learnt);
   const scenarios::Method learning = learnt.wrap(with_prior_map(method, options.prior_map));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -25,8 +27,8 @@ struct ExportOptions {
 std::string format_of(const ExportOptions& options) {
   const std::string format_name = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (format_name.empty())
-    throw scenarios::BadInput(options.out.string() +
-                              ": --format is missing; only the extensions .mcap, .bag and .tum imply a format");
+    throw scenarios::BadInput(fmt::format(
+        "{}: --format is missing; only the extensions .mcap, .bag and .tum imply a format", options.out.string()));
   return format_name;
 }
 
@@ -41,9 +43,9 @@ int said(const Session& session, const ExportOptions& options, const std::string
 int export_for_peer(const Session& session, const ExportOptions& options) {
   const auto refuse = [](bool given, const char* option) {
     if (given)
-      throw scenarios::BadInput(
-          std::string(option) +
-          ": this option does not apply with --for, which sets format and content; give only one of the two options");
+      throw scenarios::BadInput(fmt::format(
+          "{}: this option does not apply with --for, which sets format and content; give only one of the two options",
+          option));
   };
   refuse(!options.format.empty(), "--format");
   refuse(!options.points.empty(), "--points");
@@ -98,15 +100,17 @@ Action declare_export(VerbOptions& verb, const Session& session) {
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
   verb.add("RECORDING", options->recording, "reads this recording, FILE.h5").required().check(a_recording);
-  verb.add("--format", options->format,
-           "sets the format of the output, one of:" + known +
-               " [default: from the extension .mcap, .bag or .tum of the output]");
+  verb.add(
+      "--format", options->format,
+      fmt::format(
+          "sets the format of the output, one of:{} [default: from the extension .mcap, .bag or .tum of the output]",
+          known));
   std::string peers;
   for (const std::string& name : scenarios::peer_dialects()) peers += " " + name;
   verb.add("--for", options->peer,
-           "writes a folder for a published estimator. The folder contains a bag, the estimator's configuration for "
-           "the sensors of this recording, and manifest.json. Choose one of:" +
-               peers);
+           fmt::format("writes a folder for a published estimator. The folder contains a bag, the estimator's "
+                       "configuration for the sensors of this recording, and manifest.json. Choose one of:{}",
+                       peers));
   verb.add("--frame", options->frame,
            "sets the frame of the true poses in tum and kitti: body (centre of mass), centre (of a sphere's shell) or "
            "a sensor's name; use imu to compare with estimates of the rig [default: body]");

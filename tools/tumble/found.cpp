@@ -91,9 +91,9 @@ class Found {
     const Eigen::Vector3d arm_m = imus().front().T_BI.translation();
     const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
     add("lever arm of the IMU",
-        arm_stated ? vector_text(arm_m) + " m from the centre of mass"
-                   : "0: the IMU is assumed at the centre of mass. The error is harmless unless the gyro clips; then "
-                     "tracking may fail",
+        arm_stated ? fmt::format("{} m from the centre of mass", vector_text(arm_m))
+                   : "assumed 0: the IMU is at the centre of mass. A wrong lever arm is harmless unless the gyro "
+                     "clips, but can cause a tracking failure while the gyro clips",
         arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
     sim::LidarRecord& lidar = lidars().front();
     const bool pose_stated =
@@ -101,19 +101,21 @@ class Found {
     if (pose_stated) return add("pose of the lidar", pose_text(lidar.T_BL), kStated, kPoseOption);
     if (const auto& better = recording_.rotation.better_BL) {
       lidar.T_BL = *better;
-      return add("pose of the lidar",
-                 pose_text(lidar.T_BL) + ": attitude from the rotations of lidar and gyro; position 0", kMeasured,
-                 kPoseOption);
+      return add(
+          "pose of the lidar",
+          fmt::format("{}: the attitude comes from the rotations of lidar and gyro, and the position is assumed 0",
+                      pose_text(lidar.T_BL)),
+          kMeasured, kPoseOption);
     }
     add("pose of the lidar",
-        "equal to the pose of the body: tracking may fail if the error exceeds 1 deg or 5 cm; calibrated during the "
-        "run",
+        "assumed equal to the pose of the body and calibrated during the run. Tracking may fail if the error exceeds 1 "
+        "deg or 5 cm",
         kAssumed, kPoseOption);
   }
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
-        fmt::format("inside a box from {} to {} m around the lidar; these returns are dropped", vector_text(box.min()),
+        fmt::format("returns inside a box from {} to {} m around the lidar are removed", vector_text(box.min()),
                     vector_text(box.max())),
         stated ? kStated : kAssumed, "--own-body X Y Z X Y Z");
   }
@@ -139,9 +141,10 @@ class Found {
     if (!imu.device.empty()) return add("data sheet of the IMU", imu.device, kStated, option);
     const auto device = scenarios::probable_imu(imu, sheets_);
     if (!device)
-      return add("data sheet of the IMU",
-                 "none: the noise is assumed typical; the saturation limits are detected from the readings", kAssumed,
-                 option);
+      return add(
+          "data sheet of the IMU",
+          "no data sheet: the noise is assumed typical, and the saturation limits are detected from the readings",
+          kAssumed, option);
     scenarios::apply_sheet(*std::ranges::find(sheets_, device->device, &scenarios::DataSheet::device), imu);
     add("data sheet of the IMU", device->device + ": " + device->evidence, kByName, option);
   }
@@ -150,7 +153,9 @@ class Found {
     const std::string option = "--lidar NAME";
     if (!lidar.device.empty()) return add("data sheet of the lidar", lidar.device, kStated, option);
     const auto device = scenarios::probable_lidar(lidar, sheets_);
-    if (!device) return add("data sheet of the lidar", "none: no known device matches; not needed", kAssumed, option);
+    if (!device)
+      return add("data sheet of the lidar", "no known device matches; the data sheet is not required", kAssumed,
+                 option);
     lidar.device = device->device;
     add("data sheet of the lidar", device->device + ": " + device->evidence,
         device->evidence.starts_with("name") ? kByName : kMeasured, option);
@@ -159,11 +164,11 @@ class Found {
   void add_units(const sim::ImuRecord& imu) {
     const ImportOptions& options = recording_.options;
     const auto& agreement = recording_.rotation.primary;
-    const std::string evidence =
-        agreement && agreement->unit == 1.0
-            ? fmt::format(": equals the lidar's rotation within {} %", rounded(100.0 * agreement->unit_error))
-            : ": the motion does not allow a check against the lidar";
-    add("unit of the gyro", (options.gyro_unit.empty() ? "rad/s" : options.gyro_unit) + evidence,
+    const std::string evidence = agreement && agreement->unit == 1.0
+                                     ? fmt::format("the gyro's rotation equals the lidar's rotation within {} %",
+                                                   rounded(100.0 * agreement->unit_error))
+                                     : "this motion does not allow a check against the lidar";
+    add("unit of the gyro", fmt::format("{}: {}", options.gyro_unit.empty() ? "rad/s" : options.gyro_unit, evidence),
         agreement                                              ? kMeasured
         : options.gyro_unit.empty() || repaired("--gyro-unit") ? kAssumed
                                                                : kStated,
@@ -183,25 +188,24 @@ class Found {
         fmt::format("{} m/s^2; the first reading measures {} m/s^2 along {}",
                     rounded(recording_.content.sensors.gravity_m_s2), rounded(force.norm()),
                     vector_text(force.normalized())),
-        kMeasured, "none: the IMU may have any mounting");
+        kMeasured, "no option: any mounting is allowed");
   }
 
   static std::string point_times(const sim::LidarRecord& lidar) {
-    if (lidar.point_times == sim::PointTimes::unknown) return "none: sweeps are not deskewed";
+    if (lidar.point_times == sim::PointTimes::unknown) return "no point times: sweeps are not deskewed";
     if (lidar.point_times == sim::PointTimes::not_skewed) return "one instant per sweep";
     const auto last = lidar.offset_ns.empty() ? lidar.offset_ns.end() : std::ranges::max_element(lidar.offset_ns);
     const double longest_s = last == lidar.offset_ns.end() ? 0.0 : 1e-9 * static_cast<double>(*last);
-    return fmt::format("each point, up to {} s after the start of its sweep", rounded(longest_s));
+    return fmt::format("each point has a time, up to {} s after the start of its sweep", rounded(longest_s));
   }
 
   void add_clocks() {
     const auto& agreement = recording_.rotation.primary;
     if (!agreement)
-      return add("clock of the lidar", "equal to the stated time stamps; calibrated during the run", kAssumed,
-                 "--stamps");
+      return add("clock of the lidar", "the stated time stamps, calibrated during the run", kAssumed, "--stamps");
     add("clock of the lidar",
         agreement->delay_s == 0.0
-            ? std::string("equal to the clock of the IMU within some 10 ms; calibrated during the run")
+            ? std::string("agrees with the clock of the IMU within some 10 ms; calibrated during the run")
             : fmt::format("{} s {} the clock of the IMU", rounded(std::abs(agreement->delay_s)),
                           agreement->delay_s > 0.0 ? "after" : "before"),
         kMeasured, "--stamps");

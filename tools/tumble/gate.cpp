@@ -52,9 +52,10 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
 std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
-      throw scenarios::BadInput("--method " + name +
-                                ": give a FILE.yaml that describes an external method. The accepted results determine "
-                                "which methods of this build run; --accept adds methods");
+      throw scenarios::BadInput(
+          fmt::format("--method {}: give a FILE.yaml that describes an external method. The accepted results determine "
+                      "which methods of this build run; --accept adds methods",
+                      name));
   }
   return scenarios::find_methods(options.methods);
 }
@@ -76,8 +77,9 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   if (options.accept) return;  // with --accept, new scenarios of the suite are accepted with the others
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
-      throw scenarios::BadInput(full_name(method->info) + ": the gate of suite " + suite.name +
-                                " has no accepted results of this method; add the results with --accept");
+      throw scenarios::BadInput(
+          fmt::format("{}: the gate of suite {} has no accepted results of this method; add the results with --accept",
+                      full_name(method->info), suite.name));
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
@@ -155,8 +157,9 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   const scenarios::Gate gate =
       scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), given);
   if (gate.suite != suite) {
-    throw scenarios::BadInput(options.accepted.string() + ": this file contains the gate of suite '" + gate.suite +
-                              "', but the requested suite is '" + suite + "'");
+    throw scenarios::BadInput(
+        fmt::format("{}: this file contains the gate of suite '{}', but the requested suite is '{}'",
+                    options.accepted.string(), gate.suite, suite));
   }
   return gate;
 }
@@ -191,12 +194,13 @@ int run_gate(const Session& session, const GateOptions& options) {
   if (names_cases(data, options.suite)) return run_case_gate(session, data, options);
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
-    throw scenarios::BadInput("suite '" + suite.name + "' contains recordings; a gate needs draws of scenarios");
+    throw scenarios::BadInput(
+        fmt::format("suite '{}' contains recordings; a gate needs draws of scenarios", suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate needs a range of seeds");
+    throw scenarios::BadInput(fmt::format("suite '{}' names its draws; a gate needs a range of seeds", suite.name));
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
-    throw scenarios::BadInput("--against " + options.accepted.string() +
-                              ": the accepted results must be in a FILE.yaml");
+    throw scenarios::BadInput(
+        fmt::format("--against {}: the accepted results must be in a FILE.yaml", options.accepted.string()));
   suite.curves.clear();  // a gate covers scenarios at their stated settings only
   const std::vector<scenarios::MethodPointer> given = given_methods(options);
   const std::optional<scenarios::Gate> known = load(data, options, given, suite.name);

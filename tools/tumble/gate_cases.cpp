@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/gate_cases.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -52,9 +54,9 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
     }
   }
   if (out.size() != named.named_case->expected.size())
-    throw scenarios::BadInput(
-        "case " + named.name +
-        " has missing outcomes, because its draw cannot be simulated; correct or delete the file of the case");
+    throw scenarios::BadInput(fmt::format(
+        "case {} has missing outcomes, because its draw cannot be simulated; correct or delete the file of the case",
+        named.name));
   return out;
 }
 
@@ -95,10 +97,10 @@ void accept(const Session& session, const scenarios::DataRoot& data, scenarios::
   named.named_case->expected.clear();
   for (auto& [expected, outcome] : outcomes) {
     if (outcome.status == scenarios::OutcomeStatus::killed)
-      throw scenarios::BadInput(named.name + ", " + expected.method +
-                                ": the operating system killed the run, so the outcome cannot be accepted; free memory "
-                                "and run again. Message of the run: " +
-                                outcome.message);
+      throw scenarios::BadInput(
+          fmt::format("{}, {}: the operating system killed the run, so the outcome cannot be accepted; free memory and "
+                      "run again. Message of the run: {}",
+                      named.name, expected.method, outcome.message));
     expected = scenarios::accepted(expected, outcome);
     named.named_case->expected.push_back(expected);
   }
@@ -116,8 +118,8 @@ std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const
     scenarios::require_known(out.back());
   }
   if (out.empty())
-    throw scenarios::BadInput(data.regressions().string() +
-                              ": this folder contains no named case; 'tumble shrink' writes named cases");
+    throw scenarios::BadInput(fmt::format("{}: this folder contains no named case; 'tumble shrink' writes named cases",
+                                          data.regressions().string()));
   return out;
 }
 

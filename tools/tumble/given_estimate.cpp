@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/given_estimate.hpp"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "scenarios/errors.hpp"
@@ -32,10 +34,9 @@ void require_own(const std::filesystem::path& estimate, const std::filesystem::p
   const std::string own = scenarios::digest(sensors, nullptr);
   if (made_from.empty() || made_from == own) return;
   throw scenarios::BadInput(
-      estimate.string() +
-      ": this estimate belongs to another recording. The estimate was made from sensor data with digest " + made_from +
-      ", but the sensor data of " + recording.string() + " have digest " + own +
-      "; give the recording of the estimate");
+      fmt::format("{}: this estimate belongs to another recording. The estimate was made from sensor data with digest "
+                  "{}, but the sensor data of {} have digest {}; give the recording of the estimate",
+                  estimate.string(), made_from, recording.string(), own));
 }
 
 scenarios::StampSpan span_of(const sim::Sensors& sensors, const sim::Truth* truth) {

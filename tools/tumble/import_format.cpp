@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <array>
 #include <fstream>
 #include <map>
@@ -34,20 +36,21 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     const auto format = known.find(ending);
     if (format == known.end() || format->second == found) continue;
     if (!found.empty()) {
-      throw BadInput(folder.string() + ": this folder contains files of the formats " + found + " and " +
-                     format->second + "; select one format with --format");
+      throw BadInput(
+          fmt::format("{}: this folder contains files of the formats {} and {}; select one format with --format",
+                      folder.string(), found, format->second));
     }
     found = format->second;
   }
   if (found.empty() && tables) return "csv";
   if (found.empty())
-    throw BadInput(
-        folder.string() +
-        ": this folder contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag" +
+    throw BadInput(fmt::format(
+        "{}: this folder contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag{}",
+        folder.string(),
         (ros2_file.empty() ? ""
                            : "; create metadata.yaml with 'ros2 bag reindex', or import one file at a time, "
                              "for example " +
-                                 ros2_file));
+                                 ros2_file)));
   return found;
 }
 
@@ -103,9 +106,9 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
   if (ending.empty() && exists) return format_of_text(options.path);
-  throw BadInput(
-      options.path.string() +
-      ": the file name does not reveal the format; give --format (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)");
+  throw BadInput(fmt::format(
+      "{}: the file name does not reveal the format; give --format (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)",
+      options.path.string()));
 }
 
 }  // namespace tumble::tools

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/importing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -119,7 +121,8 @@ Imported import_recording(const Session& session, const ImportOptions& options, 
   if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
     scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
     if (options.reference.empty())
-      imported.notes.push_back("the reference poses come from " + file.filename().string() + " in the imported folder");
+      imported.notes.push_back(
+          fmt::format("the reference poses come from {} in the imported folder", file.filename().string()));
   }
   rotation = scenarios::check_lidar_rotation(options.path.string(), imported, gyro_unit(options));
   imported.notes.insert(imported.notes.end(), rotation.notes.begin(), rotation.notes.end());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/numbers_of_draws.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -14,7 +16,8 @@ NumbersByScenario numbers_of_catalogue(const Session& session, const scenarios::
   const std::vector<std::string> known = scenarios::scenario_names(data);
   for (const std::string& scenario : summary.scenarios) {
     if (std::find(known.begin(), known.end(), scenario) == known.end()) {
-      session.note(scenario + ": this scenario is left out, because the catalogue has no scenario of this name");
+      session.note(
+          fmt::format("{}: this scenario is left out, because the catalogue has no scenario of this name", scenario));
       continue;
     }
     out[scenario] = scenarios::numbers_of_draws(summary, scenarios::load_scenario(data, scenario));

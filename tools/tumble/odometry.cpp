@@ -73,11 +73,13 @@ std::vector<std::string> parameter_texts(const OdometryOptions& options, const s
 void require_both_sensors(const std::filesystem::path& path, const sim::Sensors& sensors) {
   if (!sensors.imus.empty() && !sensors.lidars.empty()) return;
   const std::string file = path.string();
-  throw BadInput(fmt::format("{}: odometry needs an IMU and a lidar; the recording has no {}. {}", file,
-                             sensors.imus.empty() ? "IMU" : "lidar",
-                             sensors.lidars.empty() ? "For an IMU alone: 'tumble import " + file +
-                                                          " -o r.h5', then 'tumble estimate r.h5 --method rate/tumble'"
-                                                    : "Add IMU readings with --imu FILE.csv"));
+  throw BadInput(fmt::format(
+      "{}: odometry needs an IMU and a lidar; the recording has no {}. {}", file,
+      sensors.imus.empty() ? "IMU" : "lidar",
+      sensors.lidars.empty()
+          ? fmt::format(
+                "For an IMU alone: 'tumble import {} -o r.h5', then 'tumble estimate r.h5 --method rate/tumble'", file)
+          : "Add IMU readings with --imu FILE.csv"));
 }
 
 /// Runs the method, with a progress bar on a terminal. Returns the duration of the run in seconds.
@@ -208,9 +210,9 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
                     options.folder.string()));
     return kDone;
   }
-  throw BadInput(options.input.path.string() + ": " + full_name(info) +
-                 " failed: " + failure_reason(estimate.status, sensors) + "; 'tumble doctor " +
-                 options.input.path.string() + "' searches for the cause");
+  throw BadInput(fmt::format("{}: {} failed: {}; 'tumble doctor {}' searches for the cause",
+                             options.input.path.string(), full_name(info), failure_reason(estimate.status, sensors),
+                             options.input.path.string()));
 }
 
 }  // namespace

@@ -58,8 +58,9 @@ scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMap
   }
   std::optional<scenarios::Method> localised = scenarios::localised_in(method, read_map_of(options));
   if (!localised)
-    throw BadInput("--map applies only to slam/tumble_live and slam/tumble_lag; '" + full_name(method.info) +
-                   "' does not localise itself in a prior map");
+    throw BadInput(fmt::format(
+        "--map applies only to slam/tumble_live and slam/tumble_lag; '{}' does not localise itself in a prior map",
+        full_name(method.info)));
   return *localised;
 }
 
@@ -67,9 +68,10 @@ std::string localisation_text(const PriorMapOptions& options, const scenarios::E
   const std::string file = options.map.string();
   const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
                                   [](const SweepReport& sweep) { return sweep.in_prior_map; });
-  if (first == estimate.sweeps.end()) return file + ": not localised in this map; poses are in a local frame";
-  return fmt::format("{}: localised in this map; poses are in its frame from sweep {} of {} on", file,
-                     first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
+  if (first == estimate.sweeps.end())
+    return fmt::format("{}: the run is not localised in this map; poses are in a local frame", file);
+  return fmt::format("{}: the run is localised in this map; poses are in the frame of the map from sweep {} of {}",
+                     file, first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
 }
 
 }  // namespace tumble::tools

@@ -64,14 +64,15 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
     const auto option =
         std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
     if (option == extras.end())
-      return place + "'" + extras.front() + "' is one argument too many; remove this argument";
+      return fmt::format("{}'{}' is one argument too many; remove this argument", place, extras.front());
     std::vector<std::string> known;
     for (const CLI::Option* each : verb.get_options()) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
     }
     const std::string near = sim::nearest_name(*option, known);
-    if (near == *option) return place + "'" + near + "' must follow the verb: tumble " + verb.get_name() + " " + near;
-    return place + "unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+    if (near == *option)
+      return fmt::format("{}'{}' must follow the verb: tumble {} {}", place, near, verb.get_name(), near);
+    return place + "unknown option '" + *option + "'" + (near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
   }
   std::string reason = error.what();
   std::replace(reason.begin(), reason.end(), '\n', ' ');

@@ -58,15 +58,17 @@ bool is_recording(const std::string& what) {
 void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty())
-    throw BadInput(options.what +
-                   ": this recording contains no description of its world, so its world cannot be drawn; give a "
-                   "simulated recording");
+    throw BadInput(
+        fmt::format("{}: this recording contains no description of its world, so its world cannot be drawn; give a "
+                    "simulated recording",
+                    options.what));
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
   // the truth positions the robot and the estimates in the picture; no estimate is computed here
   if (!info.has_truth)
-    throw BadInput(options.what +
-                   ": this recording contains no truth, so its path cannot be drawn; give a recording with truth");
+    throw BadInput(
+        fmt::format("{}: this recording contains no truth, so its path cannot be drawn; give a recording with truth",
+                    options.what));
   content.truth = scenarios::read_truth(options.what);
 }
 
@@ -81,7 +83,7 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
         read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     Path path = estimated_path(estimate, content.sensors, content.truth);
     if (path.empty())
-      throw BadInput(folder.string() + ": this estimate contains no poses, so its path cannot be drawn");
+      throw BadInput(fmt::format("{}: this estimate contains no poses, so its path cannot be drawn", folder.string()));
     content.scene.estimates.push_back(std::move(path));
   }
 }
@@ -90,7 +92,7 @@ void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, Re
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
   if (!options.estimates.empty())
     throw BadInput("estimates can be drawn only with a recording; give FILE.h5 instead of a scenario");
-  if (options.film > 0) throw BadInput("--film needs a recording; '" + options.what + "' is a scenario");
+  if (options.film > 0) throw BadInput(fmt::format("--film needs a recording; '{}' is a scenario", options.what));
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
@@ -114,7 +116,7 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
     maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();
     if (map.points_W_m.empty())
-      throw BadInput(folder.string() + ": this estimate contains no map; give estimates of slam methods");
+      throw BadInput(fmt::format("{}: this estimate contains no map; give estimates of slam methods", folder.string()));
     const double fine = map.share_within(0.1f), coarse = map.share_within(0.25f);
     table.add_row({map.name, std::to_string(map.points_W_m.size()), fmt::format("{:.1f} %", 100.0 * fine),
                    fmt::format("{:.1f} %", 100.0 * coarse)});
@@ -158,7 +160,8 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
 }
 
 void require_video(const RenderOptions& options) {
-  if (!is_recording(options.what)) throw BadInput("--video needs a recording; '" + options.what + "' is a scenario");
+  if (!is_recording(options.what))
+    throw BadInput(fmt::format("--video needs a recording; '{}' is a scenario", options.what));
   if (options.film > 0 || options.map) throw BadInput("--video, --film and --map exclude each other; give only one");
 }
 
@@ -180,7 +183,7 @@ int render(const Session& session, const RenderOptions& options) {
   inputs.emplace_back(options.what);
   prepare_file(options.output, inputs, {options.video ? ".webp" : ".png"});
   if (is_recording(options.what) && !options.seed.empty()) {
-    throw BadInput("--seed applies to a scenario; '" + options.what + "' is a recording of one draw");
+    throw BadInput(fmt::format("--seed applies to a scenario; '{}' is a recording of one draw", options.what));
   }
   if (options.map) return render_maps(session, options, data);
   RenderContent content;

@@ -56,7 +56,8 @@ void load_estimates(const Session& session, const ReplayOptions& options, Replay
     scenarios::Estimate estimate = read_given({path, options.recording, frame}, content.sensors,
                                               content.truth ? &*content.truth : nullptr, kind, method);
     if (estimate.poses.empty() && estimate.rates.empty()) {
-      session.note(path.string() + ": this estimate is left out, because it contains neither poses nor rates");
+      session.note(
+          fmt::format("{}: this estimate is left out, because it contains neither poses nor rates", path.string()));
       continue;
     }
     content.estimates.push_back(std::move(estimate));

@@ -111,7 +111,8 @@ json to_json(const Summary& summary) {
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.good() && !stream.eof()) throw scenarios::BadInput(path.string() + ": the file cannot be read");
+  if (!stream.good() && !stream.eof())
+    throw scenarios::BadInput(fmt::format("{}: the file cannot be read", path.string()));
   return text;
 }
 
@@ -201,8 +202,8 @@ int report(const Session& session, const ReportVerbOptions& options) {
   std::vector<Curve> curves = scenarios::find_curves(results, draws, summary);
   if (summary.scenarios.empty() && curves.empty())
     throw scenarios::BadInput(
-        options.database.string() +
-        ": this database contains no outcomes, so there is nothing to report; run 'tumble sweep' first");
+        fmt::format("{}: this database contains no outcomes, so there is nothing to report; run 'tumble sweep' first",
+                    options.database.string()));
   std::vector<Table> tables;
   for (const Section& section : summary.sections) {
     Table table = score_table(section, options.all);

@@ -88,8 +88,9 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
-  session.note("the results are in " + folder +
-               "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
+  session.note(fmt::format(
+      "the results are in {}/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html",
+      folder));
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
     session.note(fmt::format("  {:<78}  {}", command, what));
@@ -177,8 +178,9 @@ std::vector<scenarios::Method> asked_methods(const RunOptions& options, const sc
   const auto selected = select_methods(options.methods);
   if (!options.learnt.empty() &&
       std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.calibrates_rig; })) {
-    throw scenarios::BadInput("--learnt applies only to " + LearntFile::learning_methods() +
-                              ", but none of these methods runs; name one with --method");
+    throw scenarios::BadInput(
+        fmt::format("--learnt applies only to {}, but none of these methods runs; name one with --method",
+                    LearntFile::learning_methods()));
   }
   if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
     scenarios::require_applies(*selected.front(), scenario);

@@ -45,8 +45,9 @@ void order(ScoreOptions& options) {
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
   if (!known)
-    throw scenarios::BadInput(options.recording.string() +
-                              ": the truth of this recording contains no known position, so poses cannot be scored");
+    throw scenarios::BadInput(
+        fmt::format("{}: the truth of this recording contains no known position, so poses cannot be scored",
+                    options.recording.string()));
   if (estimate.poses.empty()) return;
   const double end_s = 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.p_WB_m.size() - 1);
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
@@ -208,23 +209,24 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   claim.info = scenarios::read_info(options.recording);
   if (!claim.info.has_truth)
     throw scenarios::BadInput(
-        options.recording.string() +
-        ": this recording contains no truth, so estimates cannot be scored; give a recording with truth");
+        fmt::format("{}: this recording contains no truth, so estimates cannot be scored; give a recording with truth",
+                    options.recording.string()));
   claim.sensors = scenarios::read_sensors(options.recording);
   if (!scenarios::states_digest(options.recording))
-    session.note(options.recording.string() +
-                 ": this recording contains no digest of its data, so the program cannot detect damage");
+    session.note(fmt::format("{}: this recording contains no digest of its data, so the program cannot detect damage",
+                             options.recording.string()));
   claim.truth = scenarios::read_truth(options.recording);
   claim.estimate = read_given({options.estimate, options.recording, frame_of(options.frame, !claim.truth.imus.empty())},
                               claim.sensors, &claim.truth, claim.kind, claim.method);
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
     session.note(
-        "caution: " + options.estimate.string() +
-        " does not name its recording, so the program cannot check that the estimate belongs to the recording");
+        fmt::format("caution: {} does not name its recording, so the program cannot check that the estimate belongs to "
+                    "the recording",
+                    options.estimate.string()));
   if (!claim.foreign && !options.kind.empty())
-    throw scenarios::BadInput("--kind applies to a TUM file only; " + options.estimate.string() +
-                              " states its own kind, so remove --kind");
+    throw scenarios::BadInput(fmt::format("--kind applies to a TUM file only; {} states its own kind, so remove --kind",
+                                          options.estimate.string()));
   if (claim.foreign) complete_foreign(session, options, claim);
   if (claim.kind == scenarios::Kind::position || claim.kind == scenarios::Kind::slam)
     require_common_time(options, claim.estimate, claim.truth);

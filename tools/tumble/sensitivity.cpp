@@ -37,9 +37,11 @@ void require_same_data(const scenarios::Results& results, const scenarios::DataR
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
   if (made_of != found)
-    throw BadInput(database.string() + ": these results come from models and scenarios with digest '" + made_of +
-                   "', but the models and scenarios of this installation have digest " + found +
-                   ". The numbers of the draws are therefore unknown; use --motion for the influence of the motions");
+    throw BadInput(
+        fmt::format("{}: these results come from models and scenarios with digest '{}', but the models and scenarios "
+                    "of this installation have digest {}. The numbers of the draws are therefore unknown; use --motion "
+                    "for the influence of the motions",
+                    database.string(), made_of, found));
 }
 
 std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session,
@@ -157,8 +159,9 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
   const std::vector<Sensitivity> rows = scenarios::sensitivities(
       summary, numbers_of(session, options, results, summary), {options.methods, options.metrics});
   if (rows.empty())
-    throw BadInput(options.database.string() + ": this database contains too few draws; a scenario needs at least " +
-                   std::to_string(scenarios::kSensitivityDrawsMin) + " draws and one number that varies");
+    throw BadInput(fmt::format(
+        "{}: this database contains too few draws; a scenario needs at least {} draws and one number that varies",
+        options.database.string(), scenarios::kSensitivityDrawsMin));
   std::vector<Table> tables = tables_of(rows, options.all);
   if (options.dependence) tables.push_back(dependence_table(rows, options.all));
   session.print(tables, {{"sensitivity", to_json(rows)}});

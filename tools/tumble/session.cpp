@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/session.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -51,9 +53,9 @@ scenarios::DataRoot Session::data() const {
     if (fs::is_directory(data.models(), error)) return data;
     // if the user names a folder, no other folder is tried, because another folder might contain other models
     if (given != nullptr && *given != '\0')
-      throw scenarios::BadInput(
-          "TUMBLE_DATA must name the folder that contains models/ and scenarios/, but this folder does not exist: " +
-          data.models().string());
+      throw scenarios::BadInput(fmt::format(
+          "TUMBLE_DATA must name the folder that contains models/ and scenarios/, but this folder does not exist: {}",
+          data.models().string()));
   }
   throw scenarios::BadInput(
       "the program cannot find its models; set TUMBLE_DATA to the folder that contains models/ and scenarios/");

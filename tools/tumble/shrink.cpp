@@ -116,16 +116,17 @@ std::string name_of(const std::filesystem::path& file) {
   const bool good = file.extension() == ".yaml" && !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
                     std::all_of(name.begin(), name.end(), allowed);
   if (good) return name;
-  throw BadInput("-o " + file.string() +
-                 ": the file must be NAME.yaml; NAME must start with a lower-case letter and contain only lower-case "
-                 "letters, digits and underscores");
+  throw BadInput(
+      fmt::format("-o {}: the file must be NAME.yaml; NAME must start with a lower-case letter and contain only "
+                  "lower-case letters, digits and underscores",
+                  file.string()));
 }
 
 /// A case can be named wherever a scenario or a suite can, so a case must not have the name of a scenario or suite.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())
-      throw BadInput("-o " + name + ".yaml: a scenario or a suite already has this name; choose another name");
+      throw BadInput(fmt::format("-o {}.yaml: a scenario or a suite already has this name; choose another name", name));
   }
 }
 
@@ -140,8 +141,8 @@ void require_whole(const ShrinkVerbOptions& options) {
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
   if (!options.control) return "no control method was used";
   const std::string& name = options.control->info.name;
-  return shrunk.controlled ? name + " does not fail on the smaller draw"
-                           : name + " also fails on the draw, so the control method checks nothing";
+  return shrunk.controlled ? fmt::format("{} does not fail on the smaller draw", name)
+                           : fmt::format("{} also fails on the draw, so the control method checks nothing", name);
 }
 
 int run_shrink(const Session& session, const ShrinkVerbOptions& options) {

@@ -46,8 +46,8 @@ struct SweepVerbOptions {
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
-    throw scenarios::BadInput("--scenario does not apply, because suite '" + suite.name + "' names its " +
-                              (suite.recordings.empty() ? "draws" : "recordings"));
+    throw scenarios::BadInput(fmt::format("--scenario does not apply to suite '{}', because the suite names its {}",
+                                          suite.name, suite.recordings.empty() ? "draws" : "recordings"));
   for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
@@ -70,10 +70,12 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
     throw scenarios::BadInput(
         "--seeds and --shard do not apply, because a suite of recordings has no seeds; remove both options");
   if (!suite.classes.empty() && !options.seeds.empty())
-    throw scenarios::BadInput("--seeds does not apply, because suite '" + suite.name + "' names its draws");
+    throw scenarios::BadInput(
+        fmt::format("--seeds does not apply to suite '{}', because the suite names its draws", suite.name));
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!recorded && !options.recordings.empty())
-    throw scenarios::BadInput("--data does not apply, because suite '" + suite.name + "' has no recordings");
+    throw scenarios::BadInput(
+        fmt::format("--data does not apply to suite '{}', because the suite has no recordings", suite.name));
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
     // an unknown name must be rejected before the sweep starts
@@ -228,11 +230,12 @@ std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const sc
   if (!options.shard.empty())
     throw scenarios::BadInput("--until does not apply with --shard, because a shard contains only a part of the draws");
   if (!suite.recordings.empty() || !suite.curves.empty())
-    throw scenarios::BadInput("--until does not apply, because suite '" + suite.name +
-                              "' contains recordings or curves");
+    throw scenarios::BadInput(fmt::format(
+        "--until does not apply to suite '{}', because the suite contains recordings or curves", suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput("--until does not apply, because suite '" + suite.name +
-                              "' names its draws and has no range of seeds");
+    throw scenarios::BadInput(
+        fmt::format("--until does not apply to suite '{}', because the suite names its draws and has no range of seeds",
+                    suite.name));
   const scenarios::Question question = parse_question(options.until, options.risk, suite);
   scenarios::Results results = scenarios::open_results(data, suite, options.database);
   scenarios::claim(results, question, options.database);
@@ -265,7 +268,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
-    session.note("shard " + options.shard + " has no seeds, so there is nothing to do");
+    session.note(fmt::format("shard {} has no seeds, so there is nothing to do", options.shard));
     session.print({to_table({}, options.database.string())}, to_json({}, options.database.string()));
     return kDone;
   }

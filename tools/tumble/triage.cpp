@@ -141,7 +141,8 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
   asked.options.memory_mib = options.memory_mib;
   asked.suite = scenarios::load_suite(session.data(), options.what);
   if (!asked.suite.classes.empty() && !options.seeds.empty())
-    throw BadInput("--seeds does not apply, because suite '" + asked.suite.name + "' names its draws");
+    throw BadInput(
+        fmt::format("--seeds does not apply to suite '{}', because the suite names its draws", asked.suite.name));
   if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
   asked.database = options.database;
   return run_suite_triage(session, std::move(asked));

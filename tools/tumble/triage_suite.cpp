@@ -105,24 +105,24 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
   const std::string name = first->input + " (" + first->doc + ")";
   if (first->cured > 0)
     return fmt::format("{} matters most: it cures {} of {} failures", name, first->cured, first->failed);
-  const std::string failures = first->failed == 0 ? "no run failed (--metric and --limit define a failure); "
-                                                  : "no single input cures a failure; ";
-  if (first->better <= first->worse) return failures + "no input improves most draws";
-  return failures + fmt::format("{} improves {} of {} draws", name, first->better, first->better + first->worse);
+  const std::string failures =
+      first->failed == 0 ? "no run failed (--metric and --limit define a failure)" : "no single input cures a failure";
+  if (first->better <= first->worse) return fmt::format("{}; no input improves most draws", failures);
+  return fmt::format("{}; {} improves {} of {} draws", failures, name, first->better, first->better + first->worse);
 }
 
 std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& asked) {
   std::vector<DrawName> draws = scenarios::draws_of(session.data(), asked.suite, *asked.method);
   if (draws.empty())
-    throw BadInput("method '" + asked.method->info.name + "' applies to no scenario of suite '" + asked.suite.name +
-                   "'");
+    throw BadInput(
+        fmt::format("method '{}' applies to no scenario of suite '{}'", asked.method->info.name, asked.suite.name));
   if (asked.database.empty()) return draws;
   const scenarios::Results results(asked.database, scenarios::Results::Mode::read_only);
   const auto failed = scenarios::failed_draws(results, *asked.method, asked.options.triage.failure);
   std::erase_if(draws, [&](const DrawName& draw) { return !failed.contains(draw); });
   if (draws.empty())
-    throw BadInput(asked.database.string() + ": " + full_name(asked.method->info) +
-                   " failed on none of the selected draws in this database");
+    throw BadInput(fmt::format("{}: {} failed on none of the selected draws in this database", asked.database.string(),
+                               full_name(asked.method->info)));
   return draws;
 }
 
@@ -135,8 +135,8 @@ std::string line_of(const DrawTriage& draw) {
   for (const scenarios::TriageRow& row : draw.rows) {
     if (!row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return name +
-         (cures.empty() ? "fails, and no single input cures the failure" : "fails; the failure is cured by " + cures);
+  return cures.empty() ? fmt::format("{}fails, and no single input cures the failure", name)
+                       : fmt::format("{}fails; these inputs cure the failure: {}", name, cures);
 }
 
 std::string first_trouble(const std::vector<DrawTriage>& draws) {
@@ -149,8 +149,8 @@ std::string first_trouble(const std::vector<DrawTriage>& draws) {
 
 int run_suite_triage(const Session& session, SuiteTriage asked) {
   if (!asked.suite.recordings.empty())
-    throw BadInput("suite '" + asked.suite.name +
-                   "' contains recordings, whose inputs cannot be replaced by their truth");
+    throw BadInput(fmt::format("suite '{}' contains recordings, whose inputs cannot be replaced by their truth",
+                               asked.suite.name));
   const std::vector<DrawName> draws = chosen_draws(session, asked);
   const InterruptFlag interrupt;
   std::size_t done = 0, failed = 0;

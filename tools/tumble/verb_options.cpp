@@ -24,8 +24,9 @@ VerbOption VerbOption::within(double low, double high) {
       [low, high, range](std::string& text) {
         double value = 0.0;
         const bool read = CLI::detail::lexical_cast(text, value);
-        return read && value >= low && value <= high ? std::string()
-                                                     : text + " is out of range; the number must be from " + range;
+        return read && value >= low && value <= high
+                   ? std::string()
+                   : fmt::format("the number {} is out of range; it must be from {}", text, range);
       },
       range));
   return *this;

@@ -27,7 +27,7 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
 
 std::string repeats_text(std::size_t repeated) {
   if (repeated == 0) return "";
-  return "number of duplicate messages (same stamp and content) that the import left out: " + std::to_string(repeated);
+  return fmt::format("number of duplicate messages (same stamp and content) that the import left out: {}", repeated);
 }
 
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,

@@ -74,14 +74,16 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
   if (reading.reference_of == ReferenceOf::lidar) return lidar_of_poses(out.sensors, topic);
   if (reading.reference_of == ReferenceOf::body || frame.empty() || frame == places.body()) return body;
   const auto T_BA = places.of(frame);
-  const std::string whose = topic + ": according to the messages, the poses belong to the frame '" + frame + "'";
+  const std::string whose =
+      fmt::format("{}: according to the messages, the poses belong to the frame '{}'", topic, frame);
   if (T_BA) {
-    out.notes.push_back(whose +
-                        "; the import converts the poses to poses of the body (set '--reference-frame body' to use the "
-                        "poses unchanged)");
+    out.notes.push_back(
+        fmt::format("{}; the import converts the poses to poses of the body (set '--reference-frame body' to use the "
+                    "poses unchanged)",
+                    whose));
   } else if (frame != "body" && frame != "base_link") {
-    out.notes.push_back(whose +
-                        ", whose pose on the body is unknown; the import assumes that the frame is the body frame");
+    out.notes.push_back(fmt::format(
+        "{}, whose pose on the body is unknown; the import assumes that the frame is the body frame", whose));
   }
   return T_BA.value_or(body);
 }

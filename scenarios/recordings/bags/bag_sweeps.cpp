@@ -120,7 +120,8 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std:
   LeftOut counted_in_headers("clouds");
   read_clouds(bag, topic, counted_in_headers, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
     if (origin.number >= headers.starts.size())
-      throw BadInput(origin.where + ": the frame of this message differs from the frame of the previous message");
+      throw BadInput(
+          fmt::format("{}: the frame of this message differs from the frame of the previous message", origin.where));
     const std::optional<std::int64_t> start_ns = headers.starts[origin.number];
     if (!start_ns) return;
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {

@@ -107,10 +107,10 @@ class TopicsOfKind {
         read(topic);
       } catch (const BadInput& error) {
         if (topics_.size() < 2 || chosen_) throw;
-        if (!leave_out_) throw BadInput(std::string(error.what()) + " (" + option_ + " selects the topics to read)");
+        if (!leave_out_) throw BadInput(fmt::format("{} ({} selects the topics to read)", error.what(), option_));
         if (!first) first = std::current_exception();
         ++failed;
-        notes.push_back(topic + ": caution: the topic cannot be read and is left out: " + error.what());
+        notes.push_back(fmt::format("{}: caution: the topic cannot be read and is left out: {}", topic, error.what()));
       }
     }
     if (first && failed == topics_.size()) std::rethrow_exception(first);
@@ -133,9 +133,9 @@ void add_imus(const OpenedBag& bag, SensorMountings& places, const BagReading& r
       out.sensors.imus.push_back(std::move(imu));
   });
   if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
-    out.notes.push_back(
-        "'" + out.sensors.imus.front().name +
-        "' is the primary IMU, because its topic comes first (set --imu-topic to choose another topic)");
+    out.notes.push_back(fmt::format(
+        "IMU '{}' is the primary IMU, because its topic comes first (set --imu-topic to choose another topic)",
+        out.sensors.imus.front().name));
 }
 
 void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, Imported& out) {

@@ -56,7 +56,7 @@ void File::fail(std::uint64_t at, const std::string& what) const {
 
 std::string File::text(std::uint64_t at, std::uint64_t size) {
   if (at > bytes_ || size > bytes_ - at)
-    fail(at, in_bytes(size) + " extend beyond the end of the file; the file is damaged or truncated");
+    fail(at, fmt::format("{} extend beyond the end of the file; the file is damaged or truncated", in_bytes(size)));
   std::string out(size, '\0');
   stream_.clear();
   stream_.seekg(static_cast<std::streamoff>(at));

@@ -74,7 +74,7 @@ std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes) {
   for (std::size_t left = 1; left != 0;) {
     std::size_t given = room.left(), taken = packed.size();
     left = LZ4F_decompress(context, room.at(), &given, packed.data(), &taken, nullptr);
-    if (LZ4F_isError(left) != 0) throw BadInput(std::string("the LZ4 frame is damaged: ") + LZ4F_getErrorName(left));
+    if (LZ4F_isError(left) != 0) throw BadInput(fmt::format("the LZ4 frame is damaged: {}", LZ4F_getErrorName(left)));
     room.take(given);
     packed.remove_prefix(taken);
     if (left != 0 && given == 0 && taken == 0) room.stuck("LZ4", packed.empty());
@@ -93,7 +93,7 @@ std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes) {
     ZSTD_outBuffer out{room.at(), size, 0};
     left = ZSTD_decompressStream(context.get(), &out, &in);
     if (ZSTD_isError(left) != 0)
-      throw BadInput(std::string("the Zstandard frame is damaged: ") + ZSTD_getErrorName(left));
+      throw BadInput(fmt::format("the Zstandard frame is damaged: {}", ZSTD_getErrorName(left)));
     room.take(out.pos);
     if (out.pos == 0 && in.pos == before) room.stuck("Zstandard", in.pos == in.size);
   }

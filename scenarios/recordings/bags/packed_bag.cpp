@@ -52,7 +52,7 @@ void unpack(const path& file, const path& to) {
     for (bool full = false; in.pos < in.size || full;) {
       ZSTD_outBuffer out{given.data(), given.size(), 0};
       left = ZSTD_decompressStream(context.get(), &out, &in);
-      if (ZSTD_isError(left) != 0) fail(std::string("the Zstandard frame is damaged: ") + ZSTD_getErrorName(left));
+      if (ZSTD_isError(left) != 0) fail(fmt::format("the Zstandard frame is damaged: {}", ZSTD_getErrorName(left)));
       bytes += out.pos;
       if (bytes > most)
         fail(
@@ -109,9 +109,10 @@ class UnpackedMessages : public BagReader {
     const std::string where = fmt::format("{}: message {} of {}: ", place_, number, topic);
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
-      throw BadInput(where +
-                     "the content is not a valid Zstandard frame; the stated size must be at most 64 MiB and at most "
-                     "200 times the compressed size");
+      throw BadInput(
+          fmt::format("{}the content is not a valid Zstandard frame; the stated size must be at most 64 MiB and at "
+                      "most 200 times the compressed size",
+                      where));
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};

@@ -217,7 +217,7 @@ class Ros1BagReader : public BagReader {
     for (const auto& entry : std::filesystem::directory_iterator(path)) {
       if (lower_extension(entry.path()) == ".bag") files.insert(entry.path());
     }
-    if (files.empty()) throw BadInput(path.string() + ": the folder contains no file that ends in .bag");
+    if (files.empty()) throw BadInput(fmt::format("{}: the folder contains no file that ends in .bag", path.string()));
     std::string names;
     for (const std::filesystem::path& file : files) {
       add(file);
@@ -225,7 +225,7 @@ class Ros1BagReader : public BagReader {
     }
     if (files.size() < 2) return;
     require_one_recording();
-    notes.push_back("the import reads these bags as parts of one recording:" + names);
+    notes.push_back(fmt::format("the import reads these bags as parts of one recording:{}", names));
   }
 
   std::vector<BagTopic> topics() override {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/ros1_chunks.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -134,8 +136,8 @@ class Copy {
   }
   void finish() {
     if (!stream_.flush())
-      throw BadInput(path_.string() +
-                     ": the file cannot be written; the disk may have too little space for the unpacked bag");
+      throw BadInput(fmt::format(
+          "{}: the file cannot be written; the disk may have too little space for the unpacked bag", path_.string()));
   }
 
  private:

@@ -214,7 +214,7 @@ StoredBag storage_of(const path& bag) {
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fail_at(metadata, "this file is not the metadata of a ROS 2 bag: " + what);
+    fail_at(metadata, fmt::format("this file is not the metadata of a ROS 2 bag: {}", what));
   }
   if (out.files.empty()) fail_at(metadata, "relative_file_paths lists no file");
   add_unlisted(bag, out);
@@ -284,7 +284,7 @@ class Ros2BagReader : public BagReader {
         SQLite::Database database(file.string(), SQLite::OPEN_READONLY);
         call(file, database);
       } catch (const SQLite::Exception& error) {
-        fail_at(file, std::string("the file cannot be read as a ROS 2 bag: ") + error.what());
+        fail_at(file, fmt::format("the file cannot be read as a ROS 2 bag: {}", error.what()));
       }
     }
   }

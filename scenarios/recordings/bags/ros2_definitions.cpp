@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 
+#include <fmt/format.h>
+
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -77,7 +79,8 @@ std::string ros1_type(std::string type) {
 
 std::string ros2_definition(const std::string& type) {
   const auto found = definitions().find(type);
-  if (found == definitions().end()) throw std::logic_error("there is no message definition for type " + type);
+  if (found == definitions().end())
+    throw std::logic_error(fmt::format("there is no message definition for type {}", type));
   std::set<std::string> there = {type};
   std::string out = found->second;
   append_inner(found->second, there, out);

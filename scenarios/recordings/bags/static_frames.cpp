@@ -28,11 +28,11 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
   FrameLink hung{parent, Eigen::Isometry3d::Identity(), ""};
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
-    hung.problem = what + ": the translation must be finite and at most 1 km";
+    hung.problem = fmt::format("{}: the translation must be finite and at most 1 km", what);
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
     hung.problem = fmt::format("{}: the quaternion has norm {}; the norm must be 1", what, std::to_string(q.norm()));
   } else if (parent == child) {
-    hung.problem = what + ": the frame is its own parent";
+    hung.problem = fmt::format("{}: the frame is its own parent", what);
   } else {
     hung.T_parent.linear() = q.normalized().toRotationMatrix();
     hung.T_parent.translation() = p;
@@ -69,7 +69,7 @@ std::vector<StaticFrames::FrameLink> StaticFrames::path_to_root(const std::strin
     const FrameLink& below = out.back();
     out.push_back({parent, T_parent * below.T_parent, below.problem.empty() ? problem : below.problem});
   }
-  throw BadInput(where + ": '" + frame + "' and its parent frames form a loop");
+  throw BadInput(fmt::format("{}: '{}' and its parent frames form a loop", where, frame));
 }
 
 std::optional<Eigen::Isometry3d> StaticFrames::pose(const std::string& frame_A, const std::string& frame_B,

@@ -124,7 +124,7 @@ ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
 std::string contradiction_of_size(std::span<const char> bytes, const ColumnFit& floats) {
   const std::string size =
       fmt::format("the file has {} bytes; the size must be a multiple of 16 (float32 x y z intensity)", bytes.size());
-  if (floats.columns == 0) return size + "; the file may be truncated";
+  if (floats.columns == 0) return fmt::format("{}; the file may be truncated", size);
   return size + fmt::format("; the numbers match {} columns of float32", floats.columns);
 }
 

@@ -128,7 +128,7 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   const std::size_t found = std::size_t{cloud.width} * cloud.height;
   if (!read || found != header.points || cloud.data.size() < found * cloud.point_step) {
     throw BadInput(
-        fmt::format("{}: cannot be read as {} after its header of {} bytes: the file is damaged or truncated",
+        fmt::format("{}: the file cannot be read as {} after its header of {} bytes; it is damaged or truncated",
                     path.string(), format == PclFormat::ply ? "PLY" : "PCD", header.header_bytes));
   }
   Cloud out = to_columns(cloud, found);
@@ -154,7 +154,8 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   const std::string type = colon == std::string::npos ? "f4" : text.substr(colon + 1);
   const auto known = std::ranges::find_if(kBinTypes, [&](const auto& each) { return type == each.first; });
   if (known == kBinTypes.end())
-    throw BadInput("columns of a .bin file: type '" + type + "'; it must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8");
+    throw BadInput(
+        fmt::format("columns of a .bin file: type '{}'; it must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8", type));
   pcl::PCLPointField field;
   field.name = text.substr(0, colon);
   field.offset = cloud.point_step;
@@ -162,7 +163,7 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   field.count = 1;
   const auto same = [&](const pcl::PCLPointField& other) { return other.name == field.name && field.name != "_"; };
   if (field.name.empty() || std::ranges::any_of(cloud.fields, same))
-    throw BadInput("columns of a .bin file: name '" + field.name + "' is empty or occurs twice");
+    throw BadInput(fmt::format("columns of a .bin file: name '{}' is empty or occurs twice", field.name));
   cloud.point_step += static_cast<std::uint32_t>(type.back() - '0');
   cloud.fields.push_back(field);
 }
@@ -174,7 +175,7 @@ pcl::PCLPointCloud2 bin_fields(const std::string& columns) {
   for (std::string column; std::getline(stream, column, ',');) add_bin_column(column, cloud);
   for (const char* needed : {"x", "y", "z"}) {
     if (std::ranges::none_of(cloud.fields, [&](const auto& field) { return field.name == needed; }))
-      throw BadInput("columns of a .bin file: '" + columns + "' lacks " + needed);
+      throw BadInput(fmt::format("columns of a .bin file: '{}' lacks {}", columns, needed));
   }
   return cloud;
 }
@@ -188,8 +189,8 @@ Cloud read_bin(const std::filesystem::path& path, const std::string& columns) {
   std::ifstream stream = open_regular_file(path);
   const std::uint64_t bytes = std::filesystem::file_size(path);
   if (bytes / cloud.point_step > kCloudPointsMax) {
-    throw BadInput(path.string() + ": has " + std::to_string(bytes / cloud.point_step) + " points; at most " +
-                   std::to_string(kCloudPointsMax) + " can be read from a file");
+    throw BadInput(fmt::format("{}: the file has {} points; at most {} can be read", path.string(),
+                               bytes / cloud.point_step, kCloudPointsMax));
   }
   cloud.data.resize(bytes);
   stream.read(reinterpret_cast<char*>(cloud.data.data()), static_cast<std::streamsize>(bytes));
@@ -200,9 +201,10 @@ Cloud read_bin(const std::filesystem::path& path, const std::string& columns) {
     if (!contradiction.empty()) throw BadInput(path.string() + ": " + contradiction + kColumnsHint);
   }
   if (bytes % cloud.point_step != 0) {
-    throw BadInput(path.string() + ": has " + std::to_string(bytes) + " bytes; the number must be a multiple of " +
-                   std::to_string(cloud.point_step) + " (" + columns +
-                   "); the file may be truncated or have other columns");
+    throw BadInput(
+        fmt::format("{}: the file has {} bytes, but the size must be a multiple of {} ({}); the file may be truncated "
+                    "or have other columns",
+                    path.string(), bytes, cloud.point_step, columns));
   }
   return to_columns(cloud, bytes / cloud.point_step);
 }
@@ -220,7 +222,7 @@ Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_colum
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);
   if (ending == ".bin") return read_bin(path, bin_columns);
   if (ending == ".vtk") return read_vtk(path);
-  throw BadInput(path.string() + ": the file name must end in .ply, .pcd, .vtk or .bin");
+  throw BadInput(fmt::format("{}: the file name must end in .ply, .pcd, .vtk or .bin", path.string()));
 }
 
 }  // namespace tumble::scenarios

@@ -155,7 +155,7 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
     const auto at = std::find(order.begin(), order.end(), words.front());
     if (at == order.end()) lines.fail("the line does not begin with a keyword of a PCD header");
     const auto place = static_cast<std::size_t>(at - order.begin());
-    if (place < next) lines.fail(words.front() + " occurs twice or in the wrong order");
+    if (place < next) lines.fail(fmt::format("the line {} occurs twice or in the wrong order", words.front()));
     next = place + 1;
     found[words.front()] = Words(words.begin() + 1, words.end());
   }

@@ -71,7 +71,7 @@ Imported import_sweeps(const SweepSource& source) {
     if (in_order[k]) continue;
     const bool decreases = k < disorder.size() && !disorder[k].empty();
     left_out.add("a wrong time stamp",
-                 decreases ? disorder[k] : files[k].string() + ": the time stamp is out of order");
+                 decreases ? disorder[k] : fmt::format("{}: the time stamp is out of order", files[k].string()));
   }
   left_out.require_few(kept.size());
   const std::int64_t given_ns = reading.device.sweep_period_ns;

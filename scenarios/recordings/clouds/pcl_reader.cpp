@@ -2,6 +2,7 @@
 #include "scenarios/recordings/clouds/pcl_reader.hpp"
 
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <string>
 #include <system_error>
@@ -30,8 +31,8 @@ PclRead* load() {
   void* read = module != nullptr ? dlsym(module, kPclRead) : nullptr;
   if (read == nullptr) {
     const char* reason = dlerror();
-    throw BadInput("the PCL library, which reads point clouds, cannot be loaded: " +
-                   (reason != nullptr ? std::string(reason) : file.string()));
+    throw BadInput(fmt::format("the PCL library, which reads point clouds, cannot be loaded: {}",
+                               (reason != nullptr ? std::string(reason) : file.string())));
   }
   return reinterpret_cast<PclRead*>(read);
 }

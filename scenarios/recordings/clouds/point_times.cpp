@@ -44,7 +44,7 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     for (const std::string& name : cloud.names) all += " " + name;
     const std::string near = sim::nearest_name(reading.time_field, cloud.names);
     throw BadInput(fmt::format("{}: there is no field '{}'{} (existing fields:{})", where, reading.time_field,
-                               near.empty() ? "" : "; did you mean '" + near + "'?", all));
+                               near.empty() ? "" : fmt::format("; did you mean '{}'?", near), all));
   }
   tumble::ros::TimeFieldChoice choice;
   for (const std::string& name : cloud.names) choice.offer(name);
@@ -87,7 +87,7 @@ bool fits(double span, const TimeUnit& unit, double period_ns, double least = kS
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   std::string text = fmt::format("in {} this is ", name_of(unit));
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
-  return text + " % of the sweep period";
+  return fmt::format("{} % of the sweep period", text);
 }
 
 /// Rejects a time unit, stated by option or field name, that the numbers contradict.
@@ -116,16 +116,16 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
   append_number(line, span);
   line += " in a sweep";
   if (!(period_ns > 0.0)) {
-    throw BadInput(
-        fmt::format("{}, but these are not time stamps since 1970; state the times of the sweeps (--times), or the "
-                    "duration of one sweep (--sweep-period)",
-                    line));
+    throw BadInput(fmt::format(
+        "{}, but the point times are not time stamps since 1970; state the times of the sweeps (--times), or "
+        "the duration of one sweep (--sweep-period)",
+        line));
   }
   line +=
       ". This range must be 0.15 to 150 % of the sweep period, but is not in any of the units s, ms, us and ns; the "
       "sweep period is ";
   append_number(line, period_ns * 1e-6);
-  throw BadInput(line + " ms. State the unit (--time-unit)");
+  throw BadInput(fmt::format("{} ms. State the unit (--time-unit)", line));
 }
 
 }  // namespace

@@ -185,7 +185,8 @@ void SweepBuilder::read(Waiting& sweep) {
 /// function removes a few mistimed points from `kept`, and throws BadInput if there are many.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
-    if (!sweep.stamp_ns) throw BadInput(sweep.where + ": neither the sweep nor its points have a time stamp");
+    if (!sweep.stamp_ns)
+      throw BadInput(fmt::format("{}: neither the sweep nor its points have a time stamp", sweep.where));
     return std::vector<std::int64_t>(kept.size(), *sweep.stamp_ns);
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
@@ -193,8 +194,8 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
     throw BadInput(
         fmt::format("{}: there is no field '{}', but other sweeps have this field", sweep.where, rule_->field));
   if (!rule_->absolute && !sweep.stamp_ns)
-    throw BadInput(sweep.where +
-                   ": the point times are relative to the start of the sweep, but the sweep has no time stamp");
+    throw BadInput(fmt::format(
+        "{}: the point times are relative to the start of the sweep, but the sweep has no time stamp", sweep.where));
   constexpr double kBound = 4.6e18;  // differences fit in int64
   const std::int64_t origin_ns = rule_->absolute ? 0 : *sweep.stamp_ns;
   std::vector<std::optional<std::int64_t>> times_ns;
@@ -298,7 +299,7 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   const auto scale = [&](float& each) { each = static_cast<float>(each / full); };
   if (store_) store_->intensity.change(scale);
   std::for_each(record_.intensity.begin(), record_.intensity.end(), scale);
-  notes.push_back("the intensities exceed 1 and are divided by " + std::to_string(full));
+  notes.push_back(fmt::format("the intensities exceed 1 and are divided by {}", std::to_string(full)));
 }
 
 double SweepBuilder::range_max_m() const {
@@ -309,11 +310,10 @@ double SweepBuilder::range_max_m() const {
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;
-  throw BadInput(
-      fmt::format("{}: {} of {} points are farther than {:g} m, which is twice {}; at most half of the points may be "
-                  "that far. Check that x, y and z are in metres",
-                  where, beyond_, all, kBeyond * range_max_m(),
-                  reading_.range_max_m > 0.0 ? "the range in the data sheet" : "the range of any robot lidar"));
+  throw BadInput(fmt::format(
+      "{}: {} of {} points are farther than {:g} m, which is twice the range of {}; at most half of the "
+      "points may be that far. Check that x, y and z are in metres",
+      where, beyond_, all, kBeyond * range_max_m(), reading_.range_max_m > 0.0 ? "the data sheet" : "any robot lidar"));
 }
 
 void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
@@ -341,19 +341,20 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
         "caution: the point times span less than 2 % of the sweep period. Check the unit (set '--time-unit'), or set "
         "'--not-skewed' if the times count from the start of each packet");
   if (misses_ > 0)
-    notes.push_back(std::to_string(misses_) +
-                    " points are treated as missing returns (not finite, farther than 1000 km, or at the origin)");
+    notes.push_back(fmt::format(
+        "{} points are treated as missing returns (not finite, farther than 1000 km, or at the origin)", misses_));
   if (skipped_ > 0)
-    notes.push_back(std::to_string(skipped_) + " sweeps have neither points nor a time stamp and are left out");
-  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity; the import stores 0");
+    notes.push_back(fmt::format("{} sweeps have neither points nor a time stamp and are left out", skipped_));
+  if (dark_ > 0) notes.push_back(fmt::format("{} points have no intensity; the import stores 0", dark_));
   if (viewpoints_ > 0)
     notes.push_back(
         fmt::format("{} sweeps have a VIEWPOINT, which the import ignores: it reads the points as coordinates in the "
                     "lidar's axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back("the points have no time stamps, so sweeps cannot be deskewed" +
-                    (names.empty() ? "" : "; if one of these fields contains the times, set '--time-field':" + names));
+    notes.push_back(
+        fmt::format("the points have no time stamps, so sweeps cannot be deskewed{}",
+                    (names.empty() ? "" : "; if one of these fields contains the times, set '--time-field':" + names)));
   if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 
@@ -361,7 +362,8 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   if (!rule_ && !waiting_.empty()) find_rule();
   left_out_.require_few(record_.sweep_start_ns.size() + skipped_);
   require_range(where);
-  if (points() == 0) throw BadInput(where + ": all sweeps are empty; at least one sweep must have points");
+  if (points() == 0)
+    throw BadInput(fmt::format("{}: all sweeps are empty; at least one sweep must have points", where));
   record_.sweep_first.push_back(points());
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;
@@ -369,7 +371,8 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   const std::int64_t stated_ns = reading_.device.sweep_period_ns, step_ns = median_step_ns(record_.sweep_start_ns);
   record_.sweep_period_ns = stated_ns > 0 ? stated_ns : step_ns;
   if (record_.sweep_period_ns <= 0)
-    throw BadInput(where + ": there is only one sweep, so its period is unknown; state the period (--sweep-period)");
+    throw BadInput(
+        fmt::format("{}: there is only one sweep, so its period is unknown; state the period (--sweep-period)", where));
   if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
   const bool overlaps = step_ns > 0 && static_cast<double>(stated_ns) > kOverlapMost * static_cast<double>(step_ns);
   if (stated_ns > 0 && (overlaps || stated_ns < longest_ns_)) {

@@ -86,7 +86,8 @@ std::string stem_of(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem) {
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": this path is not a folder");
+  if (!std::filesystem::is_directory(folder, error))
+    throw BadInput(fmt::format("{}: this path is not a folder", folder.string()));
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& path = entry.path();
@@ -94,8 +95,8 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
-    throw BadInput(folder.string() + ": the folder contains no file that ends in " + ending +
-                   (stem.empty() ? "" : " and begins with '" + stem + "'"));
+    throw BadInput(fmt::format("{}: the folder contains no file that ends in {}{}", folder.string(), ending,
+                               (stem.empty() ? "" : " and begins with '" + stem + "'")));
   }
   std::sort(files.begin(), files.end(), natural_less);
   if (stem_of(files.front()) != stem_of(files.back())) {

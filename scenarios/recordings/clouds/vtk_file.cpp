@@ -67,7 +67,7 @@ class VtkWords {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     if (!read_number(word, value))
-      fail("'" + shortened(word) + "' is not a number that fits a double (use a decimal point)");
+      fail(fmt::format("word '{}' is not a number that fits a double (use a decimal point)", shortened(word)));
     return value;
   }
 

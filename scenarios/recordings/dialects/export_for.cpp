@@ -29,7 +29,7 @@ const Dialect& dialect_of(const std::string& peer) {
   }
   const std::string near = sim::nearest_name(peer, peer_dialects());
   throw BadInput(fmt::format("unknown export target '{}'{} (known targets:{})", peer,
-                             near.empty() ? "" : "; did you mean '" + near + "'?", known));
+                             near.empty() ? "" : fmt::format("; did you mean '{}'?", near), known));
 }
 
 /// Non-finite points are rejected, because they would give no range for the configuration.
@@ -48,7 +48,7 @@ void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
 void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                      const SensorFacts& facts) {
   const auto refuse = [&](const std::string& what) {
-    throw BadInput(what + "; " + dialect.name + " cannot read such a recording");
+    throw BadInput(fmt::format("{}; {} cannot read such a recording", what, dialect.name));
   };
   if (!facts.lidar || facts.lidar->points == 0) refuse("the recording has no lidar return");
   if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording has no IMU reading");

@@ -37,28 +37,29 @@ std::string unit(const PointColumn& column) {
     case PointQuantity::x_m:
     case PointQuantity::y_m:
     case PointQuantity::z_m:
-      return "m, in the lidar's frame, not deskewed";
+      return "m; positions are in the lidar's frame and not deskewed";
     case PointQuantity::intensity:
       return column.scale == 1.0 ? "0 to 1" : "0 to 255";
     case PointQuantity::ring:
-      return "from bottom to top, or line number";
+      return "ring number from bottom to top, or line number";
     case PointQuantity::time:
       break;
   }
   const std::string count = column.scale == 1.0 ? "ns" : "s";
-  return count + (column.absolute ? " since 1970" : " since the header's time stamp");
+  return count + (column.absolute ? " since 1970" : " after the header's time stamp");
 }
 
 Json fields_of(const SweepLayout& sweeps, bool timed) {
   Json out = Json::array();
   if (sweeps.livox) {
-    return {{{"name", "offset_time"},
-             {"type", "uint32"},
-             {"unit", "ns since timebase, which equals the header's time stamp"}},
-            {{"name", "x y z"}, {"type", "float32"}, {"unit", "m, in the lidar's frame, not deskewed"}},
-            {{"name", "reflectivity"}, {"type", "uint8"}, {"unit", "0 to 255"}},
-            {{"name", "tag"}, {"type", "uint8"}, {"unit", "0: a single return with full confidence"}},
-            {{"name", "line"}, {"type", "uint8"}, {"unit", "from bottom to top, or line number"}}};
+    return {
+        {{"name", "offset_time"},
+         {"type", "uint32"},
+         {"unit", "ns after timebase; timebase equals the header's time stamp"}},
+        {{"name", "x y z"}, {"type", "float32"}, {"unit", "m; positions are in the lidar's frame and not deskewed"}},
+        {{"name", "reflectivity"}, {"type", "uint8"}, {"unit", "0 to 255"}},
+        {{"name", "tag"}, {"type", "uint8"}, {"unit", "always 0, which means a single return with full confidence"}},
+        {{"name", "line"}, {"type", "uint8"}, {"unit", "ring number from bottom to top, or line number"}}};
   }
   for (const PointColumn& column : sweeps.columns) {
     if (column.quantity == PointQuantity::time && !timed) continue;
@@ -76,9 +77,9 @@ Json imu_of(const ImuFacts& imu, const ReaderNames& names) {
           {"rate_hz", 1.0 / imu.period_s},
           {"gyro_unit", "rad/s"},
           {"accel_unit", "m/s^2"},
-          {"accel_at_rest", "+gravity along the upward axis"},
+          {"accel_at_rest", "the upward axis reads +gravity"},
           {"attitude", "none: identity, covariance -1"},
-          {"stamp", "the end of the window over which a sample is averaged"},
+          {"stamp", "the time stamp of a sample is the end of its averaging window"},
           {"gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz},
           {"accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz},
           {"stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s},
@@ -96,8 +97,8 @@ Json lidar_of(const LidarFacts& lidar, const ReaderNames& names, const SweepLayo
           {"sweeps", lidar.sweeps},
           {"points", lidar.points},
           {"rate_hz", 1.0 / lidar.period_s},
-          {"stamp", "the start of the sweep; in the bag, a sweep follows its last point"},
-          {"order", "sorted by time; missing returns are left out"},
+          {"stamp", "the time stamp is the start of the sweep; the bag stores a sweep at the time of its last point"},
+          {"order", "points are sorted by time; missing returns are left out"},
           {"fields", fields_of(sweeps, lidar.timed)},
           {"rings", lidar.rings},
           {"columns", lidar.columns},

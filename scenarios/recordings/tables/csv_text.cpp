@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/csv_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -45,14 +47,15 @@ char likely_separator(std::string_view text) {
 /// better message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
-  if (mark == "\xFF\xFE" || mark == "\xFE\xFF") throw BadInput(name + ": the text is in UTF-16; it must be in UTF-8");
+  if (mark == "\xFF\xFE" || mark == "\xFE\xFF")
+    throw BadInput(fmt::format("{}: the text is in UTF-16; it must be in UTF-8", name));
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
-    throw BadInput(name + ":" + std::to_string(line) +
-                   ": the file contains a zero byte: it is damaged or is not a text file");
+    throw BadInput(
+        fmt::format("{}:{}: the file contains a zero byte: it is damaged or is not a text file", name, line));
   }
   if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
-    throw BadInput(name + ": the lines end in a carriage return; they must end in a line feed");
+    throw BadInput(fmt::format("{}: the lines end in a carriage return; they must end in a line feed", name));
 }
 
 }  // namespace
@@ -65,8 +68,8 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
   require_lines(name_, text_);
   if (text_.back() != '\n') {
     const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;
-    throw BadInput(name_ + ":" + std::to_string(lines) +
-                   ": the last line has no line end; the file may be truncated within a number");
+    throw BadInput(
+        fmt::format("{}:{}: the last line has no line end; the file may be truncated within a number", name_, lines));
   }
   if (text_.starts_with("\xEF\xBB\xBF")) at_.at = 3;  // byte order mark
   text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
@@ -108,8 +111,8 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
   const std::string place = line.where + ": column " + column + " ";
   if (!parse_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
-    throw BadInput(place + "the value must be a number; it is '" + std::string(text) + "'" +
-                   (comma ? "; use a decimal point" : ""));
+    throw BadInput(
+        fmt::format("{}the value must be a number; it is '{}'{}", place, text, comma ? "; use a decimal point" : ""));
   }
   if (!std::isfinite(value)) throw BadInput(place + "is not finite");
   return value;

@@ -28,9 +28,9 @@ using Columns3 = std::array<std::size_t, 3>;
 
 std::size_t column(const CsvLine& header, const std::string& name) {
   const auto found = std::find(header.fields.begin(), header.fields.end(), name);
-  if (found == header.fields.end()) throw BadInput(header.where + ": a column is missing: " + name);
+  if (found == header.fields.end()) throw BadInput(fmt::format("{}: a column is missing: {}", header.where, name));
   if (std::count(header.fields.begin(), header.fields.end(), name) > 1)
-    throw BadInput(header.where + ": two columns have the name " + name);
+    throw BadInput(fmt::format("{}: two columns have the name {}", header.where, name));
   return static_cast<std::size_t>(found - header.fields.begin());
 }
 

@@ -101,7 +101,8 @@ Imported import_broad(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   const hdf5::Group& root = file.root();
   if (root.has_attribute("format") && root.text_attribute("format") == kRecordingFormat)
-    throw BadInput(path.string() + ": this file is already a recording; use the file directly, without import");
+    throw BadInput(
+        fmt::format("{}: this file is already a recording; use the file directly, without import", path.string()));
   const double rate_hz = root.double_attribute("sampling_rate");
   if (!(rate_hz >= 1.0 && rate_hz <= 1e5))
     root.fail("sampling_rate", "the sampling rate must be within 1 and 100000 Hz");

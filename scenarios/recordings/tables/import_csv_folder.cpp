@@ -43,7 +43,7 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
   for (const std::filesystem::path& file : tables_in(folder)) {
     if (is_pose_table(file)) continue;  // a reference
     if (const std::string problem = imu_problem(file); !problem.empty()) {
-      left_out.push_back("this file is left out, because it is not a table of IMU readings: " + problem);
+      left_out.push_back(fmt::format("this file is left out, because it is not a table of IMU readings: {}", problem));
       continue;
     }
     Imported imu = import_imu_csv(file, device, unit, gyro_unit);
@@ -54,13 +54,14 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
       attach_imus(out, std::move(imu));
   }
   if (out.sensors.imus.empty())
-    throw BadInput(folder.string() + ": the folder contains no table of IMU readings" +
-                   (left_out.empty() ? "" : "; " + left_out.front()));
+    throw BadInput(fmt::format("{}: the folder contains no table of IMU readings{}", folder.string(),
+                               (left_out.empty() ? "" : "; " + left_out.front())));
   if (out.sensors.imus.size() > 1)
-    out.notes.push_back(fmt::format(
-        "'{}' is the primary IMU, because its file comes first. Tables do not state the poses of the IMUs on the body, "
-        "so all IMUs are assumed at the same position with the same axes. To use one IMU, import its file",
-        out.sensors.imus.front().name));
+    out.notes.push_back(
+        fmt::format("IMU '{}' is the primary IMU, because its file comes first. Tables do not state the poses of the "
+                    "IMUs on the body, "
+                    "so all IMUs are assumed at the same position with the same axes. To use one IMU, import its file",
+                    out.sensors.imus.front().name));
   out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
   return out;
 }

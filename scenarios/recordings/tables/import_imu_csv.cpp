@@ -23,8 +23,9 @@ template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
   if (asked == usual) return *stated;
-  throw BadInput(header.where +
-                 ": the column names state rad/s and m/s^2, but an option states another unit; remove the option");
+  throw BadInput(
+      fmt::format("{}: the column names state rad/s and m/s^2, but an option states another unit; remove the option",
+                  header.where));
 }
 
 Eigen::Vector3d vector(const CsvLine& line, const std::array<std::size_t, 3>& columns) {

@@ -78,7 +78,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   std::string missing;
   const auto take = [&](const std::string& name, std::size_t& place) {
     const auto count = std::count(names.begin(), names.end(), name);
-    if (count > 1) fail(second, "two columns have the name " + name);
+    if (count > 1) fail(second, fmt::format("two columns have the name {}", name));
     if (count == 0) missing += " '" + name + "'";
     const auto found = std::find(names.begin(), names.end(), name);
     place = static_cast<std::size_t>(found - names.begin());
@@ -183,7 +183,7 @@ Log read_log(const std::filesystem::path& path) {
   CsvText text(path, ';');
   CsvLine groups, line;
   text.next(groups);
-  if (!text.next(line)) throw BadInput(path.string() + ": the file ends within its header");
+  if (!text.next(line)) throw BadInput(fmt::format("{}: the file ends within its header", path.string()));
   const RepoimuColumns columns = columns_of(groups, line);
   Log log;
   std::vector<int> digits;

@@ -35,7 +35,7 @@ std::optional<std::size_t> find_column(const CsvLine& header, const std::string&
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
     if (!fits(header.fields[i])) continue;
-    if (found) fail(header, "two columns have the name " + name);
+    if (found) fail(header, fmt::format("two columns have the name {}", name));
     found = i;
   }
   return found;
@@ -143,7 +143,7 @@ void require_exported(const CsvLine& header) {
   }
   for (const std::string& name : kExported) {
     const auto count = std::count(header.fields.begin(), header.fields.end(), name);
-    if (count > 1) fail(header, "two columns have the name " + name);
+    if (count > 1) fail(header, fmt::format("two columns have the name {}", name));
   }
 }
 
@@ -228,7 +228,7 @@ int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& f
     if (step_s >= kLeast_s && step_s < kMost_s) return decimals;
   }
   throw BadInput(
-      fmt::format("{}: the time step is {}; in none of s, ms, us and ns is this a rate of 10 to 1000 Hz. Add the unit "
+      fmt::format("{}: the time step is {}, which is a rate of 10 to 1000 Hz in none of s, ms, us and ns. Add the unit "
                   "to the column name, as in time_s or 'time [ns]'",
                   file, std::to_string(step)));
 }

@@ -44,10 +44,10 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";
   const std::string text = fmt::format(
-      "{}: if the file is read in {}, the median specific force is {} m/s^2; it must be within 3 and 30 "
-      "m/s^2. The file may be in {}{}{}",
-      where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
-      middle < kLeastMedian_m_s2 ? ". Another possible cause: the device removed gravity" : "");
+      "{}: the median specific force is {} m/s^2 if the accelerometer is read in {}. The median must be from 3 to 30 "
+      "m/s^2. The specific force may be in {}{}{}",
+      where, std::to_string(middle), read_as, likely, known ? " (set '--accel-unit " + likely + "')" : "",
+      middle < kLeastMedian_m_s2 ? ". The device may also have removed gravity" : "");
   if (known) throw RepairableInput(text, {"--accel-unit", likely});
   throw BadInput(text);
 }
@@ -69,7 +69,7 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
   const double period_s = static_cast<double>(imu.period_ns) * 1e-9;
   if (period_s >= kLeastPeriod_s && period_s <= kLargestPeriod_s) return;
   throw BadInput(fmt::format(
-      "{}: the median time step is {} s; it must be within {} and {}. The time stamps may be in another unit{}", where,
+      "{}: the median time step is {} s; it must be from {} to {} s. The time stamps may be in another unit{}", where,
       rounded(period_s), rounded(kLeastPeriod_s), rounded(kLargestPeriod_s),
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
@@ -96,9 +96,9 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
   const std::string text = fmt::format(
-      "{}: if the rates are read in {}{} % of them exceed {} rad/s, which is {}; at most 1 % may exceed "
-      "this limit. The rates may be in {}{}",
-      where, as_rad ? "rad/s, " : "deg/s, ", rounded(100.0 * share), rounded(bound),
+      "{}: if the gyro is read in {}, {} % of the rates exceed {} rad/s, which is {}. At most 1 % of the rates may "
+      "exceed this limit. The rates may be in {}{}",
+      where, as_rad ? "rad/s" : "deg/s", rounded(100.0 * share), rounded(bound),
       stated ? "twice the stated range of the device" : "more than any robot rotates",
       degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : "");
   if (degrees) throw RepairableInput(text, {"--gyro-unit", "deg/s"});
@@ -268,18 +268,18 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
     throw RepairableInput(
-        fmt::format("{}: if the rates are read in rad/s, {}; this ratio must be within 0.5 and 2. The rates may be in "
+        fmt::format("{}: if the gyro is read in rad/s, {}. The ratio must be from 0.5 to 2. The rates may be in "
                     "deg/s{}",
                     where, seen, kTakenInDegrees),
         {"--gyro-unit", "deg/s"});
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
     throw RepairableInput(
-        fmt::format("{}: if the rates are read in deg/s, {}; this ratio must be within 0.5 and 2. The rates may be in "
+        fmt::format("{}: if the gyro is read in deg/s, {}. The ratio must be from 0.5 to 2. The rates may be in "
                     "rad/s{}",
                     where, seen, kTakenInRadians),
         {"--gyro-unit", "rad/s"});
-  if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
-  return fmt::format("caution: {}; this ratio should be 1. Check the unit, the signs and the order of the axes", seen);
+  if (near_factor(turn.ratio, 1.0)) return fmt::format("{}: units and axes agree", seen);
+  return fmt::format("caution: {}. The ratio should be 1. Check the unit, the signs and the order of the axes", seen);
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
@@ -300,7 +300,7 @@ sim::ImuRecord without_readings(sim::ImuRecord device) {
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu) {
   for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
-    if (!std::isfinite(value)) throw BadInput(where + ": a reading is not finite");
+    if (!std::isfinite(value)) throw BadInput(fmt::format("{}: a reading is not finite", where));
     if (value > kSensorReadingMax)
       throw BadInput(fmt::format(
           "{}: a reading has the magnitude {} rad/s or m/s^2; it must be at most {}, the limit of any sensor", where,
@@ -333,7 +333,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
     ++lost;
   }
   if (lost > 0 && lost == in_order.size())
-    throw BadInput(where(0) + ": all values of all readings are exactly 0, so the file contains no data");
+    throw BadInput(fmt::format("{}: all values of all readings are exactly 0, so the file contains no data", where(0)));
   keep_rows(kept, imu.time_ns), keep_rows(kept, imu.gyro_rad_s), keep_rows(kept, imu.accel_m_s2);
   keep_rows(kept, imu.clip_flags), keep_rows(kept, imu.magnetic_field_t);
   return bursts;

@@ -201,8 +201,8 @@ class HeaderReader {
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty())
-      fail("missing columns:" + missing_ + "; if other columns contain these values, name these columns: --columns " +
-           kExample);
+      fail(fmt::format("missing columns:{}; if other columns contain these values, name these columns: --columns {}",
+                       missing_, kExample));
     return true;
   }
   /// Finds the column that numbers the IMUs.
@@ -274,9 +274,9 @@ std::size_t column_of(const LoggedTable& table, const std::string& name) {
   if (count == 1) return static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
   std::size_t position = 0;
   if (count == 0 && read_number(name, position) && position < fields.size()) return position;
-  throw BadInput(fmt::format("{}: --columns: {} column '{}'; the table has {} columns{}{}", table.header().where,
-                             count == 0 ? "there is no" : "there are several columns with the name of", name,
-                             fields.size(), table.has_header() ? ": " : " without names",
+  throw BadInput(fmt::format("{}: --columns: the table has {} column '{}'; it has {} columns{}{}", table.header().where,
+                             count == 0 ? "no" : "more than one", name, fields.size(),
+                             table.has_header() ? ": " : " without names",
                              table.has_header() ? fmt::format("{}", fmt::join(fields, " ")) : ""));
 }
 

@@ -125,7 +125,9 @@ std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged) {
   }
   return out.empty()
              ? ""
-             : "the accelerometer seems to be saturated, because many readings are near the largest value: " + out;
+             : fmt::format(
+                   "the accelerometer seems to be saturated, because many readings are near the largest value: {}",
+                   out);
 }
 
 }  // namespace tumble::scenarios

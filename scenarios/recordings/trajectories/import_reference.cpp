@@ -16,9 +16,9 @@ namespace {
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
-    throw BadInput(
-        source.file.string() +
-        ": the KITTI format has no times; give a file of time stamps (--times) or a period (--sweep-period)");
+    throw BadInput(fmt::format(
+        "{}: the KITTI format has no times; give a file of time stamps (--times) or a period (--sweep-period)",
+        source.file.string()));
   }
   const std::size_t poses = count_kitti_poses(source.file);
   std::vector<std::int64_t> times;
@@ -66,7 +66,8 @@ Imported import_trajectory(const ReferenceSource& source) {
 }
 
 const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where) {
-  if (sensors.lidars.empty()) throw BadInput(where + ": the poses belong to a lidar, but the recording has no lidar");
+  if (sensors.lidars.empty())
+    throw BadInput(fmt::format("{}: the poses belong to a lidar, but the recording has no lidar", where));
   return sensors.lidars.front().T_BL;
 }
 
@@ -98,7 +99,8 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
 void attach_reference(Imported& recording, const ReferenceSource& source) {
   const sim::Sensors& sensors = recording.sensors;
   if (sensors.lidars.empty() && source.format == "kitti")
-    throw BadInput(source.file.string() + ": a KITTI file has one pose per sweep, but the recording has no lidar");
+    throw BadInput(
+        fmt::format("{}: a KITTI file has one pose per sweep, but the recording has no lidar", source.file.string()));
   std::vector<std::int64_t> sweeps_ns;
   if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
   for (std::int64_t& time : sweeps_ns) time += recording.info.origin_ns;

@@ -87,15 +87,11 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
       fmt::format("the reference agrees with the gyro of '{}': rotations differ by {} (median of {} pairs of poses)",
                   imu, share_text(fit.difference), check.pairs);
   if (std::abs(fit.delay_s) >= kDelayNoted_s)
-    return "caution: " + text + " after a correction of the time stamps of the reference, which are " +
-           delay_text(fit.delay_s);
+    return fmt::format("caution: {} after a correction of the time stamps of the reference, which are {}", text,
+                       delay_text(fit.delay_s));
   return text +
-         (check.clock_known
-              ? ""
-              : "; the clock of the reference is not checked, because this motion would not reveal a delay") +
-         (check.order_known ? ""
-                            : "; the order of the quaternions is not checked, because this motion would not reveal w "
-                              "in first position");
+         (check.clock_known ? "" : "; this motion does not reveal whether the clock of the reference has a delay") +
+         (check.order_known ? "" : "; this motion does not reveal whether the quaternions have w first");
 }
 
 /// Returns whether the reference differs from the gyro only by a delay, which may be accepted.
@@ -133,22 +129,23 @@ void require_clock(const TurningCheck& check, const std::string& imu, const std:
 std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_BA,
                             const sim::Sensors& sensors, const std::string& where) {
   const std::string unchecked = "the reference is not checked against a gyro: ";
-  if (sensors.imus.empty()) return unchecked + "the recording has no IMU";
+  if (sensors.imus.empty()) return fmt::format("{}the recording has no IMU", unchecked);
   const sim::ImuRecord& imu = sensors.imus.front();
   std::vector<TimedAttitude> attitudes;
   for (const ReferencePose& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA});
   const std::vector<CandidateFrame> frames = candidate_frames(T_BA, sensors);
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
-    return unchecked +
-           "too few pairs of poses of the reference (0.05 to 1 s apart) rotate by at least 0.02 rad while '" +
-           imu.name + "' has readings below its range";
+    return fmt::format(
+        "{}too few pairs of poses of the reference (0.05 to 1 s apart) rotate by at least 0.02 rad while '{}' has "
+        "readings below its range",
+        unchecked, imu.name);
   if (check.upright) {
-    throw BadInput(where + ": the force that '" + imu.name +
-                   "' measures should point up on average, but differs from the vertical of the reference by more than "
-                   "60 degrees. The rotations of the reference agree with the gyro, but they agree equally well with "
-                   "another order or direction of the quaternions" +
-                   remedy(check.upright->written, 0.0));
+    throw BadInput(
+        fmt::format("{}: the force that '{}' measures should point up on average, but differs from the vertical of the "
+                    "reference by more than 60 degrees. The rotations of the reference agree with the gyro, but they "
+                    "agree equally well with another order or direction of the quaternions{}",
+                    where, imu.name, remedy(check.upright->written, 0.0)));
   }
   require_reading_as_stated(check, imu.name, where);
   if (check.stated.difference > kContradicts && check.reading.likely().difference >= kReferenceAgrees)

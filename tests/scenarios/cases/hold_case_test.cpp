@@ -68,7 +68,7 @@ TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
   EXPECT_THAT(cured.fault, HasSubstr("cured"));
   const double infinite = std::numeric_limits<double>::infinity();
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, infinite, true)),
-              HasSubstr("has no value, but the accepted result has one"));
+              HasSubstr("has no value, but the accepted result has a value"));
 }
 
 TEST(HoldCase, WhatIsAcceptedIsHeldAsItWas) {
@@ -100,8 +100,8 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
   EXPECT_EQ(named.named_case->scenario, "cliff");
   EXPECT_EQ(named.named_case->seed, 77u);
   EXPECT_THAT(named.doc,
-              HasSubstr("fails (map_failed) on a simplified form of draw 77 of scenario cliff. The failure still "
-                        "needs: world: bumps; 1 other parts were not tried."));
+              HasSubstr("fails (map_failed) on a simplified form of draw 77 of scenario cliff. Removing any of "
+                        "these parts removes the failure: world: bumps. The number of untried parts is 1."));
   const Expectation& expected = named.named_case->expected.front();
   EXPECT_EQ(expected.drawn, 2.5);
   EXPECT_EQ(expected.value, 1.5);

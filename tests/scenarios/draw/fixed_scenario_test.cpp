@@ -78,7 +78,7 @@ TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_THAT(complaint_after("method: \"rate/tumble\"", "method: \"slam/tumble\""), HasSubstr("occurs twice"));
   EXPECT_THAT(complaint_after("worse_than: 0.5", "worse_then: 0.5"), HasSubstr("worse_than"));
   EXPECT_THAT(complaint_after("worse_than: 0.5", "worse_than: .nan"), HasSubstr("worse_than"));
-  EXPECT_THAT(complaint_after("metric: translation_error_end_m, ", ""), HasSubstr("needs key 'metric'"));
+  EXPECT_THAT(complaint_after("metric: translation_error_end_m, ", ""), HasSubstr("needs the key 'metric'"));
   EXPECT_THAT(complaint_after("  seed: 18446744073709551615\n", ""), HasSubstr("seed"));
   EXPECT_THAT(complaint_after("seed: 18446744073709551615", "seed: -1"), HasSubstr("seed"));
   EXPECT_THAT(complaint_after("duration_s: 10", "duration_s: {uniform: [5, 6]}"), HasSubstr("duration_s is drawn"));

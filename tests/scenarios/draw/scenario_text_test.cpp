@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{uniform: [0.5, 0.7]}", "{uniform: [0.5, 0.7], choice: [1]}",
               "hill.yaml:4: world.slope_rad: ", "exactly one"},
         Wrong{"{uniform: [0.5, 0.7]}", "{choice: []}",
-              "hill.yaml:4: world.slope_rad: ", "choice must list at least one value"},
+              "hill.yaml:4: world.slope_rad: ", "'choice' must list at least one value"},
         Wrong{"{uniform: [0.5, 0.7]}", "{log_uniform: [0, 0.7]}", "hill.yaml:4: world.slope_rad: ", "greater than 0"},
         Wrong{"{uniform: [0.5, 0.7]}", "[0.5, 0.7]", "hill.yaml:4: world.slope_rad: ", "must be a number or one of"},
         Wrong{"[8, 0.5, 6, 10]", "[8, -0.5]", "hill.yaml:5: robot.mass_kg: ", "sigma -0.5 is below 0"},

@@ -217,7 +217,7 @@ TEST_F(EstimateFile, UncertainEventsComeBackWithTheirContacts) {
   EXPECT_EQ(second, "5000000,2,1");
 
   write("contacts.csv", "time_ns,label,uncertain\n0,1,0\n5000000,2,2\n10000000,2,1\n");
-  EXPECT_NE(complaint(folder_).find("contacts.csv:3: uncertain is 2; it must be 0 or 1"), std::string::npos);
+  EXPECT_NE(complaint(folder_).find("contacts.csv:3: column 'uncertain' is 2; it must be 0 or 1"), std::string::npos);
   estimate.uncertain.pop_back();
   EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
 }

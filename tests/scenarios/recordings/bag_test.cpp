@@ -110,7 +110,7 @@ TEST_P(Bag, TopicsAreChosenByName) {
 TEST_P(Bag, AnotherUnitIsSaid) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
   write();
-  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: if the file is read in m/s^2, the median specific force is"));
+  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: the median specific force is"));
 }
 
 // some drivers do not follow sensor_msgs/Imu
@@ -124,7 +124,7 @@ TEST_P(Bag, ForceInGIsReadSoAndSaid) {
               testing::Contains(testing::AllOf(HasSubstr("/imu: caution: the message definition requires m/s^2"),
                                                HasSubstr("(set '--accel-unit m/s^2'"))));
   reading_.accel_unit = AccelUnit::m_s2;
-  EXPECT_THAT(complaint_of(), HasSubstr("The file may be in g (set '--accel-unit g')"));
+  EXPECT_THAT(complaint_of(), HasSubstr("The specific force may be in g (set '--accel-unit g')"));
 }
 
 // a program that takes the first IMU of a bag must get the primary one, also when the first reading of another IMU was
@@ -205,7 +205,7 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("units and axes agree")));
   EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
   turning(1.0, 1.0);
-  EXPECT_THAT(complaint_of(), HasSubstr("if the rates are read in deg/s, gravity rotates"));
+  EXPECT_THAT(complaint_of(), HasSubstr("if the gyro is read in deg/s, gravity rotates"));
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in rad/s"));
   reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);

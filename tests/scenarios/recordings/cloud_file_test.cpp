@@ -166,7 +166,7 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
   // with one point more, the size is no multiple of 16 either
   EXPECT_THAT(
       complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
-      AllOf(HasSubstr("has 12820 bytes; the number must be a multiple of 16"), HasSubstr("5 columns of float32")));
+      AllOf(HasSubstr("has 12820 bytes, but the size must be a multiple of 16"), HasSubstr("5 columns of float32")));
 }
 
 TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
@@ -198,7 +198,7 @@ TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
   EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks z"));
   EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or occurs twice"));
   EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("type 'f2'; it must be f4, f8"));
-  EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes; the number must be a multiple of 24"));
+  EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes, but the size must be a multiple of 24"));
 }
 
 TEST_F(CloudFile, NoPointsAreNoError) {

@@ -65,8 +65,8 @@ TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
   lossy.lidars[0].sweep_start_ns.erase(lossy.lidars[0].sweep_start_ns.begin() + 5);
   EXPECT_THAT(evidence_of(lossy), IsEmpty()) << "a single sweep";
   lossy.lidars[0].sweep_start_ns.erase(lossy.lidars[0].sweep_start_ns.begin() + 8);
-  EXPECT_THAT(evidence_of(lossy), ElementsAre("lidar: 2 of 40 sweeps are lost (5 %, limit 0.5 %); the longest step "
-                                              "is 0.2 s"));
+  EXPECT_THAT(evidence_of(lossy), ElementsAre("lidar: 2 of 40 sweeps are lost (5 %, limit 0.5 %); the longest gap "
+                                              "lasts 0.2 s"));
   sim::Sensors moving = at_rest(0.0, 4.0);
   for (std::size_t k = 0; k < 400; ++k) moving.imus[0].gyro_rad_s[k].z() = std::sin(0.1 * static_cast<double>(k));
   EXPECT_THAT(evidence_of(moving),

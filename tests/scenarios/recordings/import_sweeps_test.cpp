@@ -90,7 +90,7 @@ TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
   source_.steady_ns = 100000000;
   source_.reading.range_max_m = 1.0;  // points 3.7 m away
   EXPECT_THAT(complaint_of(),
-              HasSubstr("6 of 6 points are farther than 2 m, which is twice the range in the data sheet"));
+              HasSubstr("6 of 6 points are farther than 2 m, which is twice the range of the data sheet"));
   source_.reading.range_max_m = 2.0;
   EXPECT_EQ(import().position_L_m.size(), 6u);
 }

@@ -134,7 +134,7 @@ TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
   const std::string rows =
       "1.5,0.1,0.2,0.3,7,1617333602.223639727,-0.5,0,1\n1.6,0.1,0.2,0.4,8,1617333602.24,-0.5,0,1\n";
   EXPECT_THAT(complaint_of(kNamed + rows),
-              HasSubstr("median specific force is 1.118034 m/s^2; it must be within 3 and 30"));
+              HasSubstr("median specific force is 1.118034 m/s^2 if the accelerometer is read in m/s^2"));
   std::string without = kNamed;
   without.replace(without.find("velocity/y"), 10, "velocity_y");
   EXPECT_THAT(complaint_of(without + rows), HasSubstr("csv:1: missing columns: angular_velocity/y"));

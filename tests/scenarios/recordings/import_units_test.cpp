@@ -55,8 +55,8 @@ TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
 }
 
 TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
-  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 7.854),
-              testing::AllOf(HasSubstr("100 % of them exceed 15.7 rad/s"), HasSubstr("The rates may be in deg/s")));
+  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 7.854), testing::AllOf(HasSubstr("100 % of the rates exceed 15.7 rad/s"),
+                                                                     HasSubstr("The rates may be in deg/s")));
   EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 0.0),
               HasSubstr("exceed 100 rad/s, which is more than any robot rotates"));
   EXPECT_THAT(complaint_of(rolled(5.0, 7505.0), 7.854), HasSubstr("The rates may be in raw counts of the sensor"));
@@ -66,7 +66,7 @@ TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
 TEST_F(ImportSphere, ForcesWithoutGravityAreMet) {
   std::string text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
   for (int k = 0; k < 100; ++k) text += "0," + std::to_string(k * 10'000'000) + ",0,0,0,0.1,0,0.02\n";
-  EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("the device removed gravity"));
+  EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("device may also have removed gravity"));
 }
 
 TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {
@@ -87,7 +87,7 @@ TEST_F(ImportSphere, StampsInAnotherUnitAreMet) {
   for (const std::int64_t step_ns : {4'000'000'000, 4'000'000'000'000})
     EXPECT_THAT(complaint_of(rolled(2.5, 1.0, step_ns), 7.854), HasSubstr("The time stamps may be in another unit"));
   EXPECT_THAT(complaint_of(rolled(2.5, 1.0, 4'000), 7.854),
-              HasSubstr("the median time step is 4e-06 s; it must be within 2e-05 and 2."));
+              HasSubstr("the median time step is 4e-06 s; it must be from 2e-05 to 2 s."));
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
                                     HasSubstr("set '--gyro-unit deg/s'")));
   }
   EXPECT_THROW(with_gyro(Eigen::Matrix3d::Identity() / kDegrees, GyroUnit::deg_s), BadInput);
-  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: if the rates are in deg/s"));
+  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: if the gyro is read in deg/s"));
 }
 
 TEST(LidarRotation, FlippedAndPermutedAxesAreNamed) {

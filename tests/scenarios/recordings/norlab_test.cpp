@@ -162,7 +162,8 @@ TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
   }
   EXPECT_THAT(complaint_of("ply\n"), HasSubstr("a.vtk:2: the file does not begin with '# vtk DataFile Version'"));
   EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: the file is a binary"));
-  EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"), HasSubstr("a.vtk:7: '5,5' is not a number"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"),
+              HasSubstr("a.vtk:7: word '5,5' is not a number"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"),
               HasSubstr("a.vtk:5: the file states 4000000000 points"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"),

@@ -78,7 +78,8 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
     return fixture::complaint([&] { read_sensors(path); });
   };
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
-  EXPECT_THAT(complaint_of(folder_), HasSubstr(": is a folder; it must be a recording (FILE.h5); 'tumble import "));
+  EXPECT_THAT(complaint_of(folder_),
+              HasSubstr(": this path is a folder; it must be a recording (FILE.h5); 'tumble import "));
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
   EXPECT_THAT(complaint_of(folder_ / "text.h5"),
               HasSubstr("text.h5: the file is truncated, damaged or not an HDF5 file"));
