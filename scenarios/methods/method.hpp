@@ -61,7 +61,7 @@ struct Estimate {
 struct OracleInput {
   const sim::Truth* truth = nullptr;
   /// The slam methods of the rig call this function after each lidar sweep, with the number of processed sweeps and of
-  /// all sweeps, for display. A method with several passes starts again at 1. May be empty.
+  /// all sweeps, for display. A method with several passes starts again at 1. The function may be empty.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 

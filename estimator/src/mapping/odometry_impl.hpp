@@ -28,8 +28,8 @@ struct UpdatedSweep {
   const SweepTrajectory& trajectory;
 };
 
-/// SweepScratch contains work buffers of a sweep, which are kept to avoid allocations. Each sweep writes the buffers
-/// before it reads them.
+/// SweepScratch contains work buffers of a sweep, which are kept to avoid allocations. Each sweep first overwrites the
+/// buffers.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -116,8 +116,8 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> other;  // alternative for an unconfirmed or a contradicted relocalisation
-  mapping::MapLocaliser localiser;              // of a prior map, if any
+  std::optional<mapping::DeadReckoning> other;  // alternative pose for an unconfirmed or a contradicted relocalisation
+  mapping::MapLocaliser localiser;              // localiser in a prior map, if any
   mapping::SweepScratch scratch;
 };
 

@@ -216,7 +216,7 @@ void report_silent(const Units& units, SensorHealth& faults) {
   }
 }
 
-/// Excludes the readings of an IMU while one of its axes is frozen. If no IMU remains, returns an error.
+/// Excludes the readings of an IMU while one of its axes is frozen. Returns an error if no IMU remains.
 Status exclude_frozen(Units& units, SensorHealth& faults) {
   const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {

@@ -49,7 +49,7 @@ void RollingOdometry::Restart::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // must equal the saved ones; the next three are derived from them
+  visit.scratch(s.params_);  // must equal the saved parameters, from which the next three members follow
   visit.scratch(s.stamp_order_);
   visit("order", s.stamp_order_state_);
   visit.scratch(s.sample_clock_);

@@ -48,7 +48,7 @@ struct Reading {
   GapUncertainty uncertainty;
   bool in_gap = false;
   bool whole = true;               ///< false: last reading of the run, too short to be processed
-  std::size_t first = 0, end = 0;  ///< samples of the reading; in a gap, only the last piece has one
+  std::size_t first = 0, end = 0;  ///< range of samples of the reading; in a gap, only the last piece has a sample
   TimeNs end_ns = 0;
 };
 

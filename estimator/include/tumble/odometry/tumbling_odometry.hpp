@@ -72,7 +72,8 @@ class TumblingOdometry {
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     LidarInertialOdometry::SweepReport report;
-    /// Transform to the frame of the position readings, from the readings up to the sweep's end. Empty: unknown.
+    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
+    /// Empty if unknown.
     std::optional<PositionFrame> position_frame;
   };
 
@@ -101,11 +102,11 @@ class TumblingOdometry {
   /// `out_of_range` if a time stamp exceeds 97 years or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. TumblingOdometry
-  /// registers the points of a further lidar together with the sweep of the first lidar at their time. The points of a
-  /// further lidar must therefore arrive before the registration of that sweep, which is `lag_s` after its end. A lag
-  /// of two sweeps suffices. The lidars need no synchronisation. Limitation: the ranges and the own-body box of the
-  /// first lidar also apply to the points of further lidars, in axes of the first lidar. Returns the errors of
-  /// add_sweep() for the first lidar, and `out_of_range` for an unknown lidar.
+  /// registers the points of a further lidar together with the simultaneous sweep of the first lidar. The points of a
+  /// further lidar must therefore arrive before the registration of the sweep, which is `lag_s` after the end of the
+  /// sweep. A lag of two sweeps suffices. The lidars need no synchronisation. Limitation: the ranges and the own-body
+  /// box of the first lidar also apply to the points of further lidars, in axes of the first lidar. Returns the errors
+  /// of add_sweep() for the first lidar, and `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
@@ -115,11 +116,11 @@ class TumblingOdometry {
   /// readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Processes a position reading, for example from GPS or a beacon. Readings do not change poses and map: they
-  /// determine Sweep::position_frame, in which poses do not drift (PositionAlignment). All readings are used, in any
-  /// order; each must arrive before its sweep is registered. Readings also work with kWholeRecording. On error the
-  /// state is unchanged. Returns the errors of add_velocity(); `out_of_range` also means that the covariance is not
-  /// symmetric and positive definite.
+  /// Processes a position reading, for example from GPS or a beacon. Position readings leave poses and map unchanged.
+  /// Position readings determine Sweep::position_frame, in which poses do not drift (PositionAlignment). Position
+  /// readings may arrive in any order, but before the registration of their sweep. Position readings also work with
+  /// kWholeRecording. On error, the state is unchanged. Returns the errors of add_velocity(); `out_of_range` also means
+  /// that the covariance is not symmetric and positive definite.
   Status add_position(const PositionReading& position);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
   std::optional<Sweep> take();
