@@ -223,7 +223,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
   uncertainty.rate_variance_rad2_s =
-      squared(mean_force_tilt_rad / gap_s) * gap_s;  // (R32); common to all pieces, hence a factor gap_s
+      squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); common to all pieces, hence a factor gap_s
   uncertainty.speed_variance_m2_s2 =
       squared(kGapVelocityChangeRatio * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;

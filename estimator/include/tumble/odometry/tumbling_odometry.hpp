@@ -195,9 +195,9 @@ class TumblingOdometry {
 
   /// Saves the complete state: map, calibration, SecondPass, and sweeps that take() has not yet returned. The saved
   /// bytes are equal on every machine and include a checksum. An object with equal parameters that loads the bytes
-  /// continues with bit-identical results. Two states are equal if their saved bytes are equal. The size of a saved map
-  /// is in docs/tutorials/your_robot.md. With kWholeRecording, the bytes contain the recorded data instead of the
-  /// results. Call finish() after load() to compute the results again.
+  /// continues with bit-identical results. Two states are equal if their saved bytes are equal. With kWholeRecording,
+  /// the bytes contain the recorded data instead of the results. Call finish() after load() to compute the results
+  /// again.
   std::vector<std::byte> save() const;
   /// Replaces the state with a saved state. On error, the state is unchanged, and the returned status names the field,
   /// the stored value and the bound. The error is `too_few` (truncated bytes), `non_finite`, `time_order`, `gap` or
