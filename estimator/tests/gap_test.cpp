@@ -22,7 +22,7 @@ using test::ThrownBody;
 
 constexpr double kWholeRun = TumblingOdometry::kWholeRecording;
 
-/// DataGap is a time without data, during the rest before the throw.
+/// DataGap is an interval without data, during the rest before the throw.
 struct DataGap {
   double imu_s = 0.0, lidar_s = 0.0;
   bool covers(double length_s, TimeNs time_ns) const {

@@ -35,7 +35,7 @@ bool is_about_place(About kind) {
   return kind == About::tracking_lost || kind == About::lidar_scale || kind == About::lidar_calibration;
 }
 
-/// Adds the entry of one kind.
+/// Adds the health entry for one kind of finding.
 void add_row(const HealthFinding& finding, std::map<std::string, double>& health) {
   const double since_s = seconds(finding.since_ns.value_or(0));
   switch (finding.kind) {

@@ -121,7 +121,7 @@ class TimeWithoutGaps {
     last_ns_ = time_ns;
     return {time_ns - removed(), after_gap};
   }
-  /// Returns the time in the recording.
+  /// Converts a time without gaps to the time in the recording.
   TimeNs in_recording(TimeNs time_ns) const {
     TimeNs removed_ns = 0;
     for (const Gap& gap : gaps_) {
@@ -142,7 +142,7 @@ class TimeWithoutGaps {
   TimeNs last_ns_ = 0, step_ns_ = 1;
 };
 
-/// Deletes the windows and the predicted motion, which end at a gap. The calibration of the units remains.
+/// Deletes the averaging windows and the predicted motion at a gap, and keeps the calibration of the units.
 void delete_motion(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.units) unit.window = {};
   state.recovery.running = false;

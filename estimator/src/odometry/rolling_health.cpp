@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Health of RollingOdometry.
+// rolling_health.cpp implements the health checks of RollingOdometry.
 #include <algorithm>
 #include <cstddef>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RollingOdometry: restarts after a gap, and the pose of a run in the world.
+// rolling_restart.cpp implements the restarts of RollingOdometry after gaps, and the pose of a run in the world.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

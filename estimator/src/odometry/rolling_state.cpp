@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of RollingOdometry.
+// rolling_state.cpp implements saving and loading of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
 #include "../attitude/imu_plausibility_members.hpp"

@@ -88,8 +88,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // A rough floor lasts for many nodes. The density is therefore normalised with the width of grip, which avoids a
-    // penalty in each node.
+    // On a rough floor, the sphere stays for many nodes. The density is therefore normalised with the width of grip,
+    // which avoids a penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }

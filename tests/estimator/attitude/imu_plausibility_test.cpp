@@ -237,7 +237,7 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   EXPECT_FALSE(verdict_at(4.0, 0.9)) << "half the scale";
   EXPECT_FALSE(verdict_at(0.3 * 0.3, 0.4)) << "a multiple of it";
   EXPECT_FALSE(verdict_at(4.9, 0.9)) << "half the scale, and pushes";
-  // a hand that swings the sensor about an external point also pushes it, with or against the rotation
+  // a hand that swings the sensor about an external point also pushes the sensor, with or against the rotation
   EXPECT_TRUE(verdict_at(8.0, 0.62)) << "BROAD 07, a good gyro, slope 1.75";
   EXPECT_TRUE(verdict_at(9.0, 0.526)) << "BROAD 11, slope 1.58";
   EXPECT_TRUE(verdict_at(14.1, -0.13)) << "BROAD 27, slope -0.49";

@@ -53,7 +53,7 @@ TEST(RateLearnt, TheNextRunStartsFromWhatItIsGiven) {
   given.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
   ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &given, &found).status.ok());
   ASSERT_TRUE(found);
-  // four times the given covariance is a standard deviation of 2e-6
+  // four times the stated covariance corresponds to a standard deviation of 2e-6
   EXPECT_NEAR((found->calibration.constants.lever_arm_m - given.calibration.constants.lever_arm_m).norm(), 0.0, 1e-5);
 }
 

@@ -164,7 +164,7 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
-/// Returns a record of a gyro of 5 rad/s whose axis z repeats its reading from a third of the run on.
+/// Returns a record of a gyro with a range of 5 rad/s. From a third of the run on, axis z repeats its reading.
 sim::ImuRecord frozen_z(sim::ImuRecord record) {
   record.stated_gyro_range_rad_s = 5.0;
   for (std::size_t k = kSamples / 3; k < kSamples; ++k) record.gyro_rad_s[k].z() = record.gyro_rad_s[kSamples / 3].z();

@@ -52,7 +52,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 16202, 1);
   const Method& method = *find_methods("slam/tumble").at(0);
-  // the clocks differ by 20 ms and the mounting is wrong by 3 deg and 3 cm, twice what the priors assume
+  // the clocks differ by 20 ms, or the mounting is wrong by 3 deg and 3 cm; the method estimates both errors
   for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
     const Said good = said_of(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;

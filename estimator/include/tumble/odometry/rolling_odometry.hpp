@@ -161,9 +161,9 @@ class RollingOdometry {
 
   /// Reports the suspected faults of the IMUs: frozen axes (FrozenAxes), units that are silent, frozen or disagree
   /// (ImuMerge), a force at rest that differs from gravity (RestGravity), and readings that contradict each other
-  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends. The readings
-  /// of a frozen unit are ignored. If all units with readings are frozen, add_imus() rejects the sample. With
-  /// kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
+  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends.
+  /// RollingOdometry ignores the readings of a frozen unit. If all units with readings are frozen, add_imus() rejects
+  /// the sample. With kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
   SensorHealth health() const;
 
   /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
@@ -200,7 +200,7 @@ class RollingOdometry {
   /// alone.
   static RollingSmoother::Params smoother_params(const Params& params, const MergedRecordings& merged);
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

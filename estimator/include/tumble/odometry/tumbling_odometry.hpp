@@ -150,9 +150,10 @@ class TumblingOdometry {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
   /// finding ends when its cause ends (at the latest a minute later). The checks are RateStream::health(),
-  /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical and localised, Localisation and
-  /// StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and before
-  /// finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a finding.
+  /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
+  /// and StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and
+  /// before finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a
+  /// finding.
   SensorHealth health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;
@@ -205,7 +206,7 @@ class TumblingOdometry {
   Status load(std::span<const std::byte> bytes);
   /// Reads the parameters that a saved state contains. On error, `params` is unchanged.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

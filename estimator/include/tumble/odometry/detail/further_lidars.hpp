@@ -35,13 +35,13 @@ class FurtherLidars {
   /// wait, add() drops the oldest sweep.
   Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
              std::size_t most);
-  /// Adds the stored points from the duration of a sweep to the sweep, and drops earlier points. Cost: O(stored
+  /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
   /// points).
   void merge_into(WaitingSweep& sweep);
   /// Returns the number of points that arrived late, or when the first lidar had no sweep.
   std::size_t unused_points() const { return unused_points_; }
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -32,7 +32,7 @@ struct CheckedImu {
   bool merged = false;
 };
 
-/// Findings about an IMU, and the measured quantities of the checks that ran.
+/// ImuFindings contains the findings about an IMU, and the quantities that the checks measured.
 struct ImuFindings {
   struct Readings {
     double rest_force_ratio = 1.0;  ///< RestGravity::magnitude_error_ratio
@@ -52,7 +52,7 @@ struct ImuFindings {
   void add(const ImuFindings& other);
 };
 
-/// Returns the parameters of ImuPlausibility for an IMU. `gyro_range_rad_s` is stated by the device; 0: not stated.
+/// Returns the parameters of ImuPlausibility for an IMU. The data sheet states `gyro_range_rad_s`; 0 means unknown.
 ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s);
 
 /// Returns whether the rotation of gravity confirms the gyro's scale. If the gyro's scale is confirmed and forces

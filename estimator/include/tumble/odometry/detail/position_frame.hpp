@@ -58,7 +58,7 @@ class PositionAlignment {
   /// within 0.1 rad, and while the readings contradict each other.
   const std::optional<PositionFrame>& frame() const { return frame_; }
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
