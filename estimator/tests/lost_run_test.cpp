@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// After tracking failure, health() reports the failure until the end of the run.
+// After a tracking failure, health() reports the failure until the end of the run.
 #include <gtest/gtest.h>
 
 #include <string>

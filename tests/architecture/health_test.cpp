@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An estimate's health is for people; stages of a method exchange typed members or arguments.
+// The health of an estimate is output for users. The test checks that no method reads entries of the health.
 #include <gtest/gtest.h>
 
 #include <filesystem>

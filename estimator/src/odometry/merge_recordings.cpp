@@ -192,7 +192,7 @@ struct Interval {
   TimeNs from_ns = 0, to_ns = 0;
 };
 
-/// Returns the first interval without readings that is long.
+/// Returns the first interval without readings that is longer than kSilentReported_s.
 std::optional<Interval> silent_interval(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {

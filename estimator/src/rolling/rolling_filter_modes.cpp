@@ -163,8 +163,8 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.mode_start_node : state.node};
     }
   }
-  // The code avoids std::stable_sort, which would allocate memory. Candidates of equal weight are ordered by origin, so
-  // the order is unique.
+  // The code avoids std::stable_sort, which would allocate memory. The code sorts candidates of equal weight by their
+  // origin, so the order is unique.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });

@@ -93,7 +93,8 @@ TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel y"), std::string::npos);
 }
 
-// At the end, the body rests, but the axis still reads its saturation level. A working axis at rest reads about zero.
+// At the end, the body rests, but the axis still reads its saturation level. A working gyro axis at rest reads about
+// zero.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
     std::vector<ImuSample> samples = clipped_samples(moving_body());
