@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two lidars whose sweeps are parts of one sweep, with another mounting, clock and phase each.
+// The tests split the sweeps of one lidar into the sweeps of two lidars. The lidars differ in mounting, clock and
+// phase.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,11 +16,11 @@ namespace further_lidars {
 
 using test::ThrownBody;
 
-constexpr TimeNs kClock_ns = 30'000'000;  // the second lidar's clock is early by this time
+constexpr TimeNs kClock_ns = 30'000'000;  // the second lidar's clock is behind the first lidar's clock by this time
 const Eigen::Isometry3d kT_I2 =
     Eigen::Translation3d(0.2, -0.1, 0.3) * Eigen::Isometry3d(Eigen::AngleAxisd(so3::exp({0.3, -0.5, 2.0})));
 
-/// Points of the rings below 8, or of the other rings.
+/// Returns the points of rings 8 and above if `upper` is true, and otherwise the points of rings below 8.
 std::vector<LidarPoint> half(const std::vector<LidarPoint>& points, bool upper) {
   std::vector<LidarPoint> out;
   for (const LidarPoint& point : points)
@@ -45,7 +46,7 @@ enum class Points { all, lower_half, both_halves };
 Outcome run(const ThrownBody& body, TumblingOdometry& odometry, Points use) {
   Outcome out;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
-  // the second lidar has the same rays, but its sweeps begin in the middle of those of the first lidar
+  // the second lidar has the same rays, but its sweeps begin in the middle of the first lidar's sweeps
   std::vector<ThrownBody::Sweep> second;
   for (std::size_t k = 0; k + 1 < sweeps.size(); ++k) {
     const TimeNs start_ns = (sweeps[k].start_ns + sweeps[k].end_ns) / 2,
@@ -96,12 +97,13 @@ TEST(FurtherLidars, PointsJoinTheSweepAtTheirTime) {
                   of_both = run(body, both, Points::both_halves);
     ASSERT_EQ(of_both.sweeps.size(), of_whole.sweeps.size());
     for (std::size_t k = 1; k + 2 < of_both.sweeps.size(); ++k) {  // the second lidar starts later and ends earlier
-      // a point at the border of two sweeps may join either; points near the limits of the range
+      // the point counts may differ, because points at the border of two sweeps may join either sweep, and because of
+      // points near the range limits
       EXPECT_NEAR(double(of_both.sweeps[k].points_used), double(of_whole.sweeps[k].points_used), 20.0) << k;
       EXPECT_LT(of_lower.sweeps[k].points_used, 0.6 * double(of_whole.sweeps[k].points_used)) << "negative control";
     }
     EXPECT_LT(of_both.worst_m, of_whole.worst_m + 0.01);
-    // in the first half sweep, the second lidar does not measure yet
+    // the second lidar starts half a sweep after the first lidar
     EXPECT_LT(both.unused_points(), of_whole.sweeps.back().points_used);
   }
 }

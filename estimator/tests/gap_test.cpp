@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gaps in the data of IMU and lidar: live, with a lag, and with the whole recording.
+// Tests of gaps in the data of IMU and lidar: live, with a lag, and with the whole recording.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using test::ThrownBody;
 
 constexpr double kWholeRun = TumblingOdometry::kWholeRecording;
 
-/// Time without data, during the rest before the throw.
+/// DataGap is an interval without data, during the rest before the throw.
 struct DataGap {
   double imu_s = 0.0, lidar_s = 0.0;
   bool covers(double length_s, TimeNs time_ns) const {
@@ -84,8 +84,9 @@ TEST(Gaps, LiveLagAndWholeRecordingContinue) {
       EXPECT_TRUE(each->finished);
       EXPECT_NEAR(seconds(each->last.time_ns), body.end_s, 0.11) << gap.imu_s << " " << gap.lidar_s;
       EXPECT_EQ(each->restarts, gap.imu_s > 1.0 ? 1u : 0u);
-      const double bound_m = each == &live ? 0.2 : 0.1;  // without a lag, the throw alone costs 0.09 m
-      EXPECT_LT(each->error_m, bound_m) << gap.imu_s << " " << gap.lidar_s;  // as TumblingOdometry after such a gap
+      const double bound_m = each == &live ? 0.2 : 0.1;  // without a lag, the throw alone causes an error of 0.09 m
+      EXPECT_LT(each->error_m, bound_m) << gap.imu_s << " "
+                                        << gap.lidar_s;  // the bound of TumblingOdometry after an equal gap
       EXPECT_LT(each->error_m, 4.0 * each->sigma_m + 0.01) << gap.imu_s << " " << gap.lidar_s;
     }
     EXPECT_EQ(whole.poses, lag.poses) << gap.imu_s << " " << gap.lidar_s;
@@ -111,7 +112,7 @@ TEST(Gaps, RatesOfTheWholeRecordingContinueWithOneCalibration) {
         odometry.recording()->rates[k - 1].w_WI_I_rad_s - reference.recording()->rates[k].w_WI_I_rad_s;
     apart_rad_s = std::max(apart_rad_s, apart.norm());
   }
-  EXPECT_LT(apart_rad_s, 0.05);  // a rest of 0.2 s less determines the gyro's bias
+  EXPECT_LT(apart_rad_s, 0.05);  // the gap shortens the rest that determines the gyro's bias by 0.2 s
 }
 
 struct RolledWithGap {
@@ -120,7 +121,7 @@ struct RolledWithGap {
   double error_m = 0.0, sigma_m = 0.0, yaw_sigma_rad = 0.0;
 };
 
-/// A sphere whose units are silent between `from_s` and `to_s` of the data, and for `more_s` longer.
+/// Runs a sphere whose IMUs are silent between `from_s` and `to_s` of the data, and for `more_s` longer.
 RolledWithGap roll_with_gap(double from_s, double to_s, double more_s, double lag_s) {
   RollingOdometry::Params params = test::params_of(test::kPositions);
   params.lag_s = lag_s;
@@ -155,7 +156,7 @@ RolledWithGap roll_with_gap(double from_s, double to_s, double more_s, double la
 
 TEST(Gaps, ASphereContinuesAndItsCovarianceKnowsTheGap) {
   for (const double lag_s : {0.0, 0.5, RollingOdometry::kWholeRecording}) {
-    // at rest, and while it rolls: half of the path is not measured
+    // the first gap is at rest; the second gap hides half of the rolled path
     for (const double gap_s : {0.3, 2.0, 20.0}) {
       const RolledWithGap rest = roll_with_gap(1.2, 1.3, gap_s - 0.1, lag_s);
       EXPECT_EQ(rest.restarts, gap_s > 1.0 ? 1u : 0u) << lag_s << " " << gap_s;
@@ -165,7 +166,7 @@ TEST(Gaps, ASphereContinuesAndItsCovarianceKnowsTheGap) {
     const RolledWithGap moving = roll_with_gap(2.0, 3.2, 0.0, lag_s);
     EXPECT_EQ(moving.restarts, 1u) << lag_s;
     EXPECT_GT(moving.error_m, 0.2) << lag_s;                  // the gap hides motion
-    EXPECT_LT(moving.error_m, test::kPathLength_m) << lag_s;  // and nothing else is lost
+    EXPECT_LT(moving.error_m, test::kPathLength_m) << lag_s;  // the error is smaller than the path
     EXPECT_LT(moving.error_m, 3.0 * moving.sigma_m) << lag_s;
     EXPECT_GT(moving.yaw_sigma_rad, 0.5) << lag_s;
     EXPECT_TRUE(moving.last.uncertain);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensors that do not start together: the map starts with the first sweep that has points, as well as if both had.
+// Tests of sensors that start at different times: the map starts with the first sweep that has points, as accurately as
+// with a common start.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -26,7 +27,8 @@ struct Lived {
   bool lived_before = false;  ///< newest() gave a pose before the first sweep
 };
 
-/// The body's sweeps from `lidar_from_s` on, each when it ends, and its samples from `imu_from_s` on.
+/// Passes the body's samples from `imu_from_s` on, and the body's sweeps from `lidar_from_s` on, each at the end of the
+/// sweep.
 Lived live(const ThrownBody& body, double imu_from_s, double lidar_from_s, TumblingOdometry& odometry) {
   Lived run;
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
@@ -49,7 +51,7 @@ Lived live(const ThrownBody& body, double imu_from_s, double lidar_from_s, Tumbl
   return run;
 }
 
-/// Error of the last pose against the first one, which is the start of the map, over its covariance.
+/// EndError is the error of the last pose relative to the first pose, at which the map starts.
 struct EndError {
   double m = 0.0, rad = 0.0, nees = 0.0;
 };
@@ -119,8 +121,8 @@ TEST(LateLidar, AtRestIsAsIfBothHadStartedTogether) {
 TEST(LateLidar, InFlightTheCovarianceCoversTheTilt) {
   for (const double rest_s : {1.2, 4.4}) {
     SCOPED_TRACE(rest_s);
-    // The gyro is saturated 0.3 s after the throw, so that dead reckoning reaches the first sweep with an uncertain
-    // tilt. Measured: 0.06 and 0.13 m, 0.04 and 0.09 rad; 0.01 and 0.03 m if both sensors start together.
+    // The gyro saturates 0.3 s after the throw, so the tilt from dead reckoning is uncertain at the first sweep.
+    // Measured: 0.06 and 0.13 m, 0.04 and 0.09 rad; 0.01 and 0.03 m if both sensors start together.
     const auto [late, together] = late_and_together(body_that_rests(rest_s), rest_s + 0.4, false);
     EXPECT_LT(late.m, 0.2);
     EXPECT_LT(late.rad, 0.15);
@@ -166,7 +168,7 @@ TEST(LateImu, LeavesOutTheSweepsBeforeIt) {
   EXPECT_NE(run.sweeps.back().report.verdict, SweepVerdict::rejected);
 }
 
-/// A body at rest whose accelerometer reads in units of `unit_m_s2`.
+/// Returns samples of a body at rest whose accelerometer reads in units of `unit_m_s2`.
 std::vector<ImuSample> at_rest(double unit_m_s2, double seconds) {
   std::vector<ImuSample> imu(static_cast<std::size_t>(100.0 * seconds));
   for (std::size_t k = 0; k < imu.size(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// After tracking failure, health() reports the failure until the end of the run.
+// After a tracking failure, health() reports the failure until the end of the run.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 
 using test::ThrownBody;
 
-/// Sweeps that begin within the span see nothing.
+/// Runs the odometry. Sweeps that begin from `blind_from_s` to `blind_to_s` have no returns.
 void run(const ThrownBody& body, double blind_from_s, double blind_to_s, TumblingOdometry& odometry) {
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
@@ -47,14 +47,15 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   EXPECT_STREQ(health.field, "standard deviation in m of the position in the map");
   EXPECT_GT(health.value, health.bound);
   EXPECT_EQ(health.bound, params_of(body).expert.mapping.expert.matching.distance_m);
-  // one that wakes up from its bytes knows it too; the run has ended, its second pass with it
+  // an object that loads the saved state reports the failure too; the run and its second pass have ended
   TumblingOdometry awake(params_of(body));
   const Status loaded = awake.load(lost.save());
   ASSERT_TRUE(loaded.ok()) << loaded.message();
   EXPECT_EQ(awake.health().message(), lost.health().message());
 }
 
-/// A mounting that is ten degrees off what was given, of one that stays within what was given.
+/// The error of the first stated mounting is within the stated uncertainty. The second stated mounting is wrong by ten
+/// degrees.
 TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);

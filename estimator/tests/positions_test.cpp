@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Position readings: the frame in closed form, outliers, the stated accuracy, and drift that positions bound.
+// Tests of position readings: the frame in closed form, outliers, the stated accuracy, and the drift bounded by
+// positions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ const Eigen::Vector3d kArm_I_m(0.3, -0.2, 0.5);
 const Eigen::Isometry3d kT_PW =
     Eigen::Translation3d(40.0, -25.0, 3.0) * Eigen::Isometry3d(Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitZ()));
 
-/// A robot that turns about all axes on a circle of 10 m at 1 m/s.
+/// Returns the pose of a robot that moves on a circle of 10 m at 1 m/s and turns about all axes.
 PoseState truth(double t_s) {
   PoseState out;
   out.time_ns = static_cast<TimeNs>(std::llround(1e9 * t_s));
@@ -46,7 +47,7 @@ SweepReport report_of(int sweep, const Drift& drift) {
   return out;
 }
 
-/// Position at the middle of a sweep, in P.
+/// Returns a reading of the position at the middle of a sweep, in P.
 PositionReading reading_of(int sweep, double sigma_m, std::mt19937& random) {
   std::normal_distribution<double> noise(0.0, 1.0);
   const PoseState pose = truth(1e-9 * double(sweep * kSweep_ns) + 0.05);
@@ -113,7 +114,7 @@ TEST(Positions, TheFrameHasItsStatedAccuracy) {
     const Eigen::Vector3d error_m = in_P.p_WA_m - kT_PW * truth(20.0).p_WA_m;
     nees += error_m.dot(in_P.covariance.topLeftCorner<3, 3>().inverse() * error_m) / 3.0 / kRuns;
   }
-  EXPECT_NEAR(nees, 1.0, 0.25);  // 600 squares have a standard deviation of 0.06; the drift that is allowed for is 0
+  EXPECT_NEAR(nees, 1.0, 0.25);  // the mean of 600 squares has a standard deviation of 0.06; the poses have no drift
 }
 
 // The heading of the poses drifts by 0.1 degrees per metre, and their scale is wrong by 1 %.
@@ -148,11 +149,11 @@ TEST(Positions, BoundTheDrift) {
     drift_m = std::max(drift_m, (first * report.pose.p_WA_m - p_PI_m).norm());
   }
   EXPECT_GT(drift_m, 10.0) << "negative control: the frame of the first 30 s, kept";
-  EXPECT_LT(worst_m, 1.5);                                     // three standard deviations of an axis of one reading
+  EXPECT_LT(worst_m, 1.5);                                     // three standard deviations of one axis of a reading
   EXPECT_LT(std::sqrt(sum_m2 / count), 0.5 * std::sqrt(3.0));  // the error of one reading
 }
 
-// All lags give the frame, and the poses are those without position readings.
+// For all lags, the odometry estimates the frame, and the poses equal the poses without position readings.
 TEST(Positions, DoNotChangeThePosesOfAnOdometry) {
   const ThrownBody body;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();

@@ -38,7 +38,7 @@ TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
     const std::size_t before = poses.size();
     odometry.finish();
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
-    EXPECT_GT(poses.size(), before);  // those within the lag
+    EXPECT_GT(poses.size(), before);  // finish() adds the poses within the lag
     EXPECT_EQ(poses.size(), units[0].size());
     EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kPathLength_m, 0.005 * kPathLength_m);
     EXPECT_LT(poses.back().pose.p_WA_m.tail<2>().norm(), 0.01);
@@ -87,7 +87,7 @@ struct Ended {
   double off_m = 0.0, sigma_m = 0.0;
 };
 
-/// After two turns whose fastest readings the gyros held at 8 rad/s of 11.8, without a flag.
+/// Returns the end of two turns in which the gyros clip at 8 rad/s without a flag, at rates of up to 11.8 rad/s.
 Ended end_of_clipped(std::size_t count, double stated_rad_s) {
   const std::vector<Eigen::Vector3d> positions_m(kPositions.begin(),
                                                  kPositions.begin() + static_cast<std::ptrdiff_t>(count));
@@ -112,16 +112,17 @@ Ended end_of_clipped(std::size_t count, double stated_rad_s) {
 TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{3}}) {
     const Ended seen = end_of_clipped(count, 9.0);
-    // negative control: with a much larger stated range, equal readings are not a rail and are accepted
+    // negative control: with a much larger stated range, equal readings do not count as saturated
     const Ended accepted = end_of_clipped(count, 30.0);
-    // measured: 0.454 m off, sigma 0.290, and 5.170, 0.021; with three 0.218, 0.099, and 4.105, 0.067
+    // Measured error and sigma [m] with one IMU: 0.454 and 0.290, in the control 5.170 and 0.021. With three IMUs:
+    // 0.218 and 0.099, in the control 4.105 and 0.067.
     EXPECT_LT(seen.off_m, 3.0 * seen.sigma_m) << count;
     EXPECT_LT(seen.off_m, 0.15 * accepted.off_m) << count;
     EXPECT_GT(accepted.off_m, 3.0 * accepted.sigma_m) << count;
   }
 }
 
-/// Its gyro's y, about which the sphere rolls, dies when it begins to turn.
+/// Freezes axis y of the gyro, about which the sphere rolls, when the sphere begins to turn.
 std::vector<ImuSample> frozen_y(std::vector<ImuSample> unit) {
   const std::size_t from = unit.size() / 3;
   for (std::size_t k = from; k < unit.size(); ++k)

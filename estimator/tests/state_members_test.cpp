@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A member that is not visited would not be saved: every byte of a state is visited or is padding.
+// A member that is not visited would not be saved. The tests check that every byte of a state is visited or is padding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ concept TakesItselfApart = requires(const T& value, StateWriter& out) {
   value.save(out);
 };
 
-/// Marks where the members of one object lie. What a vector or an optional holds lies elsewhere, and is asked for by
-/// itself.
+/// Records the addresses of an object's visited members. The elements of a vector or an optional have other addresses,
+/// and are tested separately.
 class Marks : public StateVisitor<Marks> {
  public:
   static constexpr bool kReads = false;
@@ -65,7 +65,7 @@ class Marks : public StateVisitor<Marks> {
   void bounded(const char*, double, double, double) {}
   static constexpr bool going() { return true; }
 
-  /// Length of the longest range of bytes of an object that was not visited.
+  /// Returns the length of the longest unvisited range of bytes in an object.
   std::size_t longest_hole(const void* object, std::size_t size) {
     const auto* const begin = static_cast<const std::byte*>(object);
     const std::byte* const end = begin + size;
@@ -73,7 +73,8 @@ class Marks : public StateVisitor<Marks> {
     const std::byte* until = begin;
     std::size_t longest = 0;
     for (const Piece& piece : pieces_) {
-      if (std::less<>()(piece.at, begin) || !std::less<>()(piece.at, end)) continue;  // a copy of something
+      if (std::less<>()(piece.at, begin) || !std::less<>()(piece.at, end))
+        continue;  // a member of a copy, outside the object
       if (piece.at > until) longest = std::max(longest, static_cast<std::size_t>(piece.at - until));
       until = std::max(until, piece.at + piece.size);
     }
@@ -89,8 +90,8 @@ class Marks : public StateVisitor<Marks> {
   std::vector<Piece> pieces_;
 };
 
-/// Padding is shorter than what begins after it is aligned to; Eigen's fixed sizes are aligned to 32 bytes at most, and
-/// what follows one lies at a multiple of 8.
+/// Padding is shorter than the alignment of the member after it. Eigen's types of fixed size have an alignment of at
+/// most 32 bytes, and a member after such a type is at a multiple of 8.
 template <class T>
 constexpr std::size_t padding_below = alignof(T) > 8 ? 32 : 8;
 
@@ -143,7 +144,7 @@ TEST(StateMembers, AllOfAMapper) {
   const Impl impl{LidarInertialOdometry::Params{}};
   Marks marks;
   Impl::members(impl, marks);
-  marks.scratch(impl.tracking);  // variants, whose kinds follow
+  marks.scratch(impl.tracking);  // variants, whose types are tested below
   marks.scratch(impl.known);
   EXPECT_LT(marks.longest_hole(&impl, sizeof impl), padding_below<Impl>);
   expect_whole(mapping::Tracking{}, "tracking");

@@ -24,11 +24,11 @@ constexpr TimeNs kSweep_ns = 100'000'000;
 
 struct Answers {
   std::vector<TumblingOdometry::Sweep> sweeps;
-  std::vector<TimeNs> came_ns;  ///< time of the IMU when each came
+  std::vector<TimeNs> came_ns;  ///< IMU time at which take() returned each sweep
   std::vector<RateState> rates;
 };
 
-/// Samples `from` to `to` - 1, each sweep as soon as it has ended.
+/// Passes the samples `from` to `to` - 1, and each sweep as soon as the sweep has ended.
 void feed_as_they_end(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep>& sweeps, std::size_t from,
                       std::size_t to, TumblingOdometry& odometry, Answers& run) {
   for (std::size_t k = from; k < to; ++k) {
@@ -73,7 +73,7 @@ TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
   const Answers run = whole(body, odometry);
   ASSERT_EQ(run.sweeps.size(), body.sweeps().size());
   for (const TumblingOdometry::Sweep& sweep : run.sweeps) EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
-  // returns without noise: what is left is what the map's planes and the deskewing leave
+  // the returns have no noise, so the errors come from the map's planes and from the deskewing
   EXPECT_LT(position_error_m(body, run.sweeps.back().report.pose), 0.02);
   EXPECT_LT(attitude_error_rad(body, run.sweeps.back().report.pose), 0.01);
   double worst_m = 0.0;
@@ -83,7 +83,7 @@ TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
 }
 
-TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: it is the rates that hold the map
+TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: without recovered rates, tracking fails
   const ThrownBody body;
   LidarInertialOdometry::Params params;
   params.own_body_L = {};
@@ -107,17 +107,20 @@ TEST(TumblingOdometry, RecoversTheRateInFlight) {
   const ThrownBody body;
   TumblingOdometry odometry(params_of(body));
   const Answers run = whole(body, odometry);
-  // from where the push is over to where the stream sees the catch ahead, which begins as gently as this one does
+  // the test covers the flight, except the start and the last quarter second, in which the stream already uses samples
+  // of the gentle catch
   const double from_s = body.rest_s + body.push_s + 0.1, to_s = body.rest_s + body.push_s + body.flight_s - 0.25;
   int clipped = 0;
   for (const RateState& rate : run.rates) {
     const double t_s = seconds(rate.time_ns);
     if (t_s < from_s || t_s > to_s) continue;
     clipped += rate.clipped_axes != 0;
-    // a spin about one axis does not improve the lever arm, given to a centimetre: 0.87 rad/s of 3.5 remain
+    // a spin about one axis does not improve the lever arm, which is stated within a centimetre; of 3.5 rad/s, 0.87
+    // rad/s remain
     const Eigen::Vector3d error = rate.w_WI_I_rad_s - body.w_WI_I_rad_s(t_s);
     EXPECT_LT(error.norm(), 0.3 * (body.spin_rad_s * body.axis.y() - body.rail_rad_s)) << t_s;
-    EXPECT_LT(error.dot(rate.covariance_rad2_s2.ldlt().solve(error)), 14.2) << t_s;  // 99.7 % of three unknowns
+    EXPECT_LT(error.dot(rate.covariance_rad2_s2.ldlt().solve(error)), 14.2)
+        << t_s;  // 99.7 % quantile of chi-square with three degrees of freedom
   }
   EXPECT_GT(clipped, 30);
 }
@@ -126,7 +129,8 @@ TEST(TumblingOdometry, TheWordsComeInTime) {
   const ThrownBody body;
   const TumblingOdometry::Params params = params_of(body);
   const TimeNs sample_ns = static_cast<TimeNs>(1e9 / body.imu_hz), lag_ns = static_cast<TimeNs>(1e9 * params.lag_s);
-  for (const TimeNs later_ns : {TimeNs{0}, TimeNs{4'000'000}, TimeNs{9'999'999}}) {  // than the ends of sweeps
+  for (const TimeNs later_ns :
+       {TimeNs{0}, TimeNs{4'000'000}, TimeNs{9'999'999}}) {  // delay of the samples relative to the ends of sweeps
     TumblingOdometry odometry(params);
     std::vector<ImuSample> imu = body.imu();
     for (ImuSample& sample : imu) sample.time_ns += later_ns;
@@ -134,7 +138,7 @@ TEST(TumblingOdometry, TheWordsComeInTime) {
     feed_as_they_end(imu, body.sweeps(), 0, imu.size(), odometry, run);
     ASSERT_GT(run.sweeps.size(), 20u);
     for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
-      if (!run.sweeps[k].status.ok()) continue;  // it began before the IMU
+      if (!run.sweeps[k].status.ok()) continue;  // the sweep began before the first IMU sample
       const TimeNs end_ns = run.sweeps[k].report.pose.time_ns, late_ns = run.came_ns[k] - end_ns;
       EXPECT_TRUE(late_ns >= lag_ns - sample_ns && late_ns <= lag_ns) << later_ns << ' ' << late_ns;
       if (k < 1 || !run.sweeps[k - 1].status.ok()) continue;  // each sweep reports the final poses of the previous one
@@ -189,7 +193,7 @@ TEST(TumblingOdometry, ACopyGoesOnWithTheSameBits) {
 
 TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   ThrownBody body;
-  body.rest_s = 4.2;  // thrown after the gap
+  body.rest_s = 4.2;  // the body is thrown after the gap
   body.end_s = 6.5;
   TumblingOdometry odometry(params_of(body));
   std::vector<ImuSample> imu = body.imu();
@@ -198,7 +202,7 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   std::erase_if(sweeps, [](const auto& s) { return s.end_ns > 1'500'000'000 && s.start_ns < 3'200'000'000; });
   Answers results;
   feed_as_they_end(imu, sweeps, 0, 150, odometry, results);
-  // one stamp that is wrong costs one sample
+  // a single wrong time stamp causes the loss of one sample
   ImuSample wrong = imu[149];
   wrong.time_ns = 3'600'000'000'000;
   EXPECT_EQ(odometry.add_imu(wrong).error_code, ErrorCode::gap);
@@ -242,7 +246,7 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
 TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
   ThrownBody body;
   body.rest_s = 9.0;
-  body.end_s = 6.0;  // lies still throughout
+  body.end_s = 6.0;  // the body is always at rest
   const std::vector<ImuSample> imu = body.imu();
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::erase_if(sweeps, [](const ThrownBody::Sweep& sweep) { return sweep.end_ns > 1'500'000'000; });
@@ -301,8 +305,8 @@ TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   TumblingOdometry::Params params = params_of(body);
   params.expert.sweeps_max = 3;
   TumblingOdometry odometry(params);
-  const int most = 3 + 4;  // and those that a lag of 0.2 s may hold back
-  // before the first sample, the oldest sweep makes room
+  const int most = 3 + 4;  // sweeps_max, and the sweeps within a lag of 0.2 s
+  // before the first sample, a new sweep replaces the oldest sweep
   for (int k = -most - 2; k < 0; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
   EXPECT_EQ(odometry.early_sweeps(), 2u);
   ASSERT_TRUE(odometry.add_imu(body.imu().front()).ok());
@@ -330,7 +334,7 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.expert.mapping.expert.matching.neighbours = 1; }), "neighbours"));
-  // a lever arm that is not stated differs from zero, which may be intended
+  // a missing lever arm is an error, but a lever arm of zero is accepted
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_I_m = Params().lever_arm_I_m; }), "lever_arm_m"));
   EXPECT_EQ(refuses([](Params& p) { p.lever_arm_I_m.setZero(); }), "");
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.gyro_range_rad_s = 450.0; }), "gyro_range_rad_s"));
@@ -339,10 +343,11 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_TRUE(names(refuses([&](Params& p) { p.own_body_L = {corner, -corner}; }), "own_body_L"));
 }
 
-// Gravity rotates correctly in the mirrored world too: only flight shows the mirroring.
+// With an inverted accelerometer, gravity still rotates as the gyro measures. Only the forces in flight reveal the
+// inversion.
 TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
   ThrownBody body;
-  body.rail_rad_s = 20.0;  // so that the flight is read
+  body.rail_rad_s = 20.0;  // the gyro measures the rate of the flight
   TumblingOdometry sound(params_of(body)), mirrored(params_of(body));
   for (ImuSample sample : test::noisy(body.imu(), body.rail_rad_s)) {
     ASSERT_TRUE(sound.add_imu(sample).ok());
@@ -354,7 +359,7 @@ TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
       << mirrored.health().message();
 }
 
-// Its reading stands still from within the flight on, as that of a sensor that has died.
+// From a time within the flight on, gyro axis x repeats its reading, like a sensor that failed.
 TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);

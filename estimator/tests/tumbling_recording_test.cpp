@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingOdometry with the whole recording.
+// Tests of TumblingOdometry with the whole recording.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
     EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
     EXPECT_EQ(sweep.report.pose.time_ns, sweep.report.trajectory.back().time_ns);
   }
-  // the bound of the test with a lag: returns have no noise
+  // same bound as in the test with a lag, because the returns have no noise
   EXPECT_LT(recorded_error_m(body, sweeps.back().report.pose), 0.02);
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
   EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
@@ -68,7 +68,7 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   ASSERT_EQ(whole->rates.size(), imu.size());
   EXPECT_TRUE(whole->health.ok());
   EXPECT_TRUE(whole->suspect_rad2_s2.empty());
-  EXPECT_GE(whole->mapped.passes, 2);  // the last pass starts from the calibration of the first
+  EXPECT_GE(whole->mapped.passes, 2);  // the last pass starts from the calibration of the first pass
   EXPECT_TRUE(whole->mapped.calibration_converged);
   EXPECT_EQ(odometry.rig().constants, whole->report.rate.calibration.constants);
 }

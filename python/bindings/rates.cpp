@@ -63,7 +63,8 @@ RateStream::Params stream_params(const nb::kwargs& given) {
   return params_of<RateStream>("RateStream", given);
 }
 
-/// RegimeStream derives these parameters from its RateStream; its HandHeldStream makes one iteration per node.
+/// RegimeStream derives these parameters from its RateStream. The HandHeldStream of RegimeStream makes one iteration
+/// per node.
 const std::vector<const char*> kDerivedRegimeParameters = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                                            "carried_iterations_max"};
 
@@ -205,8 +206,8 @@ void bind_batch(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(Saave::Params{}); });
 }
 
-/// Binds the interface that both rate streams share. `rate(stream)` and `rate_state(state)` return the RateStream
-/// inside.
+/// Binds the interface that both rate streams share. `rate(stream)` returns the RateStream inside a stream, and
+/// `rate_state(state)` returns the state of this RateStream.
 template <class Stream, class Rate, class RateState_>
 auto bind_stream(nb::module_& m, const char* name, const char* doc,
                  typename Stream::Params (*params)(const nb::kwargs&), Rate rate, RateState_ rate_state) {

@@ -31,8 +31,8 @@ void set_invalid(const std::string& message) {
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
-/// Returns the Python text str(value). Python refuses to convert integers with thousands of digits, so their type is
-/// returned.
+/// Returns the Python text str(value). Python refuses to convert integers with thousands of digits. For a very long
+/// integer, the function returns the type.
 std::string text_of(nb::handle value) {
   try {
     return nb::str(value).c_str();

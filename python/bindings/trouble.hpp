@@ -29,12 +29,12 @@ struct ExactTimes {
 
 /// Raises TumbleError with the message of a status, unless the status is ok. `index` is the index of the rejected
 /// sample in an array, whose earlier samples were processed. `so_far` contains results from the earlier samples. Times
-/// in the error are whole numbers: those of `times`, or the rounded times of the status.
+/// in the error are whole numbers: the exact times in `times`, or the rounded times of the status.
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
              const ExactTimes& times = {});
 
-/// Raises TumbleError for a recording that was rejected as a whole. The function finds the index of the rejected
-/// sample.
+/// Raises TumbleError for a recording that the library rejected completely. The function finds the index of the
+/// rejected sample.
 void require(const Status& status, std::span<const ImuSample> samples);
 
 /// Registers the translation of InvalidParams, which constructors throw, to TumbleError.

@@ -60,7 +60,7 @@ def test_refuses_time_that_goes_back(take, spin):
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
 def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
-    """Exact times in an error message, which doubles cannot represent: 1753351234567890005."""
+    """Error messages contain exact times that doubles cannot represent, for example 1753351234567890005."""
     times = spin[0] + 1_753_351_234_567_890_123
     times[20] = times[19] - 5
     with pytest.raises(tumble.TumbleError) as caught:
@@ -71,7 +71,7 @@ def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
 
 
 def test_times_of_another_call_are_told_to_the_nanosecond(spin):
-    """The bound is the time of an earlier sample, also after a copy. After load() it is known to double precision."""
+    """The bound is the time of an earlier sample, also after a copy. After load(), the bound has double precision."""
     times = spin[0] + 1_753_351_234_567_890_123
     for make in STREAMS.values():
         stream = make()
@@ -218,7 +218,7 @@ def test_results_are_views_that_stay(spin):
 
 
 def test_covariances_are_in_place():
-    """Rows and columns are in the right place: the covariance of a state is symmetric and positive."""
+    """The covariance of a state is symmetric and positive, so rows and columns are in the correct order."""
     from conftest import spinning
     rates = tumble.rate(tumble.Imu(*spinning(rail=7.0)[:3]))
     assert rates.covariance.shape == (len(rates), 3, 3)

@@ -14,7 +14,7 @@ def as_a_host_stamps(time_ns, most_ns):
 
 
 def test_jitter_of_host_stamps_is_estimated(hill, slip):
-    """The standard deviation of a uniform distribution is its half width divided by the square root of three."""
+    """The expected jitter is the standard deviation of a uniform distribution: half of the width, divided by the square root of three."""
     imu, unit = hill.imus[0], slip.imus[0]
     cases = [(lambda: tumble.TumblingOdometry(**tumble.tumbling_options(hill)), imu, 2_000_000),
              (lambda: tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145), unit, 800_000)]

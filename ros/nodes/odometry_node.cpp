@@ -35,7 +35,7 @@ OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& o
       "initialpose", 1, [this](const geometry_msgs::msg::PoseWithCovarianceStamped& given) {
         const auto& p = given.pose.pose.position;
         const auto& q = given.pose.pose.orientation;
-        const auto& covariance = given.pose.covariance;  // x y z, and rotations about x y z
+        const auto& covariance = given.pose.covariance;  // order: position x y z, rotations about x y z
         try {
           report("initialpose",
                  start_again(StartPose{pose_of("initialpose", std::vector<double>{p.x, p.y, p.z, q.x, q.y, q.z, q.w}),

@@ -28,8 +28,8 @@
 
 namespace tumble::ros {
 
-/// OdometryNode is the base of both nodes: parameters, /tf, odometry and diagnostics; tumble/ros.py is the same node in
-/// Python.
+/// OdometryNode is the base class of both nodes, with parameters, /tf, odometry and diagnostics. The file tumble/ros.py
+/// contains the same node in Python.
 class OdometryNode : public rclcpp::Node, public Publisher {
  public:
   OdometryNode(const std::string& name, const rclcpp::NodeOptions& options);
@@ -43,30 +43,33 @@ class OdometryNode : public rclcpp::Node, public Publisher {
   using Trigger = std_srvs::srv::Trigger;
   static constexpr std::size_t kImuDepth = 2000;  ///< samples that wait while a sweep is registered
 
-  /// Starts a new run at a pose of the base; without a pose at the origin, or anywhere in a prior map. Returns `empty`
-  /// before the first data.
+  /// Starts a new run at a pose of the base. Without a pose, the run starts at the origin, or anywhere in a prior map.
+  /// Returns `empty` before the first data.
   virtual Status start_again(const std::optional<StartPose>& start) = 0;
 
   std::string text(const std::string& parameter) { return get_parameter(parameter).as_string(); }
   std::vector<double> list(const std::string& parameter) { return get_parameter(parameter).as_double_array(); }
   using Serialized = std::function<void(std::shared_ptr<rclcpp::SerializedMessage>)>;
-  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best effort would
-  /// lose large clouds. If the topic has the type CustomMsg of Livox, `livox` receives the messages.
+  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best-effort
+  /// subscriptions lose large clouds. If the topic has the type CustomMsg of Livox, `livox` receives the messages.
   template <class Message>
   void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback,
                  Serialized livox = nullptr);
-  /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks it.
+  /// Returns the pose of a sensor in the base frame, from the parameter, or else from TF. The result is empty while TF
+  /// lacks the pose.
   std::optional<Eigen::Isometry3d> mounting(const std::string& parameter, const std::string& frame);
   void report(const char* topic, const Status& status);
 
-  /// Declares the numbers of `params` with the values of `params` as defaults, and reads them.
+  /// Declares the numbers in `params` as parameters of the node, and reads their values. The defaults are the values in
+  /// `params`.
   template <class Params>
   void declare_numbers(Params& params);
 
  private:
   nav_msgs::msg::Odometry message(const Odometry& odometry, bool from_imu);
 
-  std::vector<std::function<bool()>> inputs_;  ///< subscriptions that wait for a publisher; true: subscribed
+  std::vector<std::function<bool()>>
+      inputs_;  ///< functions that subscribe to a topic with a publisher, and return whether the node has subscribed
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   rclcpp::TimerBase::SharedPtr timer_;
   tf2_ros::Buffer buffer_;

@@ -8,8 +8,8 @@
 
 namespace tumble::ros {
 
-/// RollingNode runs RollingOdometry with the topic imu for one IMU, or imu_1 to imu_4 for several. T_base_imu has seven
-/// numbers for each IMU.
+/// RollingNode runs RollingOdometry. The topic is imu for one IMU, or imu_1 to imu_4 for several IMUs. T_base_imu has
+/// seven numbers for each IMU.
 class RollingNode : public OdometryNode {
  public:
   explicit RollingNode(const rclcpp::NodeOptions& options) : OdometryNode("rolling_odometry", options) {

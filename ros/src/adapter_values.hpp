@@ -10,7 +10,7 @@
 #include "tumble_ros/publisher.hpp"
 #include "tumble_ros/schedule.hpp"
 
-/// adapter_values.hpp contains texts of the diagnostics and of the calibration file.
+/// adapter_values.hpp formats values for the diagnostics and for the calibration file.
 namespace tumble::ros {
 
 /// Returns numbers as a YAML list with nine digits: 1 nm at 1 m.
@@ -43,7 +43,7 @@ inline void add_findings(Diagnostics& out, const SensorHealth& health) {
   }
 }
 
-/// Adds the counts of a topic.
+/// Adds the numbers of accepted and rejected messages of a topic.
 inline void add_input(Diagnostics& out, const std::string& topic, const Rejections& input) {
   add(out, (topic + " messages").c_str(), input.received);
   add(out, (topic + " messages rejected").c_str(), input.rejected);

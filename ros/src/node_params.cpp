@@ -24,7 +24,7 @@ Sheet sheet_of(const char* parameter, const std::string& name,
   throw InvalidParams(std::string(parameter) + " '" + name + "'", std::numeric_limits<double>::quiet_NaN(), known);
 }
 
-constexpr double kQuaternionLength = 1e-3;  // written with four digits
+constexpr double kQuaternionLength = 1e-3;  // tolerance for quaternions that are written with four digits
 
 }  // namespace
 

@@ -18,8 +18,8 @@ namespace tumble::ros {
 
 namespace {
 
-constexpr double kSpanMin_ns = 1e6, kSpanMax_ns = 1e9;  // times of a sweep
-constexpr std::size_t kPointsForUnit = 100;             // fewer points may span a small part of the sweep
+constexpr double kSpanMin_ns = 1e6, kSpanMax_ns = 1e9;  // accepted time span of a sweep
+constexpr std::size_t kPointsForUnit = 100;             // a cloud with fewer points may cover a small part of the sweep
 constexpr double kOtherClock_ns = 1e9;
 
 /// Scales intensities to 0..1.

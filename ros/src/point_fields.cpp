@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 8> kTimeNames = {"t",          "time",        "timestamp",   "timestamps",
                                                         "time_stamp", "offset_time", "time_offset", "offset"};
 constexpr std::array<std::uint8_t, 9> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};  // of the datatypes of PointField
-constexpr std::uint32_t kLivoxStep = 20;                                     // 19 bytes, aligned to 4
+constexpr std::uint32_t kLivoxStep = 20;                                     // a point has 19 bytes, aligned to 4 bytes
 
 template <class Number>
 Number read(const std::uint8_t* at) {
@@ -54,7 +54,8 @@ Status check_layout(const PointCloudView& cloud) {
 }
 
 bool is_number(const PointField& field) {
-  return field.datatype >= 1 && field.datatype <= 8 && field.count <= 1;  // count 0: some drivers mean one
+  return field.datatype >= 1 && field.datatype <= 8 &&
+         field.count <= 1;  // some drivers write a count of 0 for one number
 }
 
 double number_at(const std::uint8_t* point, const PointField& field) {
@@ -118,10 +119,10 @@ Status LivoxCloud::parse(std::span<const std::uint8_t> cdr) {
   const auto u32 = [&] { return next(4, 4) ? read<std::uint32_t>(body.data() + at) : 0u; };
   const auto seconds = static_cast<std::int32_t>(u32());
   const std::uint32_t nanoseconds = u32();
-  const std::uint32_t length = u32();  // with the zero at the end
+  const std::uint32_t length = u32();  // length of the text, with the zero at the end
   const bool has_frame = next(length, 1);
   const std::size_t frame_at = at;
-  next(8, 8);  // timebase; like the import, the nodes count from the header's stamp
+  next(8, 8);  // timebase; the reader uses the header's stamp instead
   u32();       // point_num
   next(4, 1);  // lidar_id, rsvd
   const std::uint32_t count = u32();

@@ -17,7 +17,7 @@ namespace tumble::ros {
 
 namespace {
 
-constexpr double kRatesKept_s = 2.0;  // longer than any lag between a sweep's end and its registration
+constexpr double kRatesKept_s = 2.0;  // exceeds the longest time between a sweep's end and its registration
 constexpr std::size_t kSamplesKept = 1 << 14;
 constexpr TimeNs kEarly_ns = 500'000'000;  // TumblingOdometry rejects sweeps a second ahead of the IMU
 constexpr std::size_t kEarlyMax = 32;
@@ -76,7 +76,7 @@ bool TumblingAdapter::is_early(const TimedSweep& sweep) const {
   return !newest_ns || sweep.end_ns - *newest_ns > kEarly_ns;
 }
 
-/// Adds the waiting sweeps whose samples have arrived, and returns the status of the last one.
+/// Adds the waiting sweeps whose samples have arrived. Returns the status of the last added sweep.
 Status TumblingAdapter::add_sweeps() {
   Status status;
   while (!early_.empty() && (early_.size() > kEarlyMax || !is_early(early_.front()))) {
@@ -148,7 +148,7 @@ void TumblingAdapter::publish_rate() {
   if (!rates_.empty() && rate->time_ns < rates_.back().time_ns) rates_.clear();  // the clock stepped back
   rates_.push_back(*rate);
   while (seconds(rate->time_ns - rates_.front().time_ns) > kRatesKept_s) rates_.pop_front();
-  // SampleClock may correct the stamps of rates, so they need not equal the sample's stamp
+  // SampleClock may correct the stamp of a rate, so the stamps of rate and sample may differ
   const auto sample = nearest(samples_, rate->time_ns, [](const ImuSample& each) { return each.time_ns; });
   const double density = params_.odometry.imu.accel_noise_m_s2_sqrt_hz;
   publisher_.imu({*rate, sample->specific_force_m_s2, density * density * params_.odometry.imu.rate_hz});

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 /// RecordingFinding is a fault of a recording.
 struct RecordingFinding {
   std::string where;     ///< sensor, topic or file
-  std::string evidence;  ///< what is wrong, with numbers and limits
+  std::string evidence;  ///< description of the fault, with numbers and limits
   std::string repair;    ///< option of `tumble import` that repairs the reading, or another change; "": see `evidence`
 
   bool operator==(const RecordingFinding&) const = default;

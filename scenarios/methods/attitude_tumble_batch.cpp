@@ -38,8 +38,8 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// Checks the rates that the attitude smoother receives against gravity at the rests. The output of the smoother cannot
-/// be checked, because the smoother itself aligns gravity at the rests.
+/// Checks the rates that the attitude smoother receives against gravity at the rests. The check needs the smoother's
+/// input, because the smoother's output always aligns gravity at the rests.
 void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, const RecoveredRates& recovered,
                     Estimate& estimate) {
   std::vector<RateState> read(recovered.sources.size());

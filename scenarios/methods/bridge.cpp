@@ -82,7 +82,7 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
 }
 
 // Removes faulty readings, and single readings beyond the values that the device can measure. If readings beyond the
-// limit are frequent or lasting, they are kept, so that the recording is refused.
+// limit are frequent or lasting, the function keeps the readings, so that a later check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;

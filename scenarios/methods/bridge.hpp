@@ -38,8 +38,8 @@ inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::
 /// readings cannot be measurements.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
-/// A recording is refused if a larger fraction of its readings is out of range, because then the unit or the device
-/// must be wrong.
+/// The conversion rejects a recording if more than this fraction of its readings is out of range, because unit or
+/// device must be wrong.
 inline constexpr double kWildShareMax = 0.01;
 
 /// Returns the data sheet of an IMU. The library's defaults replace values that the record does not state.

@@ -48,8 +48,7 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Reads a quaternion x y z w. Throws BadInput if the norm of the quaternion differs from 1. The reader accepts NaN,
-// because a diverged method writes NaN.
+// Reads a quaternion x y z w. Throws BadInput if the norm differs from 1. Accepts NaN, which a diverged method writes.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -312,8 +311,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
-  // files of earlier versions have no findings
-  for (const json& each : header.value("findings", json::array()))
+  for (const json& each : header.value("findings", json::array()))  // files of earlier versions have no findings
     estimate.faults.findings.push_back(finding_in(path, each));
   if (!header.contains("parameters")) return;
   for (const auto& [name, value] : reader.object("parameters").items()) {

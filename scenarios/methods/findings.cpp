@@ -35,7 +35,7 @@ bool is_about_place(About kind) {
   return kind == About::tracking_lost || kind == About::lidar_scale || kind == About::lidar_calibration;
 }
 
-/// Adds the entry of one kind.
+/// Adds the health entry for one kind of finding.
 void add_row(const HealthFinding& finding, std::map<std::string, double>& health) {
   const double since_s = seconds(finding.since_ns.value_or(0));
   switch (finding.kind) {
@@ -76,7 +76,7 @@ void add_row(const HealthFinding& finding, std::map<std::string, double>& health
     case About::vertical_unknown:
       health["vertical_sigma_rad"] = finding.value;
       return;
-    default:  // the entries of several kinds, below
+    default:  // the code below adds the entries that several kinds share
       return;
   }
 }
@@ -86,7 +86,7 @@ bool any_of(const Estimate& estimate, bool (*about)(About)) {
   return std::any_of(all.begin(), all.end(), [&](const HealthFinding& finding) { return about(finding.kind); });
 }
 
-/// Returns a string with static lifetime, as a finding needs it.
+/// Returns a string with static lifetime, because a finding stores only a pointer.
 const char* kept(const std::string& text) {
   static std::mutex lock;
   static std::set<std::string> all;

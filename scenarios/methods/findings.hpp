@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 
 struct Estimate;
 
-/// Adds a finding and its entries of the health, for example `imu_implausible` or `imu_2_frozen_since_s`. A second
-/// finding of the same kind, sensor and axis is dropped. No other function defines keys of findings.
+/// Adds a finding and its entries of the health, for example `imu_implausible` or `imu_2_frozen_since_s`. The function
+/// drops a second finding of the same kind, sensor and axis. Only this function defines keys of findings.
 void add_finding(const HealthFinding& finding, Estimate& estimate);
 
 /// Adds findings of the library. `names` are the names of the IMUs in the recording, in the order of the library's
@@ -23,7 +23,7 @@ void add_findings(const SensorHealth& health, std::span<const std::string> names
 
 /// Returns whether the estimate has a finding of this kind, about `sensor` unless it is empty.
 bool has_finding(HealthFinding::Kind kind, const Estimate& estimate, const std::string& sensor = "");
-/// Returns whether the readings of the IMUs contradict each other, or gravity, or do not change.
+/// Returns whether the readings of the IMUs are constant, contradict each other, or contradict gravity.
 bool has_implausible_readings(const Estimate& estimate);
 /// Writes the entry `localised` and returns it: false if a finding contradicts the pose in the map.
 bool report_localised(Estimate& estimate);

@@ -61,7 +61,7 @@ struct Estimate {
 struct OracleInput {
   const sim::Truth* truth = nullptr;
   /// The slam methods of the rig call this function after each lidar sweep, with the number of processed sweeps and of
-  /// all sweeps, for display. A method with several passes starts again at 1. May be empty.
+  /// all sweeps, for display. A method with several passes starts again at 1. The function may be empty.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
@@ -89,8 +89,8 @@ struct MethodInfo {
   /// can run. All slam methods need a lidar.
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
-  /// True for the baseline of a kind: the method without a treatment of saturation or slip. All other methods of the
-  /// kind are compared with the baseline in pairs. The baseline of rate methods is the clipped gyro; the baseline of
+  /// Whether the method is the baseline of its kind, which does not treat saturation or slip. Reports compare all other
+  /// methods of the kind with the baseline in pairs. The baseline of rate methods is the clipped gyro; the baseline of
   /// slam methods is the chain with the clipped gyro. A kind of method may have no baseline.
   bool baseline = false;
   /// True if the method can start from a saved calibration of the device and saves the calibration that it estimates

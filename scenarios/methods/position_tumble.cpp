@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kLagS = 1.0;
 constexpr TimeNs kHealthPeriodNs = 100'000'000;       // time between two calls of health()
-constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // excess speed at which a hop counts as slip
+constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // speed difference at which a hop counts as slip
 
 Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
   RollingOdometry::Params params;
@@ -70,7 +70,7 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Reports what the whole recording shows about the IMUs.
+/// Adds the findings about the IMUs from the whole recording to the estimate.
 void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
   report_merged(whole, names, estimate);
   estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);

@@ -23,7 +23,7 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
-    // RegimeStream takes these parameters from its RateStream. The hand-held stream iterates continuously.
+    // RegimeStream uses these parameters of its RateStream. The hand-held stream makes one iteration per node.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -126,7 +126,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    // the findings are only reported, because the results are already final
+    // the method only reports the findings, because the rates are already final
     const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
     report_findings(findings, sensors, estimate);
     report_stamps(sensors, estimate);

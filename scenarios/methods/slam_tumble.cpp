@@ -120,7 +120,7 @@ class Collector {
   }
 
  private:
-  /// Collects the findings of a run. A finding that is not current has ended.
+  /// Collects the findings of a run. If health() no longer reports a finding, the function marks the finding as ended.
   void observe(const SensorHealth& now) {
     for (HealthFinding& known : found_.findings) known.ended = true;
     for (const HealthFinding& finding : now.findings) found_.add(finding);
@@ -155,7 +155,8 @@ class Collector {
 };
 
 /// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
-/// its last point. Sweeps that end after the last sample are used with the whole recording, and only counted otherwise.
+/// its last point. With the whole recording, sweeps that end after the last sample are also used. Otherwise, such
+/// sweeps are only counted.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -169,7 +170,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   for (const ImuSample& sample : samples) {
     const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
     last_ns = sample.time_ns;
-    // in real time, sweeps arrive during a gap of the IMU; the IMU does not cover most of them
+    // in real time, sweeps also arrive during a gap of the IMU, without IMU data for most of them
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;
@@ -198,7 +199,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   return status;
 }
 
-/// Reports what RecordingEstimate contains in addition to the sweeps.
+/// Adds the contents of RecordingEstimate, except the sweeps, to the estimate.
 void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
   estimate.rates = whole.rates;
   estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;

@@ -11,15 +11,15 @@
 /// sphere_imus.hpp prepares all IMUs of a sphere for the estimator.
 namespace tumble::scenarios {
 
-/// Usable readings of the units of a sphere.
+/// SphereImus contains the usable readings of the IMUs of a sphere.
 struct SphereImus {
   std::vector<std::string> names;
   std::vector<UnitRecording> recordings;
-  int beyond_range = 0;  ///< readings that were left out because they exceed what the device can measure
+  int beyond_range = 0;  ///< dropped readings beyond the range of the device
 };
 
-/// Converts all IMUs except `imu_reference`, at most ImuMerge::kImus. Readings that are not finite, out of order or
-/// beyond the device's range are left out. Returns the error of the primary IMU if no IMU is valid.
+/// Converts all IMUs except `imu_reference`, at most ImuMerge::kImus. The function drops readings that are not finite,
+/// out of order or beyond the device's range. Returns the error of the primary IMU if no IMU is valid.
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 
 /// MergedImus contains the IMUs of a sphere, merged with knowledge of the whole recording.
@@ -29,7 +29,7 @@ struct MergedImus {
   int beyond_range = 0;            ///< see SphereImus
 };
 
-/// Reports readings that were left out because they exceed what the device can measure.
+/// Reports the number of dropped readings beyond the range of the device.
 void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate);
 
 /// Merges all IMUs by merge_recordings().

@@ -21,7 +21,7 @@ std::vector<Metric> end_pose_metrics();
 std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
-std::vector<Metric> health_metrics();       ///< for all kinds: the health as a classifier of wrong estimates
+std::vector<Metric> health_metrics();       ///< for all kinds: how well the health detects wrong estimates
 
 /// These functions return quantities that are no metrics: costs, motion values, and the quantities from which binned
 /// metrics are computed.

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// Score is one score of an outcome; the metric's name ends in its unit (docs/design.md, "Scores").
+/// Score is one score of an outcome; the metric's name ends in its unit (docs/design.md, "Methods and scores").
 struct Score {
   std::string metric;
   double value;

@@ -141,7 +141,7 @@ void score_estimate(const Method& method, const SimulatedDraw& draw, const sim::
   }
 }
 
-/// A run whose own health states that the estimate should not be used counts as diverged.
+/// A run counts as diverged if the health of its estimate invalidates the estimate.
 void judge_by_health(const Estimate& estimate, Outcome& outcome) {
   for (const HealthFinding& finding : estimate.faults.findings) {
     if (!finding.invalidates_estimate()) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An estimate's health is for people; stages of a method exchange typed members or arguments.
+// The health of an estimate is output for users. The test checks that no method reads entries of the health.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -45,7 +45,7 @@ std::string text_of_source(const std::string& file) {
   return text.str();
 }
 
-/// Returns the health entries of failed checks, or the ends of their names.
+/// Returns the names of health entries that report failed checks, or the last parts of these names.
 std::vector<std::string> rows_of_doubts(const std::string& source) {
   static const std::regex row(
       "\"((?:imu_|localised|rate_unit|force_unit|attitude_unknown|lidar_scale|learnt_rig|vertical|_[a-z])[a-z_]*)\"");

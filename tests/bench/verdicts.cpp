@@ -2,9 +2,9 @@
 // verdicts SCENARIO FIRST LAST METHOD [HARM]...: scores the health of a method as a classifier. Runs the method on
 // draws without a fault ("none") and with wrong inputs (units, axes, signs, clocks, mountings, sensors that fail, dust,
 // people). The metrics health_wrong and health_reported of scenarios/scoring/health_scores.cpp state whether an
-// estimate is wrong and whether its health reports this. Prints a line per run with its findings, then the share of
-// wrong runs that are reported and the share of false alarms on clean runs, with Wilson's intervals. Not a test: a
-// minute a draw for `slam`, seconds for `position`.
+// estimate is wrong, and whether the health of the estimate reports the error. Prints a line per run with its findings,
+// then the share of wrong runs that are reported and the share of false alarms on clean runs, with Wilson's intervals.
+// The program is no test; it needs a minute per draw for `slam`, and seconds per draw for `position`.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -34,9 +34,9 @@ namespace sim = tumble::sim;
 using scenarios::testing::is_of_kind;
 using scenarios::testing::wrong_inputs;
 
-constexpr std::string_view kPeople = "people";  // about the start: what they hide depends on the truth
+constexpr std::string_view kPeople = "people";  // people near the start, who hide surfaces
 
-/// Leaves of rows at the times of `all_ns` those at the times of `kept_ns`, which are some of them in their order.
+/// Keeps the rows whose times are in `kept_ns`. The times of all rows are `all_ns`; both lists are sorted.
 template <class Row>
 void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::int64_t>& kept_ns,
                std::vector<Row>& rows) {
@@ -47,11 +47,11 @@ void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::i
   rows.resize(kept);
 }
 
-/// Counts of a classifier.
+/// Tally counts the correct and wrong decisions of a classifier.
 struct Tally {
   int wrong = 0, wrong_reported = 0, clean = 0, clean_reported = 0, refused = 0;
 
-  /// Wilson's interval of 95 % (Wilson, JASA 22, 1927).
+  /// Prints a fraction with Wilson's 95 % interval (Wilson, JASA 22, 1927).
   static void print(const char* what, int count, int all) {
     const double n = all, p = all > 0 ? count / n : 0.0, z = 1.96;
     const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
@@ -62,8 +62,7 @@ struct Tally {
   }
 };
 
-/// Returns the run by which an estimate from `given` is scored: the truth also lacks the samples that are missing
-/// there.
+/// Returns the run by which an estimate from `given` is scored: the truth also lacks the samples that `given` lacks.
 scenarios::SimulatedDraw scored_at_kept(const scenarios::SimulatedDraw& draw, const scenarios::SimulatedDraw& given) {
   scenarios::SimulatedDraw scored = scenarios::scored_by(draw, given);
   for (std::size_t i = 0; i < given.recording.sensors.imus.size(); ++i) {
@@ -95,7 +94,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   const scenarios::Estimate estimate = scenarios::run_method(method, given, outcome);
   if (outcome.status == scenarios::OutcomeStatus::ok)
     scenarios::assess(method, scored_at_kept(draw, given), surface, estimate, outcome);
-  // a run that fails with an error reports that it is wrong
+  // an error of the run also counts as a report
   const bool refused = std::isnan(value_of(outcome.scores, "health_reported"));
   const bool wrong = value_of(outcome.scores, "health_wrong") > 0.0;
   const bool reported = refused || value_of(outcome.scores, "health_reported") > 0.0;

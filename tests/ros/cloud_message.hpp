@@ -80,7 +80,8 @@ inline CloudMessage ouster_cloud(const std::vector<LidarPoint>& points) {
   return cloud_message(points, columns);
 }
 
-/// A livox_ros_driver2/CustomMsg in CDR, little-endian, as ROS 2 serializes it. The last point has no padding.
+/// Returns a livox_ros_driver2/CustomMsg in little-endian CDR, as ROS 2 serializes the message. The last point has no
+/// padding.
 inline std::vector<std::uint8_t> livox_cdr(TimeNs stamp_ns, const std::string& frame,
                                            const std::vector<LidarPoint>& points) {
   std::vector<std::uint8_t> out = {0, 1, 0, 0};
@@ -91,7 +92,7 @@ inline std::vector<std::uint8_t> livox_cdr(TimeNs stamp_ns, const std::string& f
   out.insert(out.end(), frame.begin(), frame.end());
   out.push_back(0);
   align(8);
-  out.insert(out.end(), 8, std::uint8_t{7});  // timebase, of another clock
+  out.insert(out.end(), 8, std::uint8_t{7});  // timebase, in another clock
   put<std::uint32_t>(out, double(points.size()));
   out.insert(out.end(), {3, 0, 0, 0});  // lidar_id, rsvd
   put<std::uint32_t>(out, double(points.size()));

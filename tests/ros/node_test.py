@@ -53,7 +53,7 @@ def pose_numbers(T: np.ndarray) -> list[float]:
 
 
 class Expected:
-    """Returns the expected messages: those of the adapter in this process, which gets the same messages in order of time."""
+    """Returns the expected messages, from an adapter in this process that gets the same messages in order of time."""
 
     def __init__(self) -> None:
         self.poses, self.rates, self.sweeps = {}, {}, {}
@@ -228,7 +228,7 @@ def tumble_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]
         else:
             problems += ended_well(process, folder / f"{turn}.log")
         received.close(node)
-    # negative controls: another pose and a lost message are found
+    # negative controls: the comparison detects another pose and a lost message
     if not problems:
         received.poses[next(iter(expected.poses))][0].pose.pose.position.x += 1e-9
         del received.rates[next(iter(expected.rates))]

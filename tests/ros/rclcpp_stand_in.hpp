@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Declarations of the part of rclcpp, rclcpp_components and tf2_ros that ros/nodes uses, without any function. The
-/// nodes are checked for errors against these declarations and the real messages, because PyPI has no rclcpp.
+/// rclcpp_stand_in.hpp declares the parts of rclcpp, rclcpp_components and tf2_ros that ros/nodes uses, without
+/// function bodies. The nodes are checked for errors against these declarations and the real messages, because PyPI has
+/// no rclcpp.
 #include <builtin_interfaces/msg/time.hpp>
 #include <chrono>
 #include <cstdint>

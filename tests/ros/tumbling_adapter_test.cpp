@@ -32,8 +32,7 @@ TumblingAdapter::Params adapter_params(const ThrownBody& body) {
   return params;
 }
 
-/// Calls add_imu for each sample, and calls add_sweep for each sweep when its last sample has arrived, `later_ns`
-/// later.
+/// Calls add_imu for each sample. Calls add_sweep for each sweep, `later_ns` after the sweep's last sample has arrived.
 template <class AddImu, class AddSweep>
 void play(const ThrownBody& body, TimeNs later_ns, AddImu add_imu, AddSweep add_sweep) {
   const auto sweeps = body.sweeps();
@@ -163,7 +162,7 @@ TEST(TumblingAdapter, RecoversTheSaturatedRate) {
     std::nth_element(of.begin(), of.begin() + long(of.size() / 2), of.end());
     return of[of.size() / 2];
   };
-  EXPECT_LT(median(errors_rad_s), 0.5 * median(raw_errors_rad_s));  // before the calibration has converged
+  EXPECT_LT(median(errors_rad_s), 0.5 * median(raw_errors_rad_s));  // the calibration has not yet converged
   EXPECT_GT(median(raw_errors_rad_s), 3.0);
 }
 
@@ -183,8 +182,8 @@ TEST(TumblingAdapter, TheTwistHasItsStatedAccuracy) {
     EXPECT_GT(covariance.diagonal().minCoeff(), 0.0);
     nees += error.dot(covariance.ldlt().solve(error)) / 3.0 / double(got.sweeps.size());
   }
-  EXPECT_LT(nees, 4.0);    // 1 is consistent; 31 sweeps of one run
-  EXPECT_GT(nees, 0.003);  // 0.015: mounting and lever arm are exact here, and stated within 1 cm and 0.6 degrees
+  EXPECT_LT(nees, 4.0);    // the expected value is 1; the mean is over 31 sweeps of one run
+  EXPECT_GT(nees, 0.003);  // measured 0.015; mounting and lever arm are exact, but stated within 1 cm and 0.6 degrees
 }
 
 TEST(TumblingAdapter, PublishesTheBaseFrame) {
@@ -233,7 +232,7 @@ TEST(TumblingAdapter, ContinuesAfterTheClockStepsBack) {
   TumblingAdapter adapter(adapter_params(body), got);
   play_to(adapter, body, kEpoch_ns);
   const Eigen::Vector3d last = got.sweeps.back().T_OB.translation();
-  play_to(adapter, body, 0, 300'000'000);  // a bag that is played again, with another clock; 0.2 s until the restart
+  play_to(adapter, body, 0, 300'000'000);  // the bag is played again, with another clock; the run restarts after 0.2 s
   EXPECT_EQ(adapter.odometry().restart_count(), 1u);
   const auto again = std::find_if(got.sweeps.begin(), got.sweeps.end(),
                                   [](const ros::Odometry& each) { return each.stamp_ns < kEpoch_ns; });

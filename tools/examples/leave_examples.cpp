@@ -69,7 +69,7 @@ std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> 
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // the method of tumble is called `tumble` in each kind (docs/design.md, "Scenarios and methods by name")
+  // the method of tumble is called `tumble` in each kind (docs/design.md, "Methods and scores")
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });

@@ -104,7 +104,7 @@ _INCLUDE = re.compile(r'^#\s*include ([<"])([^>"]+)[>"]', re.M)
 
 
 class Tree:
-    """The sources below a root, and the headers that each source includes."""
+    """Tree contains the sources below a root, and the headers that each source includes."""
 
     def __init__(self, root: pathlib.Path):
         self._root = root

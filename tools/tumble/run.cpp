@@ -83,8 +83,8 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// Suggests further commands to the user. `sweep` takes scenarios of the catalogue only, and a suite may have the same
-/// name.
+/// Suggests further commands to the user. The command `sweep` accepts only scenarios of the catalogue, and a suite may
+/// have the name of a scenario.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();

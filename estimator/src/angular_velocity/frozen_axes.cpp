@@ -23,7 +23,8 @@ constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that i
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
-// A body is at rest if the rate of another axis and the change of the specific force are below these limits.
+// A body is at rest if the rate of another axis is below kStill_rad_s and the specific force changes by less than
+// kStill_m_s2.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
 // kRestRateMax_rad_s and kRestForceMax_m_s2 are the largest readings of a working axis at rest, caused by bias and
 // gravity.

@@ -71,7 +71,7 @@ struct RotationSample {
 };
 
 // Interpolates the force at a time, by a cubic through four readings. `from` is the index of the last reading before
-// the time, and advances.
+// the time; the function updates `from`.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -145,7 +145,7 @@ class ForceIntegral {
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
     }
   }
-  // `from` has the same meaning as in force_at()
+  // `from` is the index of the last reading before the time, as in force_at()
   double to(double time_s, std::size_t& from) const {
     if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
     if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());

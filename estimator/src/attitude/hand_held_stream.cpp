@@ -51,8 +51,7 @@ HandHeldStream::HandHeldStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // The buffer can store readings of twice the nominal sample rate. At higher sample rates, the stream drops the oldest
-  // readings from its buffer.
+  // The buffer stores up to twice the nominal sample rate; beyond this rate, the stream drops the oldest readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 

@@ -14,7 +14,7 @@ constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying t
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
-constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: inverted sign
+constexpr double kArmShareMin = 0.5;  // smallest lever_arm_agreement() without a finding if the gyros are confirmed
 // Largest deviation of lever_arm_agreement() from 1. A larger deviation indicates a scale error of all IMUs.
 // Centripetal force grows with the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data
 // sheet's scale error. In runs of `slip` without faults, lever_arm_agreement() was 0.999 to 1.002.

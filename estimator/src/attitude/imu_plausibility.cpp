@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStandstillRad2 = 1e-6;    // largest squared rotation of a gyro at rest
 constexpr double kNonRestForceRatio = 0.5;  // difference from gravity that excludes rest, as a fraction of gravity
-constexpr double kPushedMin_s = 0.2;        // minimum duration of this difference from gravity
+constexpr double kPushedMin_s = 0.2;        // minimum duration of a force that excludes rest
 constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable direction, as a fraction of gravity
 
 auto best_axis_residual(const ImuPlausibility::State& state) {

@@ -79,7 +79,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 }
 
 /// Replaces the rates of each part between two gaps by the rates of HandHeldSmoother, as far as HandHeldSmoother
-/// succeeds. The report is that of the last such part. Returns whether there is one.
+/// succeeds. The report describes the last replaced part. Returns whether HandHeldSmoother succeeded for any part.
 bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                         std::vector<RateState>& rates, HandHeldSmoother::Report& report) const {
   bool any = false;

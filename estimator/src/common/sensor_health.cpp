@@ -78,8 +78,8 @@ const char* to_string(Kind kind) {
   return meaning(kind).name;
 }
 
-/// After a failure of attitude, vertical or localisation, the estimate is correct again, and its covariance or frame
-/// marks the earlier states. Poses after lost tracking remain wrong.
+/// When a failure of attitude, vertical or localisation ends, later estimates are correct. The covariance or the frame
+/// marks the states during the failure. After a tracking failure, all later poses remain wrong.
 bool HealthFinding::invalidates_estimate() const {
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown || kind == Kind::not_localised;
   return meaning(kind).invalidates && !(ended && recovers);

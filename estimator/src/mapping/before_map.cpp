@@ -38,7 +38,7 @@ double yaw_rad(const Eigen::Quaterniond& q) {
 }
 
 /// Returns the matrix that transforms errors of the motion to a frame with its origin at the IMU, rotated by `turn`.
-/// The displacement from the old origin to the IMU has an error.
+/// The matrix includes the error of the displacement from the old origin to the IMU.
 Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();

@@ -11,8 +11,8 @@ namespace tumble::mapping {
 /// vertical, so a tilt error is an error of the attitude.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Widens the covariance of a state that was levelled in motion: the mean force is not gravity, and the velocity is
-/// unknown.
+/// Widens the covariance of a state that was levelled in motion. In motion, the mean force differs from gravity, and
+/// the velocity is unknown.
 void widen_for_motion(MotionState& levelled);
 
 /// Returns `motion` with position and heading replaced by those of `T_WI`, and with unchanged tilt.
@@ -22,9 +22,9 @@ StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estim
 /// Returns the estimate with a corrected tilt, whose errors are independent of the other errors.
 StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
-/// Returns the reckoned state, `step_s` after the last call, with the origin and yaw of the frame moved to the IMU.
-/// Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity
-/// over minutes of motion.
+/// Returns the state from dead reckoning, `step_s` after the last call, with the origin and yaw of the frame moved to
+/// the IMU. Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and
+/// velocity over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the first sweep

@@ -8,7 +8,7 @@
 #include "sweep_members.hpp"
 
 /// mapping_members.hpp lists those members of the odometry that persist between sweeps, as state_visitor.hpp describes.
-/// README.md explains the parts of the odometry.
+/// The file README.md in this folder explains the parts of the odometry.
 namespace tumble {
 
 namespace mapping {

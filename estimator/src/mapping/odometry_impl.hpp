@@ -28,8 +28,8 @@ struct UpdatedSweep {
   const SweepTrajectory& trajectory;
 };
 
-/// SweepScratch contains work buffers of a sweep, which are kept to avoid allocations. Each sweep writes the buffers
-/// before it reads them.
+/// SweepScratch contains work buffers of a sweep, which are kept to avoid allocations. Each sweep first overwrites the
+/// buffers.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -51,8 +51,8 @@ struct LidarInertialOdometry::Impl {
   /// Initialises the state from an IMU at rest, before the first sweep.
   Status level_at_first();
   Status level_start(MotionState& levelled) const;
-  /// Starts the map if the sweep is suitable. If the sweep is unsuitable, the function propagates the state inertially
-  /// to the end of the sweep.
+  /// Starts the map if the sweep has enough usable points. If the sweep has too few points, the function propagates the
+  /// state inertially to the end of the sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
@@ -116,8 +116,8 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> other;  // alternative for an unconfirmed or a contradicted relocalisation
-  mapping::MapLocaliser localiser;              // of a prior map, if any
+  std::optional<mapping::DeadReckoning> other;  // alternative pose for an unconfirmed or a contradicted relocalisation
+  mapping::MapLocaliser localiser;              // localiser in a prior map, if any
   mapping::SweepScratch scratch;
 };
 

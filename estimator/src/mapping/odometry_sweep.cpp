@@ -92,8 +92,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // If the lidar clock is wrong, the first sweep may start before the first IMU sample. If the lidar clock is wrong,
-  // the initial rest extends backwards to the start of the first sweep.
+  // With a wrong lidar clock, the first sweep may start before the first IMU sample. The function then extends the
+  // initial rest backwards to the start of the sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -224,8 +224,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // The inertial prediction remains the only estimate of the motion. For an IMU at rest, a velocity of zero prevents a
-  // drift of the velocity.
+  // The inertial prediction is the only estimate of the motion. At rest, a velocity of zero prevents drift.
   if (mapping::is_lost(tracking)) predict_stationary(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -324,8 +323,8 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// Propagates the state to the end of a sweep without using the sweep's points. If `rests` is true, the velocity is
-/// known to be 0. The sweep also enters the lag window if there is one.
+/// Propagates the state to the end of a sweep without using the sweep's points. If `rests` is true, the velocity is 0.
+/// The sweep also enters the lag window, if any.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;

@@ -51,8 +51,8 @@ class WorldCovariance {
   Eigen::Vector3d start_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose
   Eigen::Vector3d map_at_W_m_ = Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
   Pose start_mounting_jacobian_ = Pose::Zero();
-  Pose map_ = Pose::Zero();                                        // of the map relative to the world, at map_at_W_m_
-  Eigen::Matrix3d drift_covariance_m2_ = Eigen::Matrix3d::Zero();  // of the position
+  Pose map_ = Pose::Zero();  // covariance of the map relative to the world, at map_at_W_m_
+  Eigen::Matrix3d drift_covariance_m2_ = Eigen::Matrix3d::Zero();  // covariance of the drift of the position
 };
 
 }  // namespace tumble::mapping

@@ -181,7 +181,7 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   LidarInertialOdometry::Params started = params;
   MappedRecording out = map_once(input, started);
   int passes = 1;
-  MappingInput levelled = input;  // with the tilt of a start in motion from the pass before
+  MappingInput levelled = input;  // input with the start tilt that the previous pass estimated
   const auto again = [&] {
     levelled.start_tilt = out.mapper.start_tilt();
     out = map_once(levelled, started);

@@ -121,7 +121,7 @@ class TimeWithoutGaps {
     last_ns_ = time_ns;
     return {time_ns - removed(), after_gap};
   }
-  /// Returns the time in the recording.
+  /// Converts a time without gaps to the time in the recording.
   TimeNs in_recording(TimeNs time_ns) const {
     TimeNs removed_ns = 0;
     for (const Gap& gap : gaps_) {
@@ -142,7 +142,7 @@ class TimeWithoutGaps {
   TimeNs last_ns_ = 0, step_ns_ = 1;
 };
 
-/// Deletes the windows and the predicted motion, which end at a gap. The calibration of the units remains.
+/// Deletes the averaging windows and the predicted motion at a gap, and keeps the calibration of the units.
 void delete_motion(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.units) unit.window = {};
   state.recovery.running = false;
@@ -192,7 +192,7 @@ struct Interval {
   TimeNs from_ns = 0, to_ns = 0;
 };
 
-/// Returns the first interval without readings that is long.
+/// Returns the first interval without readings that is longer than kSilentReported_s.
 std::optional<Interval> silent_interval(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -216,7 +216,7 @@ void report_silent(const Units& units, SensorHealth& faults) {
   }
 }
 
-/// Excludes the readings of an IMU while one of its axes is frozen. If no IMU remains, returns an error.
+/// Excludes the readings of an IMU while one of its axes is frozen. Returns an error if no IMU remains.
 Status exclude_frozen(Units& units, SensorHealth& faults) {
   const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {

@@ -128,7 +128,7 @@ void members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void FurtherLidars::members(Self& s, Visitor& visit) {
-  visit.scratch(s.lidars_);  // of the parameters
+  visit.scratch(s.lidars_);  // copied from the parameters
   visit.scratch(s.T_LI_first_);
   visit("further.waiting", s.waiting_);
   visit("further.unused_points", s.unused_points_);
@@ -136,7 +136,7 @@ void FurtherLidars::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);       // must equal the saved ones
+  visit.scratch(s.params_);       // must equal the saved parameters
   visit.scratch(s.stamp_order_);  // derived from the parameters
   visit("order", s.stamp_order_state_);
   visit.scratch(s.gyro_offset_);

@@ -15,8 +15,8 @@ namespace {
 constexpr double kGate = 16.27;  // 99.9 % quantile of chi-square with three degrees of freedom
 constexpr std::size_t kPairsMin = 3, kPairsPerOutlier = 5;
 constexpr double kHeadingSigma_rad = 0.1;
-constexpr double kSpacing = 0.5;  // distance of two pairs, in standard deviations of a reading
-constexpr double kDrift = 0.01;   // least drift of the poses, as a share of the path
+constexpr double kSpacing = 0.5;  // minimum distance of two stored positions, in standard deviations of a reading
+constexpr double kDrift = 0.01;   // minimum assumed drift of the poses, as a fraction of the path
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
@@ -113,7 +113,7 @@ void PositionAlignment::restart_fit() {
   frame_.reset();
 }
 
-/// Adds a reading, or averages it with the last reading if the robot has hardly moved since.
+/// Adds a position reading. If the robot has hardly moved since the last reading, the function averages both readings.
 void PositionAlignment::add_pair(const PositionReading& reading, const PoseState& pose) {
   const double variance_m2 = reading.covariance_m2.trace() / 3.0;
   const Pair pair{pose.p_WA_m + pose.q_WA * reading.p_IA_m, reading.p_PA_m, variance_m2, path_m_, pose_variance_m2_};
@@ -129,7 +129,7 @@ void PositionAlignment::add_pair(const PositionReading& reading, const PoseState
   last.variance_m2 = share * variance_m2;
 }
 
-/// Fits the frame to the pairs, without outliers.
+/// Fits the frame to the stored pairs of position and pose, without outliers.
 void PositionAlignment::fit() {
   frame_.reset();
   std::deque<Pair> inliers = pairs_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RollingOdometry: restarts after a gap, and the pose of a run in the world.
+// rolling_restart.cpp implements the restarts of RollingOdometry after gaps, and the pose of a run in the world.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,8 +12,9 @@ namespace tumble {
 
 namespace {
 
-// Standard deviations of the motion in a gap without data: horizontal speed in addition to the last speed, and rotation
-// about the vertical, up to an unknown heading (uniform over a turn).
+// The constants are standard deviations of the motion in a gap without data. They limit the horizontal speed in
+// addition to the last speed, and the rotation about the vertical. After a long gap, the heading is unknown (uniform
+// over a turn).
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
 /// Returns the covariance without the tilt, which a restart levels again.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of RollingOdometry.
+// rolling_state.cpp implements saving and loading of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
 #include "../attitude/imu_plausibility_members.hpp"
@@ -49,7 +49,7 @@ void RollingOdometry::Restart::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // must equal the saved ones; the next three are derived from them
+  visit.scratch(s.params_);  // must equal the saved parameters, from which the next three members follow
   visit.scratch(s.stamp_order_);
   visit("order", s.stamp_order_state_);
   visit.scratch(s.sample_clock_);

@@ -88,8 +88,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // A rough floor lasts for many nodes. The density is therefore normalised with the width of grip, which avoids a
-    // penalty in each node.
+    // On a rough floor, the sphere stays for many nodes. The density is therefore normalised with the width of grip,
+    // which avoids a penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -163,8 +163,8 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.mode_start_node : state.node};
     }
   }
-  // The code avoids std::stable_sort, which would allocate memory. Candidates of equal weight are ordered by origin, so
-  // the order is unique.
+  // The code avoids std::stable_sort, which would allocate memory. The code sorts candidates of equal weight by their
+  // origin, so the order is unique.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });

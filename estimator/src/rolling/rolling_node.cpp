@@ -30,8 +30,7 @@ constexpr double kForceTilt_rad = 0.35;                           // direction e
 constexpr double kLostTilt_rad = kForceTilt_rad;  // if the standard deviation is larger, a force levels the tilt
 constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// kPushForceRatio is the difference between specific force and gravity, as a fraction of gravity, above which the
-// sphere is pushed or rotates fast.
+// Above this difference between force and gravity (fraction of gravity), the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
@@ -82,8 +81,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // While a sphere is pushed, the measured specific force is not gravity. A rotating sphere may slip with its full
-  // rolling speed.
+  // While a sphere is pushed, the force is not gravity. A rotating sphere may slip with its full rolling speed.
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // the initial heading defines the world's x axis, so its prior variance is 0
@@ -154,8 +152,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the specific force is also unknown. The integration then keeps the
-  // velocity of the centre constant: rolling.md (R7).
+  // If the rate is unknown, the direction of the force is unknown, so the centre's velocity is constant: rolling.md
+  // (R7).
   const Eigen::Vector3d centre_velocity_change_m_s = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -220,14 +218,12 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // T is the duration of the gap. A parabola between the rates before and after the gap has the integral a T^3 / 12:
-  // rolling.md (R31).
+  // A parabola between the rates before and after a gap of duration T has the integral a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
-  // variance of the contact velocity in a gap: rolling.md (R32)
   uncertainty.rate_variance_rad2_s =
-      squared(mean_force_tilt_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
+      squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); common to all pieces, hence a factor gap_s
   uncertainty.speed_variance_m2_s2 =
       squared(kGapVelocityChangeRatio * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
@@ -344,8 +340,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The difference depends on
-  // the steepness of the floor.
+  // On a rough floor, the path is shorter than radius times rotation, depending on the steepness of the floor.
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();

@@ -186,7 +186,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const FinalPassState& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // A node may be within a gap of the data. The next sample may then be much later than the node.
+    // If a node is within a gap of the data, the next sample may be much later than the node.
     const TimeNs from_ns = k == 0 && committed.gap_step > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_stamp_order(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;

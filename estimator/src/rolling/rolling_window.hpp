@@ -48,7 +48,7 @@ struct Reading {
   GapUncertainty uncertainty;
   bool in_gap = false;
   bool whole = true;               ///< false: last reading of the run, too short to be processed
-  std::size_t first = 0, end = 0;  ///< samples of the reading; in a gap, only the last piece has one
+  std::size_t first = 0, end = 0;  ///< range of samples of the reading; in a gap, only the last piece has a sample
   TimeNs end_ns = 0;
 };
 
@@ -100,7 +100,7 @@ Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covarianc
 /// Returns the covariance of the reported states, given their rows of the covariance.
 Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows);
 /// Returns the covariance of the velocity of the centre in IMU axes, given the covariance of the reported states. The
-/// error of the angular velocity, multiplied by the lever arm, is neglected.
+/// function neglects the product of angular velocity error and lever arm.
 Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 

@@ -64,7 +64,7 @@ def cloud(frame: str, stamp_ns: int, names: Sequence[str], data: bytes) -> Point
 
 
 class OdometryNode(Node):
-    """Base of both nodes: parameters, /tf, odometry and diagnostics. The node is the publisher of its adapter."""
+    """Base class of both nodes, with parameters, /tf, odometry and diagnostics. The node is the publisher of its adapter."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -100,7 +100,7 @@ class OdometryNode(Node):
         self.create_subscription(kind, topic, callback, quality)
 
     def numbers(self, parameters: list[_tumble.Parameter]) -> dict[str, Any]:
-        """Declares the numbers of the library, and returns the values that are set. A number without default is NaN until it is set."""
+        """Declares the numbers of the library, and returns the values that the user sets. A number without default is NaN until the user sets the number."""
         out: dict[str, Any] = {}
         for each in parameters:
             default = list(map(float, each.default)) if isinstance(each.default, (tuple, np.ndarray)) else each.default
@@ -178,7 +178,7 @@ class OdometryNode(Node):
     adapter: Any = None
 
     def start_again(self, *start: Any) -> str:
-        """Starts a new run at a pose with standard deviations; an empty list: at the origin, or anywhere in a prior map."""
+        """Starts a new run at a pose with standard deviations. If the list is empty, the run starts at the origin, or anywhere in a prior map."""
         return str(self.adapter.reset(*start)) if self.adapter is not None else "no data yet"
 
     def on_reset(self, _: Trigger.Request, answer: Trigger.Response) -> Trigger.Response:
@@ -188,7 +188,7 @@ class OdometryNode(Node):
 
     def on_initial_pose(self, given: PoseWithCovarianceStamped) -> None:
         p, q = given.pose.pose.position, given.pose.pose.orientation
-        covariance = given.pose.covariance  # x y z, and rotations about x y z
+        covariance = given.pose.covariance  # order: position x y z, rotations about x y z
         sigma_m, sigma_rad = math.sqrt(max(covariance[0], covariance[7], 0.0)), math.sqrt(max(covariance[35], 0.0))
         try:
             self.report("initialpose", self.start_again([p.x, p.y, p.z, q.x, q.y, q.z, q.w], sigma_m, sigma_rad))
@@ -227,7 +227,7 @@ class TumblingNode(OdometryNode):
         self.position_frame = ""
         self.inputs = [(Imu, "imu", self.on_imu, IMU_DEPTH), (PointCloud2, "points", self.on_points, CLOUD_DEPTH),
                        (PoseWithCovarianceStamped, "position", self.on_position, CLOUD_DEPTH)]
-        self.start()  # reports wrong parameters at once, if they give the mounting
+        self.start()  # if the parameters state the mounting, start() reports wrong parameters immediately
 
     def start(self) -> bool:
         """Creates the adapter when the mounting of both sensors is known."""
@@ -330,7 +330,7 @@ class TumblingNode(OdometryNode):
 
 
 class RollingNode(OdometryNode):
-    """Runs RollingOdometry with the topic imu for one IMU, or imu_1 to imu_4 for several. T_base_imu has seven numbers for each IMU."""
+    """Runs RollingOdometry. The topic is imu for one IMU, or imu_1 to imu_4 for several IMUs. T_base_imu has seven numbers for each IMU."""
 
     def __init__(self) -> None:
         super().__init__("rolling_odometry")

@@ -31,7 +31,7 @@ struct TumblingAdapterParams {
   TumblingParams odometry;                                     ///< T_IL is set from T_BI and T_BL
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();      ///< pose of the IMU in the base frame
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();      ///< pose of the lidar in the base frame
-  Eigen::Vector3d position_arm_B_m = Eigen::Vector3d::Zero();  ///< antenna of position readings, in the base frame
+  Eigen::Vector3d position_arm_B_m = Eigen::Vector3d::Zero();  ///< position of the antenna, in the base frame
   std::string time_field;                                      ///< see PointCloudReader
   double map_period_s = 5.0;
   bool prior_map_extend = true;  ///< see PriorMap::extend
@@ -50,7 +50,7 @@ struct TumblingAdapterParams {
   static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
 };
 
-/// RollingAdapterParams contains the parameters of RollingAdapter. The base frame is that of the sphere, with its
+/// RollingAdapterParams contains the parameters of RollingAdapter. The base frame is the frame of the sphere, with its
 /// origin in the sphere's centre.
 struct RollingAdapterParams {
   RollingOdometry::Params odometry;
@@ -79,7 +79,7 @@ struct TextParameter {
   const char* value;  ///< default of a text
   int count;          ///< length of the list; the default list is empty
   const char* meaning;
-  bool at_start = true;  ///< false: read at each call of a service
+  bool at_start = true;  ///< false: the node reads the parameter at each call of a service
 };
 
 /// Returns the text and list parameters of both nodes.
@@ -90,11 +90,11 @@ std::span<const TextParameter> text_parameters();
 Eigen::Isometry3d pose_of(const std::string& parameter, std::span<const double> numbers);
 
 /// Converts the smallest and the largest corner to a box; no numbers give an empty box. Throws InvalidParams with the
-/// name of the parameter for another count of numbers.
+/// name of the parameter if the count of numbers is wrong.
 Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double> numbers);
 
-/// Converts three numbers to a position; no numbers give zero. Throws InvalidParams with the name of the parameter for
-/// another count.
+/// Converts three numbers to a position; no numbers give zero. Throws InvalidParams with the name of the parameter if
+/// the count of numbers is wrong.
 Eigen::Vector3d position_of(const std::string& parameter, std::span<const double> numbers);
 
 /// Returns the data sheet with this name, or the default sheet for an empty name. Throws InvalidParams for an unknown

@@ -23,13 +23,13 @@ struct TimedSweep {
 /// needs only the current and earlier sweeps.
 ///
 /// The fields x, y, z and a time (TimeFieldChoice) are required. The fields for intensity and ring (kIntensityNames,
-/// kRingNames) are optional. LivoxCloud converts the CustomMsg of Livox to such a cloud.
+/// kRingNames) are optional. LivoxCloud converts the message CustomMsg of Livox to a cloud with these fields.
 ///
 /// The suffix _s, _ms, _us or _ns of the time field states the unit. Without a suffix, the first sweep of at least 100
 /// points determines the time unit. The times of a sweep span 1 ms to 1 s, and units differ by factors of 1000, so only
-/// one unit fits. Times are relative to the header's stamp or absolute, whichever puts the first point closer to the
-/// stamp. If neither is within a second of the stamp, the times belong to another clock, and the first point is assumed
-/// to be measured at the stamp.
+/// one unit fits. Times are relative to the header's stamp or absolute. PointCloudReader selects the interpretation
+/// that puts the first point closer to the stamp. If neither interpretation is within a second of the stamp, the times
+/// belong to another clock. PointCloudReader then assumes that the first point was measured at the stamp.
 ///
 /// | driver | field | type | times |
 /// | --- | --- | --- | --- |
@@ -42,12 +42,12 @@ class PointCloudReader {
   /// @param time_field  name of the time field; empty: by the names above
   explicit PointCloudReader(std::string time_field = {}) : time_field_(std::move(time_field)) {}
 
-  /// Converts a point cloud to a sweep. Points that are not finite or at the origin are misses and are dropped.
-  /// Intensities above 1 are divided by 255, or by the largest intensity of the sweep if that is more. Returns an error
-  /// and leaves `sweep` unspecified: `empty` (a field is missing, or no point), `too_few` (the unit is unknown, and
-  /// there are fewer than 100 points), `degenerate` (all times are equal: deskewing is impossible), `out_of_range`
-  /// (big-endian, a layout that does not fit the data, two possible time fields, or a time span above 1 s). Cost:
-  /// O(points). The function reuses the memory of `sweep`.
+  /// Converts a point cloud to a sweep. The function drops points that are not finite or at the origin, because these
+  /// points are misses. If intensities exceed 1, the function divides all intensities of the sweep by the larger of 255
+  /// and the largest intensity. Returns an error and leaves `sweep` unspecified: `empty` (a field is missing, or no
+  /// point), `too_few` (the unit is unknown, and there are fewer than 100 points), `degenerate` (all times are equal:
+  /// deskewing is impossible), `out_of_range` (big-endian, a layout that does not fit the data, two possible time
+  /// fields, or a time span above 1 s). Cost: O(points). The function reuses the memory of `sweep`.
   Status read(const PointCloudView& cloud, TimedSweep& sweep);
 
  private:

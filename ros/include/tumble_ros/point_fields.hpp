@@ -12,8 +12,8 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
-/// Bytes and field names of the point clouds that lidar drivers publish. The nodes and the import of bags use these
-/// functions, so both read the same dialects.
+/// point_fields.hpp reads the bytes and field names of point clouds from lidar drivers. The nodes and the import of
+/// bags use these functions, so nodes and import accept the same formats.
 namespace tumble::ros {
 
 /// PointField describes one field of a point, like sensor_msgs/PointField.
@@ -45,13 +45,13 @@ bool is_number(const PointField& field);
 /// Returns the number of a field. `point` is the first byte of the point.
 double number_at(const std::uint8_t* point, const PointField& field);
 
-/// A unit of time; `suffix` ends the name of a field with this unit.
+/// TimeUnit is a unit of time. The name of a field with this unit ends in `suffix`.
 struct TimeUnit {
   std::string_view suffix;
   double ns;
 };
 inline constexpr std::array<TimeUnit, 4> kTimeUnits = {{{"_s", 1e9}, {"_ms", 1e6}, {"_us", 1e3}, {"_ns", 1.0}}};
-/// Names of fields, in lower case.
+/// Accepted names of fields, in lower case.
 inline constexpr std::array<std::string_view, 2> kIntensityNames = {"intensity", "reflectivity"};
 inline constexpr std::array<std::string_view, 3> kRingNames = {"ring", "line", "channel"};
 
@@ -63,14 +63,14 @@ const TimeUnit* stated_unit(std::string_view name);
 /// "timestamps", "time_stamp", "offset_time", "time_offset" and "offset", in any case, with or without the suffix of a
 /// unit. A field that states its unit has priority.
 struct TimeFieldChoice {
-  std::string field, rival;  ///< a rival has the same priority; empty: none
+  std::string field, rival;  ///< name of the selected field, and of a second field with equal priority; empty: none
 
   void offer(const std::string& name);
 };
 
-/// The points of a livox_ros_driver2/CustomMsg as a cloud with the fields x, y, z, reflectivity, tag, line and
-/// offset_time_ns. The message is given in CDR, the serialization of ROS 2. The types of livox_ros_driver and
-/// livox_interfaces have equal fields.
+/// LivoxCloud converts a livox_ros_driver2/CustomMsg to a cloud with the fields x, y, z, reflectivity, tag, line and
+/// offset_time_ns. The message must be in CDR, the serialization of ROS 2. The message types of livox_ros_driver and
+/// livox_interfaces have the same fields.
 struct LivoxCloud {
   static bool is_type(std::string_view type) { return type.ends_with("/CustomMsg"); }
 

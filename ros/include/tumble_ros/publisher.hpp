@@ -22,12 +22,12 @@ struct Odometry {
   Eigen::Isometry3d T_OB = Eigen::Isometry3d::Identity();
   /// Covariance of position and of the rotation about the fixed axes of O, in the order x, y, z, rx, ry, rz [m, rad].
   Matrix6 pose_covariance = Matrix6::Zero();
-  Vector6 twist_B = Vector6::Zero();           ///< velocity of B's origin and angular velocity, axes of B [m/s, rad/s]
+  Vector6 twist_B = Vector6::Zero();  ///< velocity of B's origin and angular velocity, in axes of B [m/s, rad/s]
   Matrix6 twist_covariance = Matrix6::Zero();  ///< order and axes of twist_B
 };
 
 /// RecoveredImu has the contents of sensor_msgs/Imu: an IMU sample whose angular velocity is estimated through
-/// saturation. The axes of RecoveredImu are those of the IMU.
+/// saturation. The axes of RecoveredImu are the axes of the IMU.
 struct RecoveredImu {
   RateState rate;
   Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();
@@ -70,8 +70,8 @@ class Publisher {
   virtual void diagnostics(TimeNs, const Diagnostics&) = 0;
 };
 
-/// Converts a pose of the IMU to the odometry of the base frame. The angular velocity and its covariance are `rate`,
-/// and the lever arm from the IMU to the base turns with the body.
+/// Converts a pose of the IMU to the odometry of the base frame. `rate` contains the angular velocity and its
+/// covariance. The lever arm from the IMU to the base turns with the body.
 /// @param velocity_covariance_I_m2_s2  covariance of the velocity in IMU axes (SweepReport)
 /// @param T_IB                         pose of the base in IMU axes
 Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const RateState& rate,

@@ -14,8 +14,8 @@ namespace tumble::ros {
 /// node and needs no ROS. The adapter publishes the estimates unchanged.
 ///
 /// Publisher::odometry receives the smoothed poses, which are lag_s old (live poses if lag_s is 0).
-/// Publisher::odometry_imu receives the newest pose after each accepted sample. The base frame is the sphere, so its
-/// axes turn with the sphere. The covariance of the angular velocity is the white noise of the first IMU's data sheet.
+/// Publisher::odometry_imu receives the newest pose after each accepted sample. The base frame turns with the sphere.
+/// The covariance of the angular velocity comes from the white noise in the first IMU's data sheet.
 class RollingAdapter {
  public:
   using Params = RollingAdapterParams;
@@ -25,7 +25,7 @@ class RollingAdapter {
 
   /// Processes a sample of an IMU. Returns the status of RollingOdometry::add_imu().
   Status on_imu(std::size_t unit, const ImuSample& sample);
-  /// Starts a new run. Position and heading of the sphere are those of `T_OB`.
+  /// Starts a new run. `T_OB` gives position and heading of the sphere.
   void reset(const Eigen::Isometry3d& T_OB);
   const RollingOdometry& odometry() const { return odometry_; }
 

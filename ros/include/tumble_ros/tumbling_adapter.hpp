@@ -20,13 +20,12 @@ namespace tumble::ros {
 /// StartPose is the pose of the base at the start of a run. The standard deviations limit the search in a prior map.
 struct StartPose {
   Eigen::Isometry3d T_OB = Eigen::Isometry3d::Identity();
-  double sigma_m = 0.0;    ///< per axis; 0: exact
-  double sigma_rad = 0.0;  ///< of the heading; 0: exact
+  double sigma_m = 0.0;    ///< standard deviation of the position per axis; 0: exact
+  double sigma_rad = 0.0;  ///< standard deviation of the heading; 0: exact
 };
 
 /// TumblingAdapter connects TumblingOdometry to the messages of a robot. TumblingAdapter contains the logic of the ROS
-/// nodes and needs no ROS. The adapter publishes the estimates unchanged: the library called directly gives the same
-/// bits.
+/// nodes and needs no ROS. The adapter publishes the library's estimates unchanged.
 ///
 /// | call | when |
 /// | --- | --- |
@@ -36,10 +35,10 @@ struct StartPose {
 /// | Publisher::odometry_imu | for each accepted IMU sample after the first registered sweep |
 /// | Publisher::map, diagnostics | at the periods of the parameters |
 ///
-/// The odometry frame has its z axis up. Origin and heading of the odometry frame are those of the base frame at the
-/// start, if the base is level. For a robot that starts tilted, the origin is wrong by the tilt times the distance from
-/// base to IMU. Results are published within on_imu(). If the clock steps back, the library restarts after 0.2 s at the
-/// newest pose.
+/// The odometry frame has its z axis up. If the base is level at the start, the odometry frame has the origin and
+/// heading of the base frame at the start. For a robot that starts tilted, the origin is wrong by the tilt times the
+/// distance from base to IMU. Results are published within on_imu(). If the clock steps back, the library restarts
+/// after 0.2 s at the newest pose.
 class TumblingAdapter {
  public:
   using Params = TumblingAdapterParams;
@@ -50,20 +49,20 @@ class TumblingAdapter {
   /// Processes an IMU sample in IMU axes. Returns the status of TumblingOdometry::add_imu().
   Status on_imu(const ImuSample& sample);
   /// Processes a point cloud in lidar axes. Returns the status of PointCloudReader::read() or of
-  /// TumblingOdometry::add_sweep(). A busy computer may deliver clouds seconds before the IMU samples of their times.
-  /// The adapter keeps at most 32 such clouds until the samples arrive.
+  /// TumblingOdometry::add_sweep(). A busy computer may deliver clouds seconds before the simultaneous IMU samples. The
+  /// adapter keeps at most 32 early clouds until the IMU samples arrive.
   Status on_cloud(const PointCloudView& cloud);
   /// Processes a CustomMsg of a Livox driver, in CDR. Returns the status of LivoxCloud::parse() or of on_cloud().
   Status on_livox(std::span<const std::uint8_t> cdr);
   /// Processes the position of the antenna, with its covariance, in a frame with z up. Returns the status of
   /// TumblingOdometry::add_position().
   Status on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m, const Eigen::Matrix3d& covariance_m2);
-  /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
+  /// Registers and publishes the sweeps that wait for later samples, at the end of a recording.
   void finish();
-  /// Starts a new run. Position and heading of the base are those of `start`. Without a pose, the run starts at the
-  /// origin, or anywhere in the prior map. Returns `ok`, or the errors of TumblingOdometry::use_map().
+  /// Starts a new run. `start` gives position and heading of the base. Without `start`, the run starts at the origin,
+  /// or anywhere in the prior map. Returns `ok`, or the errors of TumblingOdometry::use_map().
   Status reset(const std::optional<StartPose>& start = std::nullopt);
-  /// Starts a new run, which localises itself in a map that tumble::save_map() saved. Returns the errors of
+  /// Starts a new run that localises the robot in a map saved by tumble::save_map(). Returns the errors of
   /// tumble::load_map() and of reset(). After an error of tumble::load_map(), the run continues.
   Status load_map(std::span<const std::byte> bytes);
 

@@ -258,7 +258,7 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   return start;
 }
 
-/// Returns whether most points are beyond twice the lidar's range, and counts the cloud as left out if so.
+/// Returns whether most points are beyond twice the lidar's range, and counts such a cloud as dropped.
 bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   if (kept.empty()) return false;
   const std::vector<double>&x = *sweep.cloud.find("x"), &y = *sweep.cloud.find("y"), &z = *sweep.cloud.find("z");

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kSampling_s = 0.01, kGyroRail_rad_s = 5.0, kAccelRail_m_s2 = 40.0;
 
-/// Returns a body that rests for two seconds, turns and is pushed for four, and rests for four: readings with noise,
-/// clipped.
+/// Returns noisy, clipped readings of a body. The body rests for two seconds, turns under pushes for four seconds, and
+/// rests for four seconds.
 std::vector<ImuSample> moving_body() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
@@ -93,7 +93,8 @@ TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel y"), std::string::npos);
 }
 
-// The body rests at the end while the axis still reads its saturation level, which no body at rest does.
+// At the end, the body rests, but the axis still reads its saturation level. A working gyro axis at rest reads about
+// zero.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
     std::vector<ImuSample> samples = clipped_samples(moving_body());
@@ -112,7 +113,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel x"), std::string::npos);
 }
 
-// A pendulum never rests; its axis keeps reading the saturation level for longer than any swing.
+// The pendulum never rests. The axis repeats its saturation level for longer than a swing of the pendulum.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
   const auto swinging = [](double railed_s, double reading = kGyroRail_rad_s) {
     std::mt19937 random(2);

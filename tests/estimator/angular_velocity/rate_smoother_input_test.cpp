@@ -99,7 +99,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
   EXPECT_GT(report.bounded_only, 300u);
   EXPECT_GT(out[300].w_WI_I_rad_s.x(), 10.3);
   EXPECT_LT(out[300].w_WI_I_rad_s.y(), -10.3);
-  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far larger than the softness of the bound
+  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far larger than the variance of the bound's noise
 }
 
 TEST(RateSmootherInput, ADeadAxis) {
@@ -117,7 +117,8 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
   TumbleRecording tumble = make_tumble(options);
   std::size_t flips = 0;
   for (std::size_t k = 1; k < tumble.samples.size(); ++k) {
-    // every third reading at the saturation level, after another such reading, overflows
+    // in every seventh sample, a reading at the saturation level overflows if the previous reading is also at the
+    // saturation level
     Vector3d& reading = tumble.samples[k].angular_velocity_rad_s;
     for (int j = 0; j < 3; ++j) {
       const double before = tumble.samples[k - 1].angular_velocity_rad_s[j];

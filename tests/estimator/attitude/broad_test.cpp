@@ -145,7 +145,8 @@ TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
   EXPECT_NEAR(eskf.inclination_motion_deg, 0.72, 0.03);
 }
 
-/// Hands push a sensor that turns about an external point: with the rotation (trials 07, 11) or against it (27).
+/// In these trials, a hand swings the sensor about an external point, and thereby pushes the sensor. The push is in the
+/// direction of the rotation in trials 07 and 11, and against the rotation in trial 27.
 TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
   const auto verdict_of = [](const BroadTrial& trial, double gyro_scale) {
     const ImuPlausibility plausibility({});
@@ -169,12 +170,13 @@ TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
   EXPECT_GE(told, wrong / 3);
 }
 
-/// 0.02 per sample at 285.7 Hz, as for the published results over the whole data set
+/// A gain of 0.02 per sample at 285.7 Hz corresponds to this time constant. The published results over the whole data
+/// set use the same gain.
 constexpr double kTauPerSample_s = 0.17324;
 
 TEST_P(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
   const BroadError paper = run_trials("autogain", baselines::Autogain({.tau_s = kTauPerSample_s}), trials()).back();
-  // over all 30 trials: 10.8 in motion, 0.17 at rest
+  // the errors over all 30 trials are 10.8 degrees in motion and 0.17 degrees at rest
   EXPECT_NEAR(paper.inclination_rest_deg, 0.17, 0.02);
   EXPECT_NEAR(paper.inclination_motion_deg, 10.8, 3.0);
   const baselines::Autogain code(
@@ -186,8 +188,9 @@ TEST_P(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
 
 TEST_P(Broad, TumbleIsBetterThanVqfInMotionAndAsGoodAtRest) {
   const BroadError error = run_trials("tumble", TumbleAttitude({}), trials()).back();
-  EXPECT_LT(error.inclination_motion_deg, 0.575);  // VQF's; measured 0.554, no parameter tuned beyond a factor of two
-  // 0.201: the accelerometer's own error, which a complementary filter also has once the bias is removed (0.206)
+  EXPECT_LT(error.inclination_motion_deg,
+            0.575);  // error of VQF; measured 0.554, with parameters within a factor of two of their defaults
+  // measured 0.201, an error of the accelerometer; a complementary filter without bias error has 0.206
   EXPECT_LT(error.inclination_rest_deg, 0.205);
 }
 
@@ -235,7 +238,7 @@ TEST_P(Broad, ScoreSeesAPlantedTilt) {
   expect_planted_tilt_seen(trials().front());
 }
 
-/// The synthetic replacement, in every clone: a gently moved hand-held sensor with known truth.
+/// This test replaces BROAD in clones without the data set. A hand moves a simulated sensor gently.
 class BroadStandIn : public ::testing::Test {
  protected:
   static const std::vector<BroadTrial>& trials() {
@@ -251,7 +254,7 @@ TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
   const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
   const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
   const BroadError tumble = run_trials("tumble", TumbleAttitude({}), trials()).back();
-  // a tenth above the measured values: 0.281, 0.290, 0.323
+  // the bounds are a tenth above the measured values 0.281, 0.290 and 0.323
   EXPECT_LT(tumble.inclination_motion_deg, 0.31);
   EXPECT_LT(vqf.inclination_motion_deg, 0.32);
   EXPECT_LT(eskf.inclination_motion_deg, 0.36);

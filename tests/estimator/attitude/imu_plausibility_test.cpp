@@ -71,7 +71,7 @@ ImuPlausibility::State state_of(const testing::RollingTruth& truth, const AxisLa
   ImuPlausibility::State state;
   for (ImuSample sample : truth.samples) {
     const Eigen::Vector3d force = sample.specific_force_m_s2;
-    // axis[j] is, with its sign, the axis that the gyro calls j
+    // axis[j] is the accelerometer axis that belongs to gyro axis j, and sign[j] is its sign
     for (std::size_t j = 0; j < 3; ++j) {
       sample.specific_force_m_s2[named.axis[j]] = named.sign[j] * force[static_cast<Eigen::Index>(j)];
     }
@@ -102,7 +102,8 @@ TEST(ImuPlausibility, EveryOtherNamingOfTheAxesIsFound) {
 }
 
 TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
-  // along x = y, a swap of x and y leaves the axis of the roll unchanged; its heading sways by `sway_rad`
+  // on a path along x = y, a swap of x and y does not change the axis of rotation; the heading of the path varies by
+  // `sway_rad`
   const auto swayed = [](double sway_rad) {
     return testing::roll({.velocity_m_s = [=](double t) -> Eigen::Vector3d {
                             const double heading = 0.25 * 3.141592653589793 + sway_rad * std::sin(2.0 * t);
@@ -117,7 +118,7 @@ TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
   EXPECT_LT(plausibility.unexplained_rotation_ratio(state), 0.2) << "the slope alone would let it pass";
   EXPECT_FALSE(plausibility.verdict(state).ok());
   EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.15), {})).ok());
-  // on a straight path, both namings fit equally, and neither is reported
+  // on a straight path, both axis labels fit equally, so no fault is reported
   EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.0), swapped)).ok());
 }
 
@@ -162,12 +163,12 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   const Status thrown = plausibility.verdict(of_a_throw(12.0, 0.1));  // 14 m/s^2
   EXPECT_TRUE(thrown.ok()) << thrown.message();
   EXPECT_EQ(plausibility.unexplained_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
-  // a constant force of gravity's size is indistinguishable from gravity
+  // a constant force with the magnitude of gravity is indistinguishable from gravity
   EXPECT_FALSE(plausibility.verdict(of_a_throw(10.0, 0.0980665)).ok());
 }
 
-// Twice moved far aside by hand and back, then a little aside, and released: the force of a free pendulum always points
-// along its rod.
+// Returns the state after the motion of a pendulum. A hand lifts the pendulum twice far aside and back, then a little
+// aside, and releases it. The force of a free pendulum always points along its rod.
 ImuPlausibility::State of_a_pendulum(double gyro_scale) {
   constexpr double kLength_m = 0.5, kDt_s = 0.01;
   constexpr double kFar_rad = 1.2, kLittle_rad = 0.35, kLift_s = 0.7, kBack_s = 2.8, kLet_go_s = 3.5;
@@ -210,7 +211,8 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
   }
 }
 
-// pushes reduce the slope; another sign or scale would leave a smaller residual
+// Pushes and a wrong gyro scale both change the slope. A corrected scale reduces the residual only if the gyro's scale
+// is wrong.
 TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   const ImuPlausibility plausibility({});
   const auto verdict_at = [&](double force_rotation_rad2, double correlation) {
@@ -235,13 +237,14 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   EXPECT_FALSE(verdict_at(4.0, 0.9)) << "half the scale";
   EXPECT_FALSE(verdict_at(0.3 * 0.3, 0.4)) << "a multiple of it";
   EXPECT_FALSE(verdict_at(4.9, 0.9)) << "half the scale, and pushes";
-  // a hand that swings the sensor about an external point also pushes it, with or against the rotation
+  // a hand that swings the sensor about an external point also pushes the sensor, with or against the rotation
   EXPECT_TRUE(verdict_at(8.0, 0.62)) << "BROAD 07, a good gyro, slope 1.75";
   EXPECT_TRUE(verdict_at(9.0, 0.526)) << "BROAD 11, slope 1.58";
   EXPECT_TRUE(verdict_at(14.1, -0.13)) << "BROAD 27, slope -0.49";
 }
 
-// hill 85124: one window of a flight in which the force at the IMU has the size of gravity and rotates
+// In the run `hill` 85124, the flight contains one window in which the force at the IMU has the magnitude of gravity
+// and rotates.
 TEST(ImuPlausibility, AFewWindowsSayNothingOfTheTurning) {
   const ImuPlausibility plausibility({});
   const auto after_rotations = [&](int turns) {
@@ -270,7 +273,8 @@ TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
   EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
 }
 
-// Its size is not sufficient either: the force at a spinning rig's IMU in flight can be as constant.
+// A constant magnitude does not identify gravity, because the force at a spinning rig's IMU in flight can be as
+// constant.
 TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
   const auto verdict = [](double range_rad_s) {
     const ImuPlausibility plausibility({.gyro_range_rad_s = range_rad_s});

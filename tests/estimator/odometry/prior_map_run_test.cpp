@@ -22,7 +22,7 @@ TumblingOdometry::Params rig_params() {
   return params;
 }
 
-/// Returns a slow rotation that swings through metres.
+/// Returns a slow rotation with an oscillating translation of metres.
 test::Motion motion(double swing) {
   test::Motion out;
   out.rest_s = 0.6;

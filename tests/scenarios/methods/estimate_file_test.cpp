@@ -48,7 +48,7 @@ class EstimateFile : public ::testing::Test {
 };
 
 TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
-  // this recording is half as long as the one of other tests
+  // this recording is half as long as the recording of other tests
   const sim::Recording rig =
       testing::synthetic_rig({.angle_rad = 12.0, .start_s = 1.0, .end_s = 2.6, .duration_s = 3.2});
   const sim::Recording sphere = testing::synthetic_sphere();
@@ -153,7 +153,7 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
 }
 
-// without this check, a device that gives zeros for ever would be read into memory
+// without this check, the reader would read an endless device such as /dev/zero into memory
 TEST_F(EstimateFile, ALineWithoutEndIsRefused) {
   const std::string said = complaint(write("z.tum", "0 1 2 3 0 0 0 1\n" + std::string((1 << 20) + 1, '\0')));
   EXPECT_NE(said.find("z.tum:2: the line has more than 1048576 bytes, so this is not a line of a table"),
@@ -232,7 +232,7 @@ TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
   EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).map.size(), 0u);
 }
 
-// the file is written under a temporary name and then renamed, as all other files are
+// the program writes the file under a temporary name and then renames the file
 TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
   const std::filesystem::path path = write("rates.csv", "old\n");
   const auto text = [&] {

@@ -16,14 +16,14 @@
 #include "sim/random/stream.hpp"
 #include "tests/tree.hpp"
 
-// A live method must answer before it receives the following readings. The answer must have identical bits for any
-// following readings, and without them.
+// A live method must report a state before it receives later readings. The reported state must be bitwise equal for any
+// later readings, and without later readings.
 namespace tumble::scenarios {
 namespace {
 
 struct Live {
   const char* method;
-  double lag_s;  ///< age of the readings whose answers are final
+  double lag_s;  ///< age of the readings whose reported states are final
 };
 
 void PrintTo(const Live& live, std::ostream* out) {
@@ -31,8 +31,8 @@ void PrintTo(const Live& live, std::ostream* out) {
 }
 
 constexpr double kRateLagS = 0.2;   // RateStream::Params::lag_s
-constexpr double kSweepLagS = 0.4;  // 0.3 s after the sweep's end, for the poses since its start
-constexpr double kRollLagS = 1.22;  // lag_s of 1 s, a block of 0.2 s, and one node of 0.02 s
+constexpr double kSweepLagS = 0.4;  // the poses since the sweep's start are final 0.3 s after the sweep's end
+constexpr double kRollLagS = 1.22;  // sum of lag_s (1 s), a block (0.2 s) and a node (0.02 s)
 
 const std::vector<Live> kLive = {
     {"rate/raw", 0.0},
@@ -57,7 +57,7 @@ const std::vector<Live> kLive = {
     {"slam/tumble_live", 0.0},
 };
 
-/// A Fault replaces the readings from sample `from` on by faulty ones.
+/// A Fault replaces the readings from sample `from` on by faulty readings.
 using Fault = std::function<void(std::size_t from, sim::ImuRecord& imu)>;
 
 /// Limits each axis to half of its largest reading.
@@ -108,7 +108,7 @@ void keep_first(std::size_t count, std::vector<Row>& rows) {
   if (rows.size() > count) rows.resize(count);
 }
 
-/// Keeps the readings up to a time, which are those that a robot has received by then.
+/// Keeps the readings that a robot has received up to a given time.
 void truncate(std::int64_t end_ns, sim::Sensors& sensors) {
   for (sim::ImuRecord& imu : sensors.imus) {
     const auto end = std::upper_bound(imu.time_ns.begin(), imu.time_ns.end(), end_ns);
@@ -147,7 +147,7 @@ bool same(const PoseState& a, const PoseState& b) {
          a.v_WA_m_s == b.v_WA_m_s && a.covariance == b.covariance;
 }
 
-/// A Comparison contains the number of compared answers, and the time of the first one that differs.
+/// A Comparison contains the number of compared states, and the time of the first different state.
 struct Comparison {
   std::size_t answers = 0;
   std::int64_t differs_ns = -1;
@@ -177,7 +177,7 @@ sim::Sensors simulated(const char* scenario, std::uint64_t seed, sim::Truth& tru
   return draw.recording.sensors;
 }
 
-/// Returns the rig in its room, with noise: readings without noise would count as frozen.
+/// Returns the rig in its room. The readings have noise, because readings without noise would count as frozen.
 sim::Recording noisy_rig() {
   testing::SyntheticMotion motion;
   motion.start_s = 0.9;
@@ -228,7 +228,7 @@ const CutRecording& roll_run() {
 
 const CutRecording& mapped_run() {
   static const CutRecording run = {noisy_rig().sensors,
-                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // it saturates after 1.85 s
+                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // the gyro saturates after 1.85 s
   return run;
 }
 

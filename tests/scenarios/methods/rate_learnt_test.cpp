@@ -30,8 +30,8 @@ sim::Values defaults() {
   return resolve_settings("method.rate/tumble", {}, stages);
 }
 
-// the synthetic rig never flies: runs that learn nothing must not increase the uncertainty of the next runs beyond the
-// prior
+// the synthetic rig never flies, so its runs do not improve the calibration; the next run must not have a larger
+// uncertainty than the prior
 TEST(RateLearnt, RunsThatLearnNothingDoNotWearOutThePrior) {
   const sim::Recording recording = testing::synthetic_rig();
   std::optional<CalibratedRig> rig, next;
@@ -53,7 +53,7 @@ TEST(RateLearnt, TheNextRunStartsFromWhatItIsGiven) {
   given.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
   ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &given, &found).status.ok());
   ASSERT_TRUE(found);
-  // four times the given covariance is a standard deviation of 2e-6
+  // four times the stated covariance corresponds to a standard deviation of 2e-6
   EXPECT_NEAR((found->calibration.constants.lever_arm_m - given.calibration.constants.lever_arm_m).norm(), 0.0, 1e-5);
 }
 
@@ -96,7 +96,8 @@ TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
       moved = std::max(moved, (informed.rates[k].w_WI_I_rad_s - fresh.rates[k].w_WI_I_rad_s).norm());
     }
     EXPECT_GT(moved, 1e-3) << name;  // the file counts
-    // in the middle of the first rest the rate is the reading less the bias: the bias of the other run is not used
+    // in the middle of the first rest, the rate is the reading minus the bias, so the method must not use the bias of
+    // the other run
     EXPECT_LT(informed.rates[150].w_WI_I_rad_s.norm(), 1e-3) << name;
     const bool held = informed.health.at("calibration_at_prior") > 0.5, batch = std::string(name) == "rate/tumble";
     const bool doubted = has_finding(HealthFinding::Kind::rig_calibration, informed);
@@ -118,7 +119,7 @@ sim::Sensors hill_of_one_rig(std::uint64_t seed) {
   return simulate_draw(data, scenario, seed, 1, Lidars::left_out).recording.sensors;
 }
 
-// the estimator is certain of the given inertia, and takes what contradicts it for contact
+// the stated inertia has a small uncertainty, so the estimator classifies contradicting samples as contact
 TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
   const Method& batch = *find_methods("rate/tumble").front();
   RigCalibrationUse first;
@@ -177,7 +178,7 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   SaturationLevels rails;
   EXPECT_FALSE(calibration_with_rails(before, rails).has_value());
   rails.planes.element[0] = plane;
-  rails.planes.element[1] = before.planes().element[1];  // as a run gives it back that did not meet it
+  rails.planes.element[1] = before.planes().element[1];  // as returned by a run that did not reach this plane
   const std::optional<CalibratedRig> after = calibration_with_rails(before, rails);
   ASSERT_TRUE(after);
   EXPECT_EQ(after->gyro_planes_rad_s[0][1], 7.3);
@@ -189,8 +190,8 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   EXPECT_FALSE(calibration_with_rails(before, rails).has_value()) << "not sure";
 }
 
-// The live method finds an accelerometer delay of 10 ms in the first tumble of a device and knows it from the start of
-// the next run; it reports no delay for an accelerometer without one.
+// The live method estimates an accelerometer delay of 10 ms in the first tumble of a device. The next run starts with
+// the estimated delay. For an accelerometer without delay, the method reports no delay.
 TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
   const DataRoot data{test::source_dir()};
   const Scenario hill = load_scenario(data, "hill");
@@ -215,9 +216,8 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
   }
 }
 
-// the fields are the axis, the number of samples of either sign, the slope and its uncertainty A wand determines
-// neither lever arm nor inertia, but its saturation planes: a run that is too short to show them gets them from the run
-// before.
+// The motion of a wand determines the saturation planes, but not the lever arm or the inertia. A run that is too short
+// for the estimation of the planes uses the planes of the previous run.
 TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
   const DataRoot data{test::source_dir()};
   sim::Recording recording = simulate_draw(data, load_scenario(data, "twirl"), 99560, 1, Lidars::left_out).recording;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks that the methods `tumble` and `tumble_lag` use what a recording contains besides the primary IMU's
-// readings (further IMUs, the device's clip flags, stated ranges, saturation of the accelerometer), and report what
-// looks wrong.
+// readings (further IMUs, the device's clip flags, stated ranges, saturation of the accelerometer), and report faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +30,7 @@ double clipped_median(const std::string& method, const sim::Recording& recording
   return NAN;
 }
 
-// adds a second IMU of the same kind elsewhere on the body, turned, half a period late
+// adds a second IMU of the same kind at another position and orientation, with samples half a period later
 void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
   const testing::SyntheticMotion motion;
   sim::ImuRecord record = recording.sensors.imus.front();
@@ -54,7 +53,7 @@ void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool 
   recording.truth.imus.push_back(truth);
 }
 
-// the turn is forced and no torque-free flight, so one IMU alone cannot determine the saturated rate
+// an external torque causes the rotation, so one IMU alone cannot determine the saturated rate
 TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   const sim::Recording alone = testing::synthetic_rig();
   sim::Recording reference = alone, gyro = alone, accelerometers = alone;
@@ -136,8 +135,8 @@ TEST(RateRecording, UnitsThatLookWrongAreTold) {
   EXPECT_EQ(estimated_rates("tumble", in_g).health.at("force_unit_suspect"), 1.0);
 }
 
-// an accelerometer axis is saturated in a fall about the centre of mass: with a stated range the reading is a bound,
-// and a bound taken for a measured value misleads
+// an accelerometer axis is saturated during a rotation in free fall; with a stated range, the method uses the reading
+// as a bound, and without a range, the method mistakes the bound for a measurement
 TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();

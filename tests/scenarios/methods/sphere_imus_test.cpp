@@ -47,7 +47,7 @@ sim::Sensors three(const sim::ImuRecord& second, const sim::ImuRecord& third) {
   return sensors;
 }
 
-/// Returns the entries of the health about the faults.
+/// Returns the health entries about faults of the IMUs.
 std::map<std::string, double> rows_of(const MergedImus& merged) {
   Estimate estimate;
   add_findings(merged.merged.faults, merged.names, estimate);
@@ -69,11 +69,11 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   EXPECT_EQ(merged.merged.units.size(), 3U);
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
-  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2; the mean of three units has a
-  // third of that
+  // between two samples, linear interpolation has an error of w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2; the mean of three
+  // units has a third of this error
   EXPECT_LT(worst_rate_error(merged), 1e-4);
-  // merged sample by sample without alignment, the readings would be wrong by the distance of their stamps times the
-  // acceleration of 9 rad/s^2
+  // without alignment, the error of the readings would be the distance of their stamps times the acceleration of 9
+  // rad/s^2
   EXPECT_GT((rate_at(1.0013) - rate_at(1.0)).norm() / 3.0, 1e-3);
 }
 
@@ -84,7 +84,7 @@ TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.units.size(), 3U);
   EXPECT_EQ(merged.merged.units[2].unit, 2U);
-  // the offset is relative to the mean of the three units, which is a third of the delay late itself
+  // the offset is relative to the mean of the three units, and the mean is late by a third of the delay
   EXPECT_NEAR(merged.merged.units[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
   EXPECT_NEAR(merged.merged.units[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
   EXPECT_GT(merged.merged.units[2].time_offset_sigma_s, 0.0);
@@ -117,7 +117,7 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
-// a loose cable removes rows and leaves no faulty numbers
+// a loose cable removes whole rows, and leaves all other rows correct
 TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
   constexpr std::size_t kFrom = kSamples / 3, kTo = kFrom + 500;
   for (const bool returns : {true, false}) {
@@ -149,7 +149,7 @@ TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
     ASSERT_EQ(merged.merged.faults.findings.size(), 1U) << frozen;
     EXPECT_NEAR(rows_of(merged).at(record.name + "_frozen_since_s"),
                 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
-    EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // nothing was learnt from it
+    EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // the calibration ignored the frozen IMU
   }
 }
 
@@ -164,7 +164,7 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
-/// Returns a record of a gyro of 5 rad/s whose axis z repeats its reading from a third of the run on.
+/// Returns a record of a gyro with a range of 5 rad/s. From a third of the run on, axis z repeats its reading.
 sim::ImuRecord frozen_z(sim::ImuRecord record) {
   record.stated_gyro_range_rad_s = 5.0;
   for (std::size_t k = kSamples / 3; k < kSamples; ++k) record.gyro_rad_s[k].z() = record.gyro_rad_s[kSamples / 3].z();

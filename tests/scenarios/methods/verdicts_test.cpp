@@ -52,7 +52,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 16202, 1);
   const Method& method = *find_methods("slam/tumble").at(0);
-  // the clocks differ by 20 ms and the mounting is wrong by 3 deg and 3 cm, twice what the priors assume
+  // the clocks differ by 20 ms, or the mounting is wrong by 3 deg and 3 cm; the method estimates both errors
   for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
     const Said good = said_of(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;
@@ -62,12 +62,12 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped", "lidar_ranges_long"}) {
     const Said bad = said_of(method, draw, wrong);
     EXPECT_TRUE(bad.status != OutcomeStatus::ok || bad.localised == 0.0) << wrong;
-    EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // otherwise, nothing was wrong
+    EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // control: the wrong input causes an error
   }
 }
 
-// The test checks the live method, which uses only earlier samples. TumblingOdometry reports this doubt to its user
-// too.
+// The test checks the method with a lag, which uses only past samples. TumblingOdometry::health() reports the same
+// finding.
 TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);
@@ -76,7 +76,7 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   EXPECT_EQ(said_of(method, draw, "lidar_ranges_long").localised, 0.0);
 }
 
-// The method learns a part of a mounting that is wrong by 10 deg: its end is wrong by 0.7 m, and the size of the
+// The method corrects a part of a mounting error of 10 deg, and the final position is wrong by 0.7 m. The size of the
 // correction reveals the fault.
 TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   const DataRoot data{test::source_dir()};
@@ -88,8 +88,8 @@ TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   EXPECT_GT(moved.ate_m, 0.3) << "nothing was wrong";
 }
 
-// A scale that all gyros share is corrected too when nothing contradicts it: the path is wrong by more than a metre,
-// and the forces of units at different positions reveal the fault.
+// If all gyros have the same wrong scale, the scale correction of the filter makes the path wrong by more than a metre.
+// The forces of IMUs at different positions reveal the wrong gyro scale.
 TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
@@ -102,8 +102,8 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   EXPECT_TRUE(tells("all_gyros_frozen"));
 }
 
-// Twice a wrong unit: what the sphere feels at rest is half of gravity, and its run is refused, not only doubted. In
-// the first case the axis' component is small and no other check detects it; in the second no moving signal remains.
+// In the first case, one axis is flipped, and its force component is too small for the other checks. In the second
+// case, all accelerometers are frozen, and the method rejects the run.
 TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
@@ -116,8 +116,8 @@ TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.error_code, ErrorCode::out_of_range);
 }
 
-// The positions of the units make the forces differ by 6 to 9 % less than they should; gravity shows that the gyros are
-// right.
+// In this draw, the force differences between the IMUs are 6 to 9 % too small, because of errors in the IMU positions.
+// The rotation of gravity confirms the gyros.
 TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
@@ -141,8 +141,7 @@ TEST(Verdicts, PositionDivergesWithForcesOfHalfTheSize) {
   EXPECT_NEAR(estimate.health.at("imu_rest_force_share"), 0.5, 0.02);
 }
 
-// The stamps are microseconds instead of nanoseconds: the whole run lasts some milliseconds, and every rate and path is
-// that of another motion.
+// The time stamps are in microseconds instead of nanoseconds, so the whole run lasts only some milliseconds.
 TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
@@ -155,7 +154,7 @@ TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   }
 }
 
-// The rotation from one rest to the next must turn gravity accordingly, also when the method estimates attitudes.
+// The rotation from one rest to the next must be consistent with gravity. The methods for attitude test this too.
 TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 91001, 1, Lidars::left_out);
@@ -190,8 +189,8 @@ SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
   return out;
 }
 
-// Between the rests there are flights, impacts and saturated axes: gravity at the rests before and after a tumble shows
-// whether the rates can be correct.
+// The tumble contains flights, impacts and saturated axes. Gravity at the rests before and after the tumble reveals
+// wrong rates.
 TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
@@ -199,7 +198,7 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
   EXPECT_FALSE(good.mislabelled_axes);
-  // in a mirrored world gravity turns as it should, and only the flight reveals the fault
+  // with an inverted accelerometer, gravity rotates as the gyro measures, and only the flight reveals the fault
   const SaidOfRates mirrored = rates_of(draw, "accel_flipped");
   EXPECT_TRUE(mirrored.implausible);
   EXPECT_TRUE(mirrored.mislabelled_axes);
@@ -211,8 +210,8 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   EXPECT_TRUE(frozen.z_frozen);
 }
 
-// The gyro is saturated in its flights too: while saturated readings did not count, no flight remained for either the
-// right or another sense (docs/maths/imu_merge.md (I32)).
+// The gyro is saturated in every flight of this draw, so the check must also use saturated readings:
+// docs/maths/imu_merge.md (I32).
 TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
@@ -221,8 +220,8 @@ TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
     EXPECT_TRUE(rates_of(draw, wrong).mislabelled_axes) << wrong;
 }
 
-// The attitude after a gap in a tumble was wrong by radians with a small covariance before gaps were bridged
-// (attitude.md (A17)).
+// After a gap in a tumble, the attitude is wrong by radians, and the covariance must include this error: attitude.md
+// (A17).
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
@@ -235,11 +234,11 @@ TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
     const Eigen::Vector2d off = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
     beyond += off.norm() > 3.0 * std::sqrt(attitude.covariance_rad2.topLeftCorner<2, 2>().trace()) ? 1.0 : 0.0;
   }
-  // nine of ten moving samples were wrong by up to 20 standard deviations
+  // without a bridged gap, nine of ten moving samples exceed the bound
   EXPECT_LT(beyond, 0.01 * static_cast<double>(estimate.attitudes.size()));
 }
 
-// The wand never rests, and no window of constant force reveals the fault.
+// The wand never rests, so no window of constant force reveals the fault.
 TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
@@ -248,7 +247,7 @@ TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   EXPECT_TRUE(rates_of(draw, "gyro_scale_5_percent").implausible);
 }
 
-// The checks of a gyro that integrates an attitude are the same as those of a reported rate.
+// The methods for attitude check the gyro in the same way as the methods for rates.
 TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
@@ -261,7 +260,7 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_z_flipped"));
 }
 
-// Whether a run is wrong depends on the covariances from before it reported a doubt, whatever it adds afterwards.
+// The scoring uses the covariances from before the findings increased them.
 TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);

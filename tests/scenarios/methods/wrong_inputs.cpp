@@ -28,13 +28,13 @@ void freeze(std::vector<Eigen::Vector3d>& readings) {
   for (std::size_t k = readings.size() / 3; k < readings.size(); ++k) readings[k] = readings[readings.size() / 3];
 }
 
-/// Freezes an axis from a time within the motion on.
+/// Freezes an axis from a fifth of the recording on, which is during the motion.
 void freeze_axis(std::vector<Eigen::Vector3d>& readings, int axis) {
   const std::size_t from = readings.size() / 5;
   for (std::size_t k = from; k < readings.size(); ++k) readings[k][axis] = readings[from][axis];
 }
 
-/// Subtracts gravity as a mean over a second shows it, as devices do that give "linear acceleration".
+/// Subtracts the mean force over a second, as devices that report "linear acceleration" do.
 void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<std::int64_t>& time_ns) {
   constexpr double kMean_s = 1.0;
   Eigen::Vector3d gravity = forces.empty() ? Eigen::Vector3d::Zero() : forces.front();
@@ -46,7 +46,7 @@ void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<st
   if (forces.size() > 1) forces.front() = forces[1];
 }
 
-/// Returns the sample before which the first IMU's gyro changes most, which is that of an impact.
+/// Returns the sample with the largest change of the first IMU's gyro reading, which an impact causes.
 std::size_t hardest_impact(const sim::ImuRecord& imu) {
   std::size_t hardest = 0;
   double change = 0.0;
@@ -57,8 +57,7 @@ std::size_t hardest_impact(const sim::ImuRecord& imu) {
   return hardest;
 }
 
-/// Removes the samples of all IMUs for a time about the hardest impact: neither the rate nor the force of the impact is
-/// read.
+/// Removes the samples of all IMUs for a time about the hardest impact.
 void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
   if (sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return;
   const std::int64_t from_ns = sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2;
@@ -75,7 +74,7 @@ void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
   }
 }
 
-/// The lidars lose their sweeps for so long, about the hardest impact.
+/// Removes the sweeps of all lidars for a time about the hardest impact.
 void silence_lidars(sim::Sensors& sensors, std::int64_t for_ns) {
   const std::int64_t from_ns = sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2;
   for (sim::LidarRecord& lidar : sensors.lidars) {
@@ -98,7 +97,7 @@ void silence_lidars(sim::Sensors& sensors, std::int64_t for_ns) {
   }
 }
 
-/// The times of the points run backwards within each sweep.
+/// Reverses the order of the point times within each sweep.
 void reverse_point_times(sim::Sensors& sensors) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     for (std::size_t k = 0; k + 1 < lidar.sweep_first.size(); ++k) {

@@ -59,7 +59,7 @@ TEST_F(Repoimu, TakesTheFileAsItIs) {
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("sample and hold")));
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("the accelerometer seems to be saturated")))
       << "gravity at rest is not saturated";
-  // the reference as it stands in the file
+  // expected reference, as written in the file
   ASSERT_TRUE(imported.reference);
   const sim::Truth& truth = *imported.reference;
   EXPECT_EQ(truth.period_ns, 10'000'000);
@@ -108,7 +108,7 @@ TEST_F(Repoimu, DelayRotationAndTiltOfTheReferenceAreFoundAndTakenOut) {
   EXPECT_LT(median(errors), 0.1) << "rates of the truth at samples that clip";
 }
 
-// a slow sensor in a fast log repeats its readings, those of the accelerometer for longer
+// a slow sensor in a fast log repeats its readings; the accelerometer is slower than the gyro
 TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   Wand wand;
   wand.log_hz = 90.0, wand.gyro_hz = 50.0, wand.accel_hz = 25.0, wand.decimals = 3;
@@ -118,7 +118,7 @@ TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   EXPECT_THAT(all_notes(imported),
               HasSubstr("(sample and hold): 44.5 % of the gyro's rows and 72.2 % of the accelerometer's"));
   EXPECT_NEAR(static_cast<double>(imu.period_ns), 20e6, 0.5e6) << "get the sample times of the gyro";
-  // the period is the sensor's, although readings appear up to a step of the log late
+  // the period equals the sensor's period, although readings appear up to one log step late
   double error = 0.0, held_error = 0.0;
   std::size_t count = 0;
   for (std::size_t k = 20; k + 20 < imu.time_ns.size(); ++k) {
@@ -152,7 +152,7 @@ TEST_F(Repoimu, GlitchesOfTheReferenceAreLeftOutWithACount) {
   EXPECT_LT(fastest, 13.0) << "the motion's own peak is 11.8";
   EXPECT_GT(unknown, 3u * 15u);
   EXPECT_LT(unknown, 3u * 40u) << "and little beside them";
-  // control: without flips, the same recording loses only its two ends
+  // negative control: without flips, only the two ends of the recording are dropped
   wand.flips_s = {};
   const Imported clean = import(repoimu_text(wand));
   EXPECT_THAT(all_notes(clean), HasSubstr("reference: 0 of 4000 samples are left out"));
@@ -178,8 +178,7 @@ TEST_F(Repoimu, WhatPublishedFilesHoldIsRead) {
   Wand wand;
   wand.duration_s = 10.0;
   const std::string text = repoimu_text(wand);
-  // the file has other line ends, a decimal comma, an attitude that is an average of two, and headers like those of the
-  // pendulum
+  // the file has other line ends, a decimal comma, an averaged attitude, and the headers of the pendulum files
   std::string windows;
   for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(import(windows).sensors.imus[0].time_ns.size(), 1000u);
@@ -217,7 +216,7 @@ TEST_F(Repoimu, ASaturatedAccelerometerIsNoted) {
   EXPECT_THAT(all_notes(import(text)), HasSubstr("the accelerometer seems to be saturated"));
 }
 
-// columns are found by their names
+// the reader finds columns by their names
 TEST_F(Repoimu, ColumnsMayStandElsewhere) {
   Wand wand;
   wand.duration_s = 5.0;
@@ -290,7 +289,7 @@ TEST_F(Repoimu, ReadsTheStandIn) {
   EXPECT_EQ(wand.sensors.imus[0].time_ns.size(), 12000u);
   EXPECT_THAT(all_notes(wand), HasSubstr("units and axes agree"));
   EXPECT_THAT(all_notes(wand), HasSubstr("jumps of up to"));
-  // where the gyro is not saturated, the reference's rate must be the gyro's
+  // while the gyro is unsaturated, the reference's rate must equal the gyro's rate
   std::vector<double> errors;
   const sim::ImuRecord& imu = wand.sensors.imus[0];
   const std::vector<Eigen::Vector3d>& rates = wand.reference->imus.at(0).rate_rad_s;
@@ -302,8 +301,8 @@ TEST_F(Repoimu, ReadsTheStandIn) {
   EXPECT_LT(median(errors), 0.02);
 }
 
-/// RepoimuPublished tests the published files where they are available: they are not part of the project, and the suite
-/// exists only with them.
+/// RepoimuPublished tests the published files, which are not part of the project. The tests exist only if the files are
+/// available.
 class RepoimuPublished : public ::testing::TestWithParam<std::filesystem::path> {};
 
 INSTANTIATE_TEST_SUITE_P(Files, RepoimuPublished, ::testing::ValuesIn(test::published_folders("repoimu")));

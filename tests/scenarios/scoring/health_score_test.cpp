@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The health of an estimate as a classifier, and the status of a run that reports itself.
+// Tests of the health as a classifier of wrong estimates, and of the status of a run whose health invalidates the
+// estimate.
 #include <gtest/gtest.h>
 
 #include "scenarios/methods/findings.hpp"
@@ -17,7 +18,7 @@ HealthFinding finding(HealthFinding::Kind kind) {
   return {kind, "imu", "", "quantity", 2.0, 1.0, 0.5};
 }
 
-/// Rates that are `share` too fast.
+/// Returns rates that are too large by the fraction `share`.
 Estimate fast_rates(double share) {
   Estimate estimate = perfect_estimate(rig());
   for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s *= 1.0 + share;
@@ -32,7 +33,7 @@ TEST(HealthScores, AWrongRateIsWrongWhateverItsHealthAddsToTheCovariance) {
   wrong.suspect_rad2_s2.assign(wrong.rates.size(), 100.0 * Eigen::Matrix3d::Identity());
   for (RateState& rate : wrong.rates) rate.covariance_rad2_s2 += 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_wrong"), 1.0);
-  Estimate gross = fast_rates(0.3);  // no covariance excuses it
+  Estimate gross = fast_rates(0.3);  // the estimate is wrong for any covariance
   for (RateState& rate : gross.rates) rate.covariance_rad2_s2 = 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_EQ(scores(Kind::rate, gross, rig()).at("health_wrong"), 1.0);
 }

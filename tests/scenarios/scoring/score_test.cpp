@@ -45,7 +45,7 @@ TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
   }
 }
 
-// the test computes every metric of every kind for an estimate that is the truth in another world frame
+// the test computes all metrics for an estimate that equals the truth in another world frame
 TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
   const std::set<std::string> shares = {"rate_coverage_3sigma", "rate_coverage_3sigma_flight",
                                         "rate_coverage_3sigma_impact", "map_coverage"};
@@ -56,8 +56,7 @@ TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
     ASSERT_GE(values.size(), 4u) << to_string(kind);
     for (const auto& [name, value] : values) {
       if (name == "map_unique_share") continue;  // at rest every sweep truly hits the same points
-      // the tolerance covers rounding and the truth's interpolation
-      EXPECT_NEAR(value, shares.contains(name) ? 1.0 : 0.0, 1e-9) << name;
+      EXPECT_NEAR(value, shares.contains(name) ? 1.0 : 0.0, 1e-9) << name;  // rounding, interpolation of the truth
     }
     EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::ok);
   }
@@ -128,7 +127,7 @@ TEST(RateScores, CoverageCountsClippedAxesWithinThreeSigma) {
               1e-15);
 }
 
-// One method shortens the last sweep and another drops it: both are compared at the sweep before.
+// If a method shortens or drops the last sweep, the scoring compares all methods at the previous sweep.
 TEST(EndPose, EveryMethodEndsAtTheLastSweepThatTheImuCovers) {
   sim::Recording recording = rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
@@ -162,7 +161,7 @@ TEST(RateScores, OneNaNSpoilsTheFigure) {
 }
 
 TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
-  // after a turn about z, a tilt about a horizontal axis follows: inclination and heading are the two angles
+  // the error is a rotation about z (heading), followed by a tilt about a horizontal axis (inclination)
   const double tilt = 0.1;
   const double yaw = 0.3;
   Estimate estimate = perfect_estimate(rig());
@@ -174,7 +173,7 @@ TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
   EXPECT_NEAR(values.at("inclination_rmse_rad"), tilt, 1e-9);
   EXPECT_NEAR(values.at("heading_rmse_rad"), yaw, 1e-9);
   EXPECT_NEAR(values.at("attitude_rmse_rad"), 2.0 * std::acos(std::cos(tilt / 2) * std::cos(yaw / 2)), 1e-9);
-  // the first sample is right and at rest, so the RMSE is sqrt((n - 1) / n) of the error of the others
+  // the first sample is correct and at rest, so the RMSE is sqrt((n - 1) / n) times the error of the other samples
   EXPECT_NEAR(values.at("inclination_rmse_rest_rad"), tilt, 1e-3);
 }
 
@@ -196,7 +195,7 @@ TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
 }
 
 TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
-  // the estimate moves 10 % too far along the body's straight path, and 3 cm up on it
+  // the estimate moves 10 % too far along the body's straight path, and rises by 3 cm
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   const Eigen::Vector3d start = estimate.poses.front().p_WA_m;
   for (PoseState& pose : estimate.poses) pose.p_WA_m = start + 1.1 * (pose.p_WA_m - start);
@@ -206,14 +205,12 @@ TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
   EXPECT_NEAR(values.at("position_end_error_m"), 0.1 * length, 1e-9);
   EXPECT_NEAR(values.at("position_end_error_share"), 0.1, 1e-9);
   EXPECT_NEAR(values.at("position_height_error_max_m"), 0.1 * motion.displacement_m.z(), 1e-9);
-  // on a straight path every metre is 10 cm too long; segments end at the first sample beyond the metre
-  EXPECT_NEAR(values.at("rpe_1m_m"), 0.1, 1e-3);
+  EXPECT_NEAR(values.at("rpe_1m_m"), 0.1, 1e-3);  // segments end at the first sample beyond the metre
   EXPECT_NEAR(values.at("rpe_1m_rad"), 0.0, 1e-9);
 }
 
 TEST(PositionScores, TheShareIsOfTheSamePathInEveryFrame) {
-  // the offset is 5 cm at the end, in the frame of a point that turns around the centre of mass, and in that of the
-  // centre
+  // the offset is 5 cm at the end, both for a point that rotates about the centre of mass and for the centre
   const auto share_in = [](Frame frame) {
     Estimate estimate = perfect_estimate(rig(), frame);
     estimate.poses.back().p_WA_m.x() += 0.05;
@@ -256,7 +253,7 @@ TEST(AttitudeScores, TheTiltIsHeldToItsCovarianceWhateverTheHeading) {
   Estimate estimate = perfect_estimate(rig());
   EXPECT_FALSE(scores(Kind::attitude, estimate, rig()).contains("inclination_nees_median")) << "nothing is stated";
   for (AttitudeState& attitude : estimate.attitudes) {
-    // q_true = Exp(phi) q with phi about x and y of the estimate's own world frame, which is turned about the vertical
+    // q_true = Exp(phi) q, with phi about x and y of the estimate's world frame, which is rotated about the vertical
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
     attitude.q_WA = tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.q_WA;
   }
@@ -273,7 +270,7 @@ TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   for (PoseState& pose : estimate.poses) {
     const double t = 1e-9 * static_cast<double>(pose.time_ns);
-    // a jump in motion is no drift; 2 cm/s during the rest at the end is drift
+    // a jump during motion does not count as drift, but 2 cm/s during the rest at the end does
     if (t > 3.0) pose.p_WA_m.x() += 0.5;
     if (t > 5.0) pose.p_WA_m.y() += 0.02 * (t - 5.0);
   }
@@ -311,19 +308,17 @@ TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
   // the sweeps are wrong until the fifth and right from the sixth on, so the error is zero
   for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
-  // with one sweep rejected, the sixth registered sweep is the seventh of all
+  // with one rejected sweep, the sixth registered sweep is the seventh of all sweeps
   estimate.sweeps[2].verdict = SweepVerdict::rejected;
   estimate.sweeps[5].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
-  // the last sweep counts even when it is rejected
-  estimate.sweeps.back().verdict = SweepVerdict::rejected;
+  estimate.sweeps.back().verdict = SweepVerdict::rejected;  // the last sweep counts even if it is rejected
   estimate.sweeps.back().pose.p_WA_m += Eigen::Vector3d(0.0, 0.0, 0.25);
   estimate.sweeps.back().pose.q_WA =
       Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.q_WA;
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("translation_error_end_m"), 0.25, 1e-9);
-  // the angle is beyond 90 degrees, where a clamped arccos would stop
-  EXPECT_NEAR(values.at("rotation_error_end_rad"), 2.8, 1e-9);
+  EXPECT_NEAR(values.at("rotation_error_end_rad"), 2.8, 1e-9);  // a clamped arccos would give at most 90 degrees
 }
 
 TEST(EndPoseScores, FewerThanSixSweepsAreADivergence) {
@@ -339,8 +334,7 @@ TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
     for (PoseState& pose : estimate.sweeps[k].trajectory) {
       pose.v_WA_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
       const double t = 1e-9 * static_cast<double>(pose.time_ns);
-      // the error turns about the axis of the motion, where rates add
-      pose.q_WA = so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.q_WA;
+      pose.q_WA = so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.q_WA;  // axis of motion: rates add
     }
   }
   const auto values = scores(Kind::slam, estimate, rig());
@@ -375,7 +369,7 @@ TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
   stopped.attitudes.resize(stopped.attitudes.size() / 2);
   EXPECT_EQ(verdict_of(Kind::position, stopped, rig()), OutcomeStatus::diverged);
   EXPECT_EQ(verdict_of(Kind::attitude, stopped, rig()), OutcomeStatus::diverged);
-  // the estimate has only the easy half of the rates
+  // the estimate contains only the rates of unclipped samples
   Estimate picked = perfect_estimate(rig());
   const ClippingTruth truth(rig().sensors, rig().truth);
   std::erase_if(picked.rates, [&](const RateState& rate) { return truth.at(rate.time_ns)->clipped_axes != 0; });
@@ -383,7 +377,7 @@ TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
   EXPECT_EQ(verdict_of(Kind::rate, Estimate{}, rig()), OutcomeStatus::diverged);
 }
 
-// A lidar or an IMU that starts late leaves no hole in the estimate.
+// The time before a late start of lidar or IMU does not count as a gap in the estimate.
 TEST(Verdict, TheTimeBeforeTheSensorsStartIsNoHole) {
   sim::Recording late = rig();
   const std::int64_t start_ns = late.sensors.imus.front().time_ns.back() * 2 / 5;

@@ -136,10 +136,10 @@ class RateSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateSmoother(const Params& params);
 
-  /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written. The returned
-  /// status contains field, value and bound. The kind of error is `empty`, `too_few` (less than two samples),
-  /// `non_finite`, `time_order` or `diverged`. After a gap in the samples, the calibration continues, and the white
-  /// angular jerk leaves the rate after the gap independent of the rate before it.
+  /// Computes one RateState per sample, and the diagnostics of the run. On error, the outputs are unchanged. The
+  /// returned Status contains the faulty field, its value and its bound. The kind of error is `empty`, `too_few` (less
+  /// than two samples), `non_finite`, `time_order` or `diverged`. RateSmoother keeps the calibration across a gap in
+  /// the samples. Due to the white angular jerk, the rate after a gap is independent of the rate before the gap.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }

@@ -73,7 +73,7 @@ class RateStream {
 
   /// Reports current faults of the IMU: frozen axes (FrozenAxes), forces in flight that fit another sign or scale
   /// (FlightSignCheck), and rates beyond RateModelParams::rate_max_rad_s, which are possibly not in rad/s. While a gyro
-  /// axis is frozen, the standard deviation of its rate is the largest rate read so far.
+  /// axis is frozen, the rate about this axis has the largest rate read so far as standard deviation.
   SensorHealth health(const State& state) const;
 
   /// Returns the estimated rig constants and their covariance.

@@ -18,7 +18,7 @@ namespace tumble {
 /// after averaging. Set each spread parameter to at least five standard deviations of the averaged noise. A steady
 /// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 ///
-/// Each class that uses RestDetector has its own default parameters, as docs/design.md explains.
+/// Each class that uses RestDetector has separate default parameters.
 class RestDetector {
  public:
   struct Params {

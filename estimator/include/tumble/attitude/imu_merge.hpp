@@ -110,10 +110,10 @@ class ImuMerge {
   /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are
   /// frozen, step() merges their readings unchanged.
   Status verdict(const State& state) const;
-  /// Adds a finding about a unit that is frozen or disagrees with the other units.
+  /// Adds a finding for each IMU that is frozen or disagrees with the other IMUs.
   void add_finding(const Unit& unit, const std::string& name, SensorHealth& health) const;
-  /// Adds findings about all units together: axes that UnitSignCheck found exchanged or inverted, and
-  /// lever_arm_agreement(). `gyro_confirmed` states that another check confirms the scale of the gyros.
+  /// Adds findings about all IMUs together: exchanged or inverted axes (UnitSignCheck), and a wrong scale
+  /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
   static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
                            const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
 

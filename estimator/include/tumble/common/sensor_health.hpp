@@ -17,9 +17,9 @@ struct HealthFinding {
   enum class Kind : std::uint8_t {
     frozen_axis,        ///< one axis of a gyro or an accelerometer repeats one reading
     frozen_sensor,      ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
-    unit_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes; the others are used
+    unit_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes
     unit_silent,        ///< one of several IMUs delivers no readings
-    unit_disagrees,     ///< one of several IMUs differs from the others, which are used
+    unit_disagrees,     ///< one of several IMUs differs from the other IMUs
     rate_unit,          ///< the rates are possibly not in rad/s
     force_unit,         ///< the specific forces are possibly not in m/s^2
     force_at_rest,      ///< the specific force at rest has another magnitude than gravity
@@ -30,7 +30,7 @@ struct HealthFinding {
     beyond_range,       ///< readings exceed the range of the device; value: their number
     rounded_stamps,     ///< time stamps are rounded more coarsely than the IMU's period
     lidar_scale,        ///< the lidar's ranges have another scale than the motion
-    lidar_calibration,  ///< mounting or clock of the lidar differ from the stated ones
+    lidar_calibration,  ///< mounting or clock of the lidar differ from the stated values
     rig_calibration,    ///< a stored calibration belongs to another rig
     attitude_unknown,   ///< the direction of gravity is unknown; value: duration [s]
     vertical_unknown,   ///< the vertical of the map is uncertain after a start in motion
@@ -51,7 +51,7 @@ struct HealthFinding {
   bool ended = false;
 
   Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
-  /// Returns whether the estimate should not be used: its readings contradict each other, or its pose or map is wrong.
+  /// Returns whether the finding makes the estimate unusable: readings contradict each other, or pose or map are wrong.
   bool invalidates_estimate() const;
 };
 
@@ -74,8 +74,8 @@ struct SensorHealth {
   /// Returns whether a finding invalidates the estimate.
   bool invalidates_estimate() const;
 
-  /// Adds the finding of a check unless `status` is ok. `normal` is the value of the quantity without a fault. A second
-  /// finding of the same kind, sensor and axis only states that the fault has not ended.
+  /// Adds the finding of a check unless `status` is ok. `normal` is the value of the quantity without a fault. If a
+  /// finding of the same kind, sensor and axis exists, add() only marks its fault as not ended.
   void add(HealthFinding::Kind kind, const Status& status, std::string sensor, const char* axis = "",
            std::optional<TimeNs> since_ns = {}, double normal = 0.0);
   void add(HealthFinding finding);

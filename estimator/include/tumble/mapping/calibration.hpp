@@ -26,7 +26,8 @@ struct SweepCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
-/// Returns `out_of_range` if a calibration is more than StatedCalibration::kDistanceMax_sigmas from the stated one.
+/// Returns `out_of_range` if a calibration is more than StatedCalibration::kDistanceMax_sigmas from the stated
+/// calibration.
 Status verdict_on(double deviations);
 
 /// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part

@@ -27,7 +27,7 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
 /// flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with
-/// its RollingFilter) estimates the motion. With the whole recording, merge_recordings() flags and fuses.
+/// its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags and fuses the readings.
 ///
 /// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
 /// is the sphere's centre. The sphere should be at rest for one second at the start.
@@ -161,9 +161,9 @@ class RollingOdometry {
 
   /// Reports the suspected faults of the IMUs: frozen axes (FrozenAxes), units that are silent, frozen or disagree
   /// (ImuMerge), a force at rest that differs from gravity (RestGravity), and readings that contradict each other
-  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends. The readings
-  /// of a frozen unit are ignored. If all units with readings are frozen, add_imus() rejects the sample. With
-  /// kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
+  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends.
+  /// RollingOdometry ignores the readings of a frozen unit. If all units with readings are frozen, add_imus() rejects
+  /// the sample. With kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
   SensorHealth health() const;
 
   /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
@@ -190,8 +190,8 @@ class RollingOdometry {
   /// Returns the jitter of the time stamps [s], while SampleClock corrects the time stamps.
   std::optional<double> estimated_jitter_s() const;
 
-  /// Save the state, load a saved state, and read saved parameters, like the functions of TumblingOdometry. A saved
-  /// state has at most one megabyte plus the data of the lag.
+  /// The functions save(), load() and saved_params() work like the functions of TumblingOdometry. A saved state has at
+  /// most one megabyte plus the data of the lag.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
@@ -200,7 +200,7 @@ class RollingOdometry {
   /// alone.
   static RollingSmoother::Params smoother_params(const Params& params, const MergedRecordings& merged);
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -245,7 +245,7 @@ class RollingOdometry {
   std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all IMUs while OutlierFilter delays one IMU
   std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one detector per IMU
   Frozen frozen_{};
-  MergedChecks checks_;                          ///< and their states
+  MergedChecks checks_;                          ///< checks of the merged IMUs, with their states
   std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
   std::vector<RollingEstimate> results_;
   std::size_t returned_count_ = 0;
@@ -259,7 +259,7 @@ class RollingOdometry {
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
   };
-  std::optional<Restart> restart_;  ///< later poses are uncertain
+  std::optional<Restart> restart_;  ///< last restart; poses after a restart are uncertain
   bool live_ = true, finished_ = false;
 };
 

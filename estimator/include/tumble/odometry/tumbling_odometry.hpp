@@ -72,7 +72,8 @@ class TumblingOdometry {
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     LidarInertialOdometry::SweepReport report;
-    /// Transform to the frame of the position readings, from the readings up to the sweep's end. Empty: unknown.
+    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
+    /// Empty if unknown.
     std::optional<PositionFrame> position_frame;
   };
 
@@ -101,11 +102,11 @@ class TumblingOdometry {
   /// `out_of_range` if a time stamp exceeds 97 years or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. TumblingOdometry
-  /// registers the points of a further lidar together with the sweep of the first lidar at their time. The points of a
-  /// further lidar must therefore arrive before the registration of that sweep, which is `lag_s` after its end. A lag
-  /// of two sweeps suffices. The lidars need no synchronisation. Limitation: the ranges and the own-body box of the
-  /// first lidar also apply to the points of further lidars, in axes of the first lidar. Returns the errors of
-  /// add_sweep() for the first lidar, and `out_of_range` for an unknown lidar.
+  /// registers the points of a further lidar together with the simultaneous sweep of the first lidar. The points of a
+  /// further lidar must therefore arrive before the registration of the sweep, which is `lag_s` after the end of the
+  /// sweep. A lag of two sweeps suffices. The lidars need no synchronisation. Limitation: the ranges and the own-body
+  /// box of the first lidar also apply to the points of further lidars, in axes of the first lidar. Returns the errors
+  /// of add_sweep() for the first lidar, and `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
@@ -115,11 +116,11 @@ class TumblingOdometry {
   /// readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Processes a position reading, for example from GPS or a beacon. Readings do not change poses and map: they
-  /// determine Sweep::position_frame, in which poses do not drift (PositionAlignment). All readings are used, in any
-  /// order; each must arrive before its sweep is registered. Readings also work with kWholeRecording. On error the
-  /// state is unchanged. Returns the errors of add_velocity(); `out_of_range` also means that the covariance is not
-  /// symmetric and positive definite.
+  /// Processes a position reading, for example from GPS or a beacon. Position readings leave poses and map unchanged.
+  /// Position readings determine Sweep::position_frame, in which poses do not drift (PositionAlignment). Position
+  /// readings may arrive in any order, but before the registration of their sweep. Position readings also work with
+  /// kWholeRecording. On error, the state is unchanged. Returns the errors of add_velocity(); `out_of_range` also means
+  /// that the covariance is not symmetric and positive definite.
   Status add_position(const PositionReading& position);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
   std::optional<Sweep> take();
@@ -149,9 +150,10 @@ class TumblingOdometry {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
   /// finding ends when its cause ends (at the latest a minute later). The checks are RateStream::health(),
-  /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical and localised, Localisation and
-  /// StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and before
-  /// finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a finding.
+  /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
+  /// and StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and
+  /// before finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a
+  /// finding.
   SensorHealth health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const;
@@ -194,9 +196,9 @@ class TumblingOdometry {
 
   /// Saves the complete state: map, calibration, SecondPass, and sweeps that take() has not yet returned. The saved
   /// bytes are equal on every machine and include a checksum. An object with equal parameters that loads the bytes
-  /// continues with bit-identical results. Two states are equal if their saved bytes are equal. The size of a saved map
-  /// is in docs/tutorials/your_robot.md. With kWholeRecording, the bytes contain the recorded data instead of the
-  /// results. Call finish() after load() to compute the results again.
+  /// continues with bit-identical results. Two states are equal if their saved bytes are equal. With kWholeRecording,
+  /// the bytes contain the recorded data instead of the results. Call finish() after load() to compute the results
+  /// again.
   std::vector<std::byte> save() const;
   /// Replaces the state with a saved state. On error, the state is unchanged, and the returned status names the field,
   /// the stored value and the bound. The error is `too_few` (truncated bytes), `non_finite`, `time_order`, `gap` or
@@ -204,7 +206,7 @@ class TumblingOdometry {
   Status load(std::span<const std::byte> bytes);
   /// Reads the parameters that a saved state contains. On error, `params` is unchanged.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -73,7 +73,7 @@ struct TumblingParams {
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
   /// Box in lidar axes that contains the robot. TumblingOdometry drops lidar returns inside the box. The default, an
-  /// empty Eigen box, keeps all returns. A box with swapped corners is rejected.
+  /// empty Eigen box, keeps all returns. TumblingOdometry rejects a box with swapped corners.
   Eigen::AlignedBox3d own_body_L;
   std::vector<FurtherLidar> further_lidars;  ///< lidars in addition to the first; see TumblingOdometry::add_sweep()
   /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.

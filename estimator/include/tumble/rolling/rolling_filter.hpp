@@ -30,8 +30,8 @@ namespace tumble {
 ///
 /// RollingFilter averages the readings of a fast IMU over RollingExpertParams::reading_s, and extrapolates the estimate
 /// between averages. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and assumes an unknown force.
-/// After a gap, the covariance includes the errors of the interpolated rate and the unknown force. RollingFilter
-/// detects a start in motion, and increases the initial uncertainty.
+/// The covariance after a gap includes the errors of the interpolated rate and the unknown force. RollingFilter detects
+/// a start in motion, and increases the initial uncertainty.
 ///
 /// While the gyro is saturated, the attitude is uncertain, and RollingFilter does not use the rolling constraint.
 /// During gyro saturation, nothing corrects the position, and the covariance of the position grows. The state of

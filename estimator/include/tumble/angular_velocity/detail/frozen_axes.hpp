@@ -20,8 +20,8 @@ namespace tumble {
 /// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for `frozen_s`, and for ten times the
 /// longest earlier repetition. Before the repetition, the readings of the axis must have changed for an equal time.
 /// Another axis of the same sensor must change from sample to sample, by far more than the quantisation of the tested
-/// axis. FrozenAxes does not detect an axis whose readings never changed, or often repeat for long (coarse quantisation
-/// at rest).
+/// axis. FrozenAxes cannot detect a frozen axis whose readings never changed before, or often repeat at rest due to
+/// coarse quantisation.
 ///
 /// A working axis may repeat one reading because it is saturated. FrozenAxes treats a reading as saturated if the
 /// device flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts

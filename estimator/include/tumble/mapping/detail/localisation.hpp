@@ -11,10 +11,10 @@ namespace tumble {
 
 /// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, section
 /// 11). The function verdict() reports one of two permanent findings. First, the position's standard deviation exceeded
-/// the matching distance of surfaces. A sweep can then match any nearby surface, and a relocalisation is ambiguous.
-/// Second, surfaces corrected two or more sweeps beyond their priors. A single large correction may come from
-/// saturation that the rates underestimated. An IMU or a lidar that does not meet its data sheet causes several large
-/// corrections.
+/// the matching distance of surfaces. With so uncertain a position, a sweep can match any nearby surface, and a
+/// relocalisation is ambiguous. Second, the registration moved two or more sweeps further from their predicted poses
+/// than the covariances allow. A single large correction may come from saturation that the rates underestimated. An IMU
+/// or a lidar that does not meet its data sheet causes several large corrections.
 ///
 /// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
 /// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
@@ -42,7 +42,7 @@ class Localisation {
   /// Returns the sweep since which current_verdict() reports a finding.
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -54,7 +54,7 @@ class Localisation {
   TimeNs newest_ns_ = 0;
   std::optional<TimeNs> lost_since_ns_;  ///< first of the latest sweeps without a certain position
   std::optional<TimeNs> last_contradicted_ns_,
-      previous_contradicted_ns_;  ///< last two sweeps that surfaces corrected beyond the prior
+      previous_contradicted_ns_;  ///< last two sweeps that contradict their predicted poses
 };
 
 }  // namespace tumble

@@ -62,7 +62,7 @@ class SweepScaleEstimator {
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

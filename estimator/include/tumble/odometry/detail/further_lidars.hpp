@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Its mounting relative to the first lidar and its
-/// clock are exact; only the mounting of the first lidar is estimated.
+/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. The mounting relative to the first lidar and the
+/// clock offset must be exact, because TumblingOdometry estimates only the mounting of the first lidar.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarSheet sheet;
@@ -22,8 +22,8 @@ struct FurtherLidar {
   double time_offset_s = 0.0;      ///< this lidar's stamps plus the offset are in the clock of the first lidar
 };
 
-/// Adds the points of further lidars to the sweeps of the first lidar. Each point joins the sweep at its time, in axes
-/// of the first lidar. A copy of a FurtherLidars contains the complete state.
+/// Adds the points of further lidars to the sweeps of the first lidar. Each point joins the sweep that contains the
+/// point's time, in axes of the first lidar. A copy of a FurtherLidars contains the complete state.
 class FurtherLidars {
  public:
   FurtherLidars() = default;
@@ -32,15 +32,16 @@ class FurtherLidars {
   FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first);
 
   /// Stores a sweep of lidar `lidar`, counted from 1. See TumblingOdometry::add_sweep(). If more than `most` sweeps
-  /// wait, the oldest sweep is dropped.
+  /// wait, add() drops the oldest sweep.
   Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
              std::size_t most);
-  /// Moves the stored points from the time of a sweep to the sweep, and drops earlier points. Cost: O(stored points).
+  /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
+  /// points).
   void merge_into(WaitingSweep& sweep);
   /// Returns the number of points that arrived late, or when the first lidar had no sweep.
   std::size_t unused_points() const { return unused_points_; }
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -32,7 +32,7 @@ struct CheckedImu {
   bool merged = false;
 };
 
-/// Findings about an IMU, and the measured quantities of the checks that ran.
+/// ImuFindings contains the findings about an IMU, and the quantities that the checks measured.
 struct ImuFindings {
   struct Readings {
     double rest_force_ratio = 1.0;  ///< RestGravity::magnitude_error_ratio
@@ -52,18 +52,18 @@ struct ImuFindings {
   void add(const ImuFindings& other);
 };
 
-/// Returns the parameters of ImuPlausibility for an IMU. `gyro_range_rad_s` is stated by the device; 0: not stated.
+/// Returns the parameters of ImuPlausibility for an IMU. The data sheet states `gyro_range_rad_s`; 0 means unknown.
 ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s);
 
-/// Returns whether the rotation of gravity confirms the gyro's scale. If forces still contradict each other, the cause
-/// is a mounting or an accelerometer.
+/// Returns whether the rotation of gravity confirms the gyro's scale. If the gyro's scale is confirmed and forces
+/// contradict each other, the cause is a mounting or an accelerometer.
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state);
 
 /// Adds the finding of ImuPlausibility::verdict().
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
                   SensorHealth& health);
 
-/// Checks units, signs and axes of the readings: magnitude and rotation of gravity. O(N).
+/// Checks units, signs and axes of the readings: magnitude and rotation of gravity. Cost: O(N).
 ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
 
 /// Checks the forces in flights. The argument `carried_share` is the fraction of hand-held samples. If the body was
@@ -74,29 +74,29 @@ ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samp
 /// Checks that `rates`, one per sample, rotate gravity correctly from each rest to the next rest. Cost: O(N).
 ImuFindings check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-/// Checks that a body with a pivot rotates as the estimated `rates` state. The check uses only rates whose source is
+/// Checks that a body with a pivot rotates as the estimated `rates` indicate. The check uses only rates whose source is
 /// `measured`. Cost: about 1 ms per second of data at 100 Hz.
 ImuFindings check_pivots(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
 /// Finds frozen axes, sorted by axis and time. Cost: O(N).
 ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples);
 
-/// Several IMUs merged into one, with the findings about them.
+/// MergedFindings contains several IMUs merged into one IMU, and the findings about the IMUs.
 struct MergedFindings {
   MergedRecordings merged;
   ImuFindings findings;
 };
 
-/// Checks of several IMUs while samples arrive, and their states.
+/// MergedChecks contains the live checks of several IMUs, and the states of the checks.
 struct MergedChecks {
   RestGravity rest_gravity;
-  ImuPlausibility plausibility;                                                   ///< of the merged readings
-  std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one per unit
+  ImuPlausibility plausibility;                                                   ///< check of the merged readings
+  std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one state per IMU
   ImuPlausibility::State plausibility_state{};
 };
 
-/// Checks merged IMUs: the faults of units, the merged readings, and the differences between the units, which also
-/// reveal an inverted sign and exchanged axes. O(N).
+/// Checks merged IMUs: faults of single IMUs, the merged readings, and the differences between the IMUs. The
+/// differences also reveal an inverted sign and exchanged axes. Cost: O(N).
 ImuFindings check_merged(const CheckedImu& imu, const MergedRecordings& merged);
 
 /// Runs all checks for a recording with its estimated rates.

@@ -24,7 +24,7 @@ struct UnitRecording {
   std::vector<ImuSample> samples;
 };
 
-/// One IMU that replaces several.
+/// MergedRecordings contains one IMU that replaces several IMUs.
 struct MergedRecordings {
   /// Unit contains the calibration of one IMU relative to the mean of all IMUs.
   struct Unit {
@@ -32,11 +32,11 @@ struct MergedRecordings {
     double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU is late
     double rate_bias_rad_s = 0.0;                           ///< norm of the gyro bias
   };
-  std::vector<ImuSample> samples;                         ///< body axes
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, body axes
+  std::vector<ImuSample> samples;                         ///< samples of the merged IMU, in body axes
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, in body axes
   std::vector<Unit> units;                                ///< units in use
-  /// Faulty units, whose readings are not used: silent, frozen, or in disagreement with the others. The readings of a
-  /// unit with a frozen axis are used outside the interval of the fault. Units are named by unit_name().
+  /// Excluded units: units that are silent, frozen, or in disagreement with the other units. A unit with a frozen axis
+  /// is excluded only during the fault. The function unit_name() gives the names of units.
   SensorHealth faults;
   std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
   std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
@@ -48,9 +48,10 @@ std::string unit_name(std::size_t unit, std::size_t units);
 
 /// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording.
 /// ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges
-/// them. A unit is excluded while an axis is frozen or no readings exist. If ImuMerge finds a frozen or contradicting
-/// unit, a second pass excludes the unit from the start of the fault. Units without samples are ignored. `params`
-/// states ranges and gaps; the units' number, mountings and sensing elements are set here.
+/// the units. The function excludes a unit while an axis is frozen or readings are missing. If ImuMerge finds a frozen
+/// or contradicting unit, a second pass excludes the unit from the start of the fault. The function ignores units
+/// without samples. `params` states ranges and gaps; the function sets the number, mountings and sensing elements of
+/// the units.
 ///
 /// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
 /// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).

@@ -77,7 +77,7 @@ class OdometryPass {
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// Checks that the members of a loaded state are consistent with each other. Returns the first violated condition.

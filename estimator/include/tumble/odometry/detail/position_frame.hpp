@@ -13,8 +13,8 @@
 namespace tumble {
 
 /// PositionReading is the position of an antenna or tag A on the robot in a frame P with z up, for example from GPS (as
-/// local east, north, up) or from beacons. The errors of readings are assumed to be independent. If errors last, state
-/// a larger covariance.
+/// local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are independent.
+/// If the errors are correlated over time, state a larger covariance.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d p_PA_m = Eigen::Vector3d::Zero();
@@ -27,7 +27,8 @@ struct PositionReading {
 struct PositionFrame {
   Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the displacement of the reference [m] and of the rotation about the vertical through it [rad], in P.
+  /// Covariance in P of two errors: the displacement of the reference point [m], and the rotation about the vertical
+  /// through the reference point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
   /// Converts a pose from W to P, with the covariance of the position in P and the tilt errors of `in_W`.
@@ -35,9 +36,9 @@ struct PositionFrame {
 };
 
 /// Estimates PositionFrame from position readings, causally, by a weighted least-squares fit of heading and translation
-/// to the last 64 distinct positions. Readings within half a standard deviation of one place are averaged. The weight
-/// of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects up to a fifth of the
-/// positions as outliers. The poses and the map in W do not change.
+/// to the last 64 distinct positions. PositionAlignment averages readings within half a standard deviation of one
+/// place. The weight of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects up
+/// to a fifth of the positions as outliers. The poses and the map in W do not change.
 class PositionAlignment {
  public:
   static constexpr std::size_t kReadingsMax = 1024, kPairsMax = 64;
@@ -57,7 +58,7 @@ class PositionAlignment {
   /// within 0.1 rad, and while the readings contradict each other.
   const std::optional<PositionFrame>& frame() const { return frame_; }
 
-  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

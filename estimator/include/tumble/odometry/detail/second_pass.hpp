@@ -87,7 +87,7 @@ class SecondPass {
   /// Returns whether the first pass received the map of the second pass.
   bool applied() const { return applied_; }
 
-  /// Calls `visit` for every member of the state. The function is defined in state_visitor.hpp.
+  /// Calls `visit` for every member of the state (see state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// Checks that the members are consistent with each other and with the first pass. Returns the first violated
