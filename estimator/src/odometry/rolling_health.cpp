@@ -47,7 +47,7 @@ SensorHealth RollingOdometry::health() const {
   }
   add_forces_at_rest(checks_, count, out);
   add_findings(checks_.plausibility, checks_.plausibility_state, "imu", out);
-  ImuMerge::add_findings(imu_merge_state_->senses.detected(), ImuMerge::lever_arm_agreement(*imu_merge_state_),
+  ImuMerge::add_findings(imu_merge_state_->sign_check.detected(), ImuMerge::lever_arm_agreement(*imu_merge_state_),
                          confirms_gyro(checks_.plausibility, checks_.plausibility_state), out);
   return out;
 }
