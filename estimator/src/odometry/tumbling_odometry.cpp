@@ -278,7 +278,11 @@ void TumblingOdometry::restart_at_newest() {
     T_WI.translation() = pose.p_WA_m;
   }
   const Eigen::Vector3d offset_rad_s = gyro_offset_rad_s();
-  reset(T_WI);
+  if (mapper().localised().ok()) {
+    reset(T_WI);
+  } else {
+    reset();  // the newest pose is not in the frame of the prior map
+  }
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
