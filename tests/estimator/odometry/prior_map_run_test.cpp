@@ -103,7 +103,7 @@ TEST(PriorMapRun, AClockStepBeforeLocalisationStartsTheSearchAgain) {
   run.feed(0, 2, 20'000'000'000);
   ASSERT_FALSE(run.odometry.mapper().localised().ok());
   run.feed(2, 30);
-  EXPECT_EQ(run.odometry.restart_count(), 1);
+  EXPECT_EQ(run.odometry.restart_count(), 1U);
   EXPECT_TRUE(run.newest.in_prior_map);
   EXPECT_LT(run.error_in_room_m(), 0.1);
 }
