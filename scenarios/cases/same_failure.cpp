@@ -33,9 +33,7 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
     limit_ = failure.limit;
     return;
   }
-  const auto condemned = std::find_if(outcome.scores.begin(), outcome.scores.end(), [](const Score& score) {
-    return metric_info(score.metric).unit == Unit::verdict && score.value > 0.0;
-  });
+  const auto condemned = std::find_if(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict);
   if (condemned != outcome.scores.end()) {
     metric_ = condemned->metric;  // 0 is good, 1 is bad
     return;

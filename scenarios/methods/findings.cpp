@@ -25,13 +25,16 @@ std::string since_key(const HealthFinding& finding, const char* suffix) {
   return finding.sensor + (axis.empty() ? "" : "_" + axis) + suffix;
 }
 
-bool is_about_readings(About kind) {
+bool is_about_readings(const HealthFinding& finding) {
+  const About kind = finding.kind;
+  // the rotation of gravity can confirm the scale of the gyro later
+  if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
-         kind == About::axes_or_signs || kind == About::flight_forces || kind == About::rotation ||
-         kind == About::gyro_scale;
+         kind == About::axes_or_signs || kind == About::flight_forces || kind == About::rotation;
 }
 
-bool is_about_place(About kind) {
+bool is_about_place(const HealthFinding& finding) {
+  const About kind = finding.kind;
   return kind == About::tracking_lost || kind == About::lidar_scale || kind == About::lidar_calibration;
 }
 
@@ -81,9 +84,9 @@ void add_row(const HealthFinding& finding, std::map<std::string, double>& health
   }
 }
 
-bool any_of(const Estimate& estimate, bool (*about)(About)) {
+bool any_of(const Estimate& estimate, bool (*about)(const HealthFinding&)) {
   const auto& all = estimate.faults.findings;
-  return std::any_of(all.begin(), all.end(), [&](const HealthFinding& finding) { return about(finding.kind); });
+  return std::any_of(all.begin(), all.end(), about);
 }
 
 /// Returns a string with static lifetime, because a finding stores only a pointer.
@@ -101,7 +104,7 @@ void add_finding(const HealthFinding& finding, Estimate& estimate) {
   estimate.faults.add(finding);
   if (estimate.faults.findings.size() == before) return;
   add_row(finding, estimate.health);
-  if (is_about_readings(finding.kind)) estimate.health["imu_implausible"] = 1.0;
+  if (is_about_readings(finding)) estimate.health["imu_implausible"] = 1.0;
 }
 
 void add_findings(const SensorHealth& health, std::span<const std::string> names, Estimate& estimate) {

@@ -87,11 +87,12 @@ void report_whole(const MergedFindings& whole, std::span<const std::string> name
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
               std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
+  SensorHealth found;
   const auto collect = [&] {
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) append_pose(*pose, radius_m, estimate);
     if (estimate.poses.empty() || estimate.poses.back().time_ns < checked_ns + kHealthPeriodNs) return;
     checked_ns = estimate.poses.back().time_ns;
-    add_findings(odometry.health(), names, estimate);
+    found.observe(odometry.health());
   };
   std::vector<std::size_t> next(recordings.size(), 0);
   while (true) {
@@ -110,7 +111,8 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
   }
   const Status status = odometry.finish();
   collect();
-  add_findings(odometry.health(), names, estimate);
+  found.observe(odometry.health());
+  add_findings(found, names, estimate);
   return status;
 }
 

@@ -101,7 +101,7 @@ class Collector {
       }
       std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
-      observe(odometry.health());
+      found_.observe(odometry.health());
       localisation_.add(sweep->report);
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       apply_next(std::move(smoothed));
@@ -114,17 +114,12 @@ class Collector {
     }
     if (output_ == Output::live) replace_by_live();
     estimate_.health["lidar_calibration_mahalanobis"] = given_.deviations(odometry.mapper().calibration());
-    observe(odometry.health());
+    found_.observe(odometry.health());
     add_findings(found_, names_, estimate_);
     scenarios::conclude(odometry.mapper(), localisation_, &odometry.sweep_scale(), estimate_);
   }
 
  private:
-  /// Collects the findings of a run. If health() no longer reports a finding, the function marks the finding as ended.
-  void observe(const SensorHealth& now) {
-    for (HealthFinding& known : found_.findings) known.ended = true;
-    for (const HealthFinding& finding : now.findings) found_.add(finding);
-  }
   void apply_next(std::vector<PoseState> smoothed) {
     if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);

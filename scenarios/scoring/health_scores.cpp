@@ -135,7 +135,7 @@ void add(std::vector<Metric>& out) {
                  kind,
                  reported});
   out.push_back({{"health_silently_wrong", Unit::verdict,
-                  "1 if the estimate is wrong and its health does not report it", Sense::lower},
+                  "1 if the estimate is wrong and its health does not report it", Sense::none},
                  kind,
                  silently_wrong<kind>});
 }

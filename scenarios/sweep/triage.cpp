@@ -22,12 +22,14 @@ TriageRow row_of(const std::string& input, const std::string& doc, Outcome outco
 
 }  // namespace
 
+bool is_failed_verdict(const Score& score) {
+  const MetricInfo& info = metric_info(score.metric);
+  return info.unit == Unit::verdict && info.sense == Sense::lower && score.value != 0.0;
+}
+
 bool Failure::holds(const Outcome& outcome) const {
   if (outcome.status != OutcomeStatus::ok) return true;
-  const bool condemned = std::any_of(outcome.scores.begin(), outcome.scores.end(), [](const Score& score) {
-    return metric_info(score.metric).unit == Unit::verdict && score.value != 0.0;
-  });
-  if (condemned) return true;
+  if (std::any_of(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict)) return true;
   if (metric.empty()) return false;
   const Score* score = find_score(outcome.scores, metric);
   if (score == nullptr || std::isnan(score->value)) return true;  // without the metric the run counts as a failure

@@ -23,6 +23,10 @@ struct TrueInput {
 /// Returns all inputs; the last entry replaces all inputs at once.
 std::span<const TrueInput> true_inputs();
 
+/// Returns whether the score states that the run failed (for example `map_failed`). Verdicts without a better direction
+/// only describe the run.
+bool is_failed_verdict(const Score& score);
+
 /// Failure contains the criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric
 /// beyond a limit.
 struct Failure {

@@ -81,7 +81,9 @@ const char* to_string(Kind kind) {
 /// When a failure of attitude, vertical or localisation ends, later estimates are correct. The covariance or the frame
 /// marks the states during the failure. After a tracking failure, all later poses remain wrong.
 bool HealthFinding::invalidates_estimate() const {
-  const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown || kind == Kind::not_localised;
+  // the scale of the gyro is suspect only until the rotation of gravity confirms the scale
+  const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||
+                        kind == Kind::not_localised || kind == Kind::gyro_scale;
   return meaning(kind).invalidates && !(ended && recovers);
 }
 
@@ -115,6 +117,11 @@ void SensorHealth::add(HealthFinding finding) {
     findings.push_back(std::move(finding));
   else
     known->ended = known->ended && finding.ended;
+}
+
+void SensorHealth::observe(const SensorHealth& now) {
+  for (HealthFinding& known : findings) known.ended = true;
+  add(now);
 }
 
 void SensorHealth::add(const SensorHealth& other) {

@@ -137,7 +137,7 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(write("e.tum", "")).find("no pose"), std::string::npos);
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
-           {"null", "not a JSON object"},
+           {"null", "the file is not a JSON object"},
            {R"({"format": "1"})", R"('format' is "1"; it must be 1)"},
            {R"({"format": 1})", "'method' is missing"},
            {R"({"format": 1, "method": 5})", "'method' is 5; it must be text"},
@@ -168,7 +168,7 @@ TEST_F(EstimateFile, ATruncatedMapIsRecognised) {
   write_estimate(folder_, "icp", Kind::slam, estimate);
   EXPECT_EQ(complaint(folder_), "");
   std::filesystem::resize_file(folder_ / "map.ply", std::filesystem::file_size(folder_ / "map.ply") - 5);
-  EXPECT_NE(complaint(folder_).find("map.ply: truncated"), std::string::npos);
+  EXPECT_NE(complaint(folder_).find("map.ply: the file is truncated"), std::string::npos);
 }
 
 TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {

@@ -87,5 +87,21 @@ TEST(SensorHealthOfALiveRun, AFindingThatEndsNoLongerInvalidatesTheEstimateUnles
   EXPECT_FALSE(vertical.invalidates_estimate());
 }
 
+TEST(SensorHealthOfALiveRun, AGyroScaleThatGravityConfirmsLaterIsNoFault) {
+  SensorHealth run, now;
+  now.add(finding(About::gyro_scale));
+  now.add(finding(About::rotation));
+  run.observe(now);
+  EXPECT_TRUE(run.findings[0].invalidates_estimate());
+  run.observe({});
+  EXPECT_FALSE(run.findings[0].invalidates_estimate());
+  EXPECT_TRUE(run.findings[1].invalidates_estimate()) << "control: a contradiction that ended still counts";
+  Estimate estimate;
+  add_findings(run, {}, estimate);
+  EXPECT_TRUE(has_implausible_readings(estimate));
+  estimate.faults.findings.pop_back();
+  EXPECT_FALSE(has_implausible_readings(estimate));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios

@@ -80,6 +80,9 @@ struct SensorHealth {
            std::optional<TimeNs> since_ns = {}, double normal = 0.0);
   void add(HealthFinding finding);
   void add(const SensorHealth& other);
+  /// Collects the findings of a run. `now` is the newest result of health(). The function adds the findings of `now`,
+  /// and marks all other findings as ended.
+  void observe(const SensorHealth& now);
 };
 
 }  // namespace tumble
