@@ -61,7 +61,7 @@ Method position_observer() {
   info.doc =
       "Adds a contact velocity to the rolling velocity. During slip events, the contact velocity integrates the "
       "difference between measured and rolling acceleration.";
-  info.source = "our own method, only for comparison with position/tumble";
+  info.source = "ours, only for comparison with position/tumble";
   info.settings = {&rest_settings(), &position_observer_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_position_observer);

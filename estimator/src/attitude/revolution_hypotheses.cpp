@@ -21,7 +21,7 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kExcessMin = 3.0;         // mean excess over the saturation level below which a segment is tested
+constexpr double kBeyondSigmas = 3.0;      // mean rate beyond the saturation level below which a segment is tested
 constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
 constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
@@ -74,7 +74,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
       }
       // a segment at an end of the recording has no readings on its outer side that determine the number of revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
-      const bool against_rail = beyond_rad_s < kExcessMin * problem.rail_sigma_rad_s() * clipped &&
+      const bool against_rail = beyond_rad_s < kBeyondSigmas * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
       if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(segment);
     }

@@ -82,12 +82,10 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   aligner.align_coarse_to_fine(prior, prior, scene, trajectory, found);
   const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search finds no pose
   const int moved = starts.starts_per_sweep - 1;
-  // the sweep with which tracking failed counts as a failed search, although it tried no start
-  const int searches = std::max(0, failed_searches(from.tracking) - 1);
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))
       best = std::make_unique<Best>(Best{found, trajectory});
-    const int index = 1 + (searches * moved + k) % (kStartsPerRound * starts.rounds);
+    const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
     move_start(starts, index, *start);
     aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);

@@ -37,11 +37,11 @@ void RollingOdometry::restart_at_newest(double gap_s) {
     pose = {last.time_ns, last.p_WG_m, last.q_WI, last.v_WG_m_s, last.covariance};
   }
   Eigen::Isometry3d T_WG = start_.value_or(Eigen::Isometry3d::Identity());
-  Restart restart;
+  RollingRestart restart;
   if (pose) {
     T_WG.linear() = pose->q_WA.toRotationMatrix();
     T_WG.translation() = pose->p_WA_m;
-    restart = Restart{T_WG.translation(), position_and_heading(pose->covariance)};
+    restart = RollingRestart{T_WG.translation(), position_and_heading(pose->covariance)};
     const double moved_m = gap_s * std::hypot(pose->v_WA_m_s.norm(), kGapSpeed_m_s);
     const double turned_rad = std::min(gap_s * kGapTurn_rad_s, kUnknownHeading_rad);
     restart.covariance.diagonal().head<2>().array() += moved_m * moved_m;

@@ -42,7 +42,7 @@ void others(Self& p, Visitor& visit) {
 }
 
 template <class Self, class Visitor>
-void RollingOdometry::Restart::members(Self& s, Visitor& visit) {
+void RollingRestart::members(Self& s, Visitor& visit) {
   visit("restart.p_WG", s.p_WG_m);
   visit("restart.covariance", s.covariance);
 }

@@ -16,6 +16,7 @@
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
+#include "tumble/odometry/detail/rolling_restart.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/unit_alignment.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
@@ -96,20 +97,21 @@ class RollingOdometry {
   /// Calibration contains the estimated centre and radius of the sphere.
   struct Calibration {
     Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< sphere's centre, relative to the origin of T_BI
-    double radius_m = 0.0;
-    double radius_sigma_m = 0.0;  ///< 0: radius fixed (expert.rolling.filter.radius_sigma_m)
+    /// Radius and its standard deviation. A standard deviation of 0 means that the radius is fixed
+    /// (expert.rolling.filter.radius_sigma_m).
+    double radius_m = 0.0, radius_sigma_m = 0.0;
   };
   struct Pose {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
-    Eigen::Vector3d angular_velocity_rad_s =
-        Eigen::Vector3d::Zero();  ///< angular velocity of the sphere, in sphere axes
+    /// Angular velocity of the sphere, in sphere axes.
+    Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
     /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the variance
     /// of the contact modes.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain =
-        false;  ///< an event (RollingModeParams::event_sigma_growth_m) or a restart made the position uncertain
+    /// An event (RollingModeParams::event_sigma_growth_m) or a restart made the position uncertain.
+    bool uncertain = false;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -236,8 +238,8 @@ class RollingOdometry {
   UnitAlignment unit_alignment_;
   UnitAlignment::State unit_alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each IMU, with kWholeRecording
-  std::unique_ptr<ImuMerge::State> imu_merge_state_;
-  std::unique_ptr<ImuMerge::State> merge_state_buffer_;  ///< buffer for the next state of ImuMerge
+  /// State of ImuMerge, and buffer for its next state.
+  std::unique_ptr<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
   std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
@@ -252,14 +254,7 @@ class RollingOdometry {
   std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
   std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; empty: the world's origin
   std::size_t restart_count_ = 0;
-  /// Restart after a gap or a step of the clock: position, and covariance of position and heading in the world.
-  struct Restart {
-    Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
-    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
-  };
-  std::optional<Restart> restart_;  ///< last restart; poses after a restart are uncertain
+  std::optional<RollingRestart> restart_;  ///< last restart; poses after a restart are uncertain
   bool live_ = true, finished_ = false;
 };
 
