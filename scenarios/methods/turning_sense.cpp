@@ -88,7 +88,7 @@ std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensor
     return "";
   return fmt::format(
       "the attitudes rotate differently from the gyro (difference {:.0f} % over {} pairs of poses); with a corrected "
-      "clock they would agree (difference {:.0f} %): their {}",
+      "clock they would agree (difference {:.0f} %): {}",
       100.0 * check.stated.difference, check.pairs, 100.0 * likely.difference, delay_remedy(likely.delay_s));
 }
 

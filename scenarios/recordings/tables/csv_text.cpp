@@ -108,13 +108,12 @@ void fail(const CsvLine& line, const std::string& what) {
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column) {
   const std::string_view text = line.fields[index];
   double value = 0.0;
-  const std::string place = line.where + ": column " + column + " ";
+  const std::string place = line.where + ": column " + column;
   if (!parse_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
-    throw BadInput(
-        fmt::format("{}the value must be a number; it is '{}'{}", place, text, comma ? "; use a decimal point" : ""));
+    throw BadInput(fmt::format("{} must be a number; it is '{}'{}", place, text, comma ? "; use a decimal point" : ""));
   }
-  if (!std::isfinite(value)) throw BadInput(place + "is not finite");
+  if (!std::isfinite(value)) throw BadInput(place + " is not finite");
   return value;
 }
 

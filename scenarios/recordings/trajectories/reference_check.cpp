@@ -46,7 +46,7 @@ std::string remedy(QuaternionConvention written, double delay_s) {
     out +=
         ". The poses of the reference describe the world in sensor axes, but must describe the sensor in world axes; "
         "invert the poses";
-  return is_delayed(delay_s) ? out + "; its " + delay_remedy(delay_s) : out;
+  return is_delayed(delay_s) ? out + "; " + delay_remedy(delay_s) : out;
 }
 
 std::string disagreement(const TurningCheck& check, const std::string& imu) {

@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 10, 6]", "hill.yaml:5: robot.mass_kg: ", "low 10 is above high 6"},
         Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 10, 12]", "hill.yaml:5: robot.mass_kg: ", "contains less than 1 %"},
         Wrong{"[8, 0.5, 6, 10]", "[8, 0, 9, 10]", "hill.yaml:5: robot.mass_kg: ", "contains less than 1 %"},
-        Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 6]", "hill.yaml:5: robot.mass_kg: ", "normal needs"},
+        Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 6]", "hill.yaml:5: robot.mass_kg: ", "'normal' needs"},
         Wrong{"[8, 0.5, 6, 10]", "[25, 0.5]", "hill.yaml:5: robot.mass_kg: ", "can reach 25 kg"},
         Wrong{"site: vn100", "sight: vn100", "hill.yaml:11: sensors[1]: ", "key 'site' is missing"},
         Wrong{"name: imu_reference", "name: imu", "hill.yaml:11: sensors[1]: ", "exists already in line 10"},

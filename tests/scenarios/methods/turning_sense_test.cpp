@@ -91,8 +91,8 @@ TEST_P(TurningSense, AConstantDelayIsNamed) {
     return clock_complaint(late, sensors_);
   };
   EXPECT_THAT(delayed_by(0.4),
-              HasSubstr("their stamps are 0.400 s too late, but at most 0.15 s is accepted; subtract"));
-  EXPECT_THAT(delayed_by(-0.4), HasSubstr("their stamps are 0.400 s too early"));
+              HasSubstr("the time stamps of the poses are 0.400 s too late, but at most 0.15 s is accepted; subtract"));
+  EXPECT_THAT(delayed_by(-0.4), HasSubstr("the time stamps of the poses are 0.400 s too early"));
   EXPECT_EQ(delayed_by(0.1), "") << "stamps at the end of a sweep";
   EXPECT_EQ(delayed_by(0.0), "");
 }

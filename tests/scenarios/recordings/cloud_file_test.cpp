@@ -166,7 +166,7 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
   // with one point more, the size is no multiple of 16 either
   EXPECT_THAT(
       complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
-      AllOf(HasSubstr("has 12820 bytes, but the size must be a multiple of 16"), HasSubstr("5 columns of float32")));
+      AllOf(HasSubstr("has 12820 bytes; the size must be a multiple of 16"), HasSubstr("5 columns of float32")));
 }
 
 TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {

@@ -46,7 +46,8 @@ TEST_F(DamagedFile, TruncationIsRecognisedAtEveryLength) {
     for (const std::string& message :
          {fixture::complaint([&] { read_info(path_); }), fixture::complaint([&] { read_sensors(path_); }),
           fixture::complaint([&] { read_truth(path_); })}) {
-      EXPECT_THAT(message, StartsWith(path_.string() + ": " + (length == 0 ? "is empty" : "truncated"))) << length;
+      EXPECT_THAT(message, StartsWith(path_.string() + ": the file is " + (length == 0 ? "empty" : "truncated")))
+          << length;
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
     ++lengths;

@@ -224,7 +224,7 @@ TEST_P(OddBag, ManyFaultyCloudsAreRefused) {
   change_cloud_ = [](int k, ros::PointCloud2& cloud) {
     if (k % 3 == 0) cloud.data.resize(cloud.data.size() / 2);
   };
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("message 0 of /points: "), HasSubstr("5 of 15 clouds have errors")));
+  EXPECT_THAT(complaint(), AllOf(HasSubstr("message 0 of /points: "), HasSubstr("5 of 15 clouds are faulty")));
 }
 
 TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
@@ -353,12 +353,12 @@ TEST_F(OddTable, OneFaultyFileCostsOneSweep) {
   source.folder = folder_;
   source.format = "ply";
   fixture::put(folder_ / "times.txt", times);
-  EXPECT_THAT(fixture::complaint([&] { import_sweeps(source); }), HasSubstr("2 of 10 clouds have errors"));
+  EXPECT_THAT(fixture::complaint([&] { import_sweeps(source); }), HasSubstr("2 of 10 clouds are faulty"));
   fixture::put(folder_ / "4.PLY", head + "1 2 3\n1 2 4\n");
   const Imported imported = import_sweeps(source);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 9u);
   EXPECT_THAT(imported.notes, Contains(AllOf(HasSubstr("caution: 1 of 10 clouds is left out"),
-                                             HasSubstr("times.txt:8: the time stamp 100000000 ns does not increase"))));
+                                             HasSubstr("times.txt:8: the time stamp 100000000 ns must be larger"))));
 }
 
 }  // namespace

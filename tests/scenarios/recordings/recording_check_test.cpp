@@ -57,8 +57,8 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.lidars[0].sweep_start_ns[0] = std::numeric_limits<std::int64_t>::min(); },
        "sweep_start_ns is -9"},
       {[nan](auto& s) { s.imus[0].stated_gyro_range_rad_s = nan; }, "stated_gyro_range_rad_s is nan"},
-      {[](auto& s) { s.imus[0].T_BI.linear() *= 1.001; }, "T_BI is not a rigid transform"},
-      {[](auto& s) { s.imus[0].T_BI.linear() *= -1.0; }, "T_BI is not a rigid transform"},
+      {[](auto& s) { s.imus[0].T_BI.linear() *= 1.001; }, "T_BI must be a rigid transform"},
+      {[](auto& s) { s.imus[0].T_BI.linear() *= -1.0; }, "T_BI must be a rigid transform"},
       {[nan](auto& s) { s.imus[0].T_BI.translation().x() = nan; }, "T_BI is not finite"},
       {[nan](auto& s) { s.gravity_m_s2 = nan; }, "gravity_m_s2 is nan"},
       {[](auto& s) { s.sphere_radius_m = -1; }, "sphere_radius_m"},
@@ -95,7 +95,7 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.series[0].kind = "\xff"; },
        "sensors/series/0: kind must be UTF-8 text without control characters"},
       {[](auto& s) { s.series[0].period_ns = 0; }, "sensors/series/0: period_ns is 0"},
-      {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX is not a rigid transform"},
+      {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX must be a rigid transform"},
       {[](auto& s) { s.series[0].time_ns.back() = 1700000000000000000; }, "time_ns is 1700000000000000000 in row 4"}};
   for (const Case& each : cases) {
     sim::Sensors sensors = fixture::recording().sensors;
@@ -119,7 +119,7 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.q_WB[3].coeffs() *= 1.01; }, "the quaternion q_WB must have norm 1"},
       {[](auto& t) { t.q_WB[3].coeffs().setZero(); }, "the quaternion q_WB must have norm 1"},
       {[](auto& t) { t.label[3] = static_cast<sim::ContactLabel>(4); }, "label 4 is unknown"},
-      {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns: decreases"},
+      {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns must not decrease"},
       {[](auto& t) { t.contacts[3].surface_id = 2; }, "surface_id 2 has no name"},
       {[](auto& t) { t.lidars[0].surface_id[3] = -3; }, "truth/lidars/0: surface_id -3"},
       {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, but hit_W_m has 149"},
@@ -132,7 +132,7 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.imus[0].accel_element_offset_m_s2.y() = std::nan(""); },
        "truth/imus/0: accel_element_offset_m_s2 is not finite"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
-      {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX is not a rigid transform"},
+      {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX must be a rigid transform"},
       {[](auto& t) { t.series[0].quantities[1].name = " "; },
        "truth/series/0: quantities/1: the name must consist of letters, digits and _, and must not be empty"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};

@@ -133,7 +133,8 @@ TEST(ReferenceCheck, WFirstOfAMotionAboutOneAxisIsRefused) {
 TEST(ReferenceCheck, LateAndEarlyStampsAreRefused) {
   EXPECT_THAT(
       said(hand_held, as_is, 0.3),
-      HasSubstr("its stamps are 0.300 s too late, but at most 0.15 s is accepted; subtract 0.300 s from the stamps"));
+      HasSubstr(
+          "the time stamps of the poses are 0.300 s too late, but at most 0.15 s is accepted; subtract 0.300 s from"));
   EXPECT_THAT(said(hand_held, as_is, -0.3, 0.1), HasSubstr("0.300 s too early, but at most 0.15 s is accepted; add"));
   EXPECT_THAT(said(hand_held, as_is, 2.0), HasSubstr("2.000 s too late"));
   EXPECT_THAT(said(hand_held, with_w_first, 0.3), AllOf(HasSubstr("w first"), HasSubstr("0.300 s too late")));
