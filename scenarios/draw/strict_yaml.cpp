@@ -63,7 +63,7 @@ void require_one_document(const std::string& text, const std::string& file) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
   Counter counter(text, file);
-  if (!parser.HandleNextDocument(counter)) throw BadInput(file + ": is empty");
+  if (!parser.HandleNextDocument(counter)) throw BadInput(file + ": the file is empty");
   if (parser.HandleNextDocument(counter))
     throw BadInput(
         fmt::format("{}: the file must contain one YAML document, but contains more than one document", file));
@@ -108,7 +108,7 @@ YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
   try {
     require_one_document(text, file);
     const YAML::Node document = YAML::Load(text);
-    if (document.IsNull()) throw BadInput(file + ": is empty");
+    if (document.IsNull()) throw BadInput(file + ": the file is empty");
     return YamlNode(document, file, "");
   } catch (const YAML::Exception& error) {
     throw BadInput(file + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + error.msg);

@@ -177,9 +177,9 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.rate_integral_I_rad += dt_s * w;
   sums.force_integral_I_m_s += dt_s * f_raw;
   sums.squared_rate_integral_rad2_s += dt_s * w.squaredNorm();
-  const double excess_over_gravity_m_s2 = std::abs(f.norm() - gravity) - kNoImpactForce_m_s2;
-  sums.impact_m_s += dt_s * std::max(0.0, excess_over_gravity_m_s2);
-  sums.unexplained_impact_m_s += dt_s * std::max(0.0, excess_over_gravity_m_s2 - kImuOffset_m * w.squaredNorm());
+  const double force_minus_gravity_m_s2 = std::abs(f.norm() - gravity) - kNoImpactForce_m_s2;
+  sums.impact_m_s += dt_s * std::max(0.0, force_minus_gravity_m_s2);
+  sums.unexplained_impact_m_s += dt_s * std::max(0.0, force_minus_gravity_m_s2 - kImuOffset_m * w.squaredNorm());
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kPartialRangeMin) / (kPartialRangeMax - kPartialRangeMin), 0.0, 1.0);
   const double share = params.expert.rails.subsample_saturation_ratio;

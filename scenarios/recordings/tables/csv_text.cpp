@@ -64,7 +64,7 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
   std::ifstream stream = open_regular_file(path);
   text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   if (stream.bad()) throw BadInput(name_ + ": cannot be read");
-  if (text_.empty()) throw BadInput(name_ + ": is empty");
+  if (text_.empty()) throw BadInput(name_ + ": the file is empty");
   require_lines(name_, text_);
   if (text_.back() != '\n') {
     const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;

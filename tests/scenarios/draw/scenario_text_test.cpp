@@ -100,8 +100,8 @@ INSTANTIATE_TEST_SUITE_P(
               "hill.yaml:4: world: ", "must be a map"}));
 
 TEST(ScenarioText, RefusesWhatIsNotOneMap) {
-  EXPECT_EQ(complaint_of(""), "hill.yaml: is empty");
-  EXPECT_EQ(complaint_of("# only a comment\n"), "hill.yaml: is empty");
+  EXPECT_EQ(complaint_of(""), "hill.yaml: the file is empty");
+  EXPECT_EQ(complaint_of("# only a comment\n"), "hill.yaml: the file is empty");
   EXPECT_THAT(complaint_of("- 1\n- 2\n"), HasSubstr("must be a map"));
   const std::string long_name = "name: " + std::string(5000, 'a');
   EXPECT_THAT(

@@ -143,11 +143,19 @@ TEST_P(MethodContract, RefusesManyFallingTimeStamps) {
   expect_refused(spoilt);
 }
 
-TEST_P(MethodContract, RefusesAGap) {
+TEST_P(MethodContract, AGapIsRefusedOrReported) {
   sim::Recording spoilt = recording();
   auto& times = spoilt.sensors.imus.front().time_ns;
   for (std::size_t k = 600; k < times.size(); ++k) times[k] += 3000000000;
-  expect_refused(spoilt);
+  try {
+    const Estimate estimate = run(spoilt);
+    if (estimate.status.ok())
+      EXPECT_TRUE(estimate.health.contains("gaps")) << "the method continues after the gap without a report";
+    else
+      EXPECT_NE(std::string(estimate.status.field), "");
+  } catch (const BadInput& error) {
+    EXPECT_NE(std::string(error.what()), "");
+  }
 }
 
 TEST_P(MethodContract, RefusesAParameterItDoesNotKnow) {
