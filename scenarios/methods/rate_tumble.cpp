@@ -145,6 +145,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     estimate.health["imus"] = 1.0 + static_cast<double>(auxiliary_imus.size());
     if (estimate.status.ok()) {
       report_rates(report, estimate);
+      report_gaps(samples, estimate);
       const ImuFindings findings =
           check_recording(checked_imu(sensors), samples, estimate.rates, carried_share(report));
       report_findings(findings, sensors, estimate);

@@ -10,6 +10,7 @@
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/report_rails.hpp"
+#include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/regime_stream.hpp"
@@ -83,7 +84,6 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   RegimeStream joined(params);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();
-  std::size_t gaps = 0;
   estimate.rates.reserve(samples.size());
   std::optional<RateState> out;
   std::vector<AuxiliaryReading> beside(auxiliary_imus.size());
@@ -92,14 +92,13 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (k > 0 && seconds(samples[k].time_ns - samples[k - 1].time_ns) > params.rate.gap_max_s) {
       joined.flush(all, estimate.rates);
       restart_after_gap(params, joined, all);
-      ++gaps;
     }
     estimate.status = joined.push(samples[k], beside, all, out);
     if (!estimate.status.ok()) break;
     if (out) estimate.rates.push_back(*out);
   }
   joined.flush(all, estimate.rates);
-  if (gaps > 0) estimate.health["gaps"] = static_cast<double>(gaps);
+  report_gaps(samples, estimate);
   const RateStream::State& state = all.rate;
   estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <string>
 
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/report_rails.hpp"
 
@@ -61,6 +63,15 @@ void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
   std::map<std::string, double> of_carried;
   report_carried(report.hand_held, of_carried);
   for (const auto& [name, value] : of_carried) health["carried_" + name] = value;
+}
+
+void report_gaps(std::span<const ImuSample> samples, Estimate& estimate) {
+  const auto is_gap = [](const ImuSample& before, const ImuSample& after) {
+    return seconds(after.time_ns - before.time_ns) > bridge::kGapMaxS;
+  };
+  std::size_t gaps = 0;
+  for (std::size_t k = 1; k < samples.size(); ++k) gaps += is_gap(samples[k - 1], samples[k]) ? 1 : 0;
+  if (gaps > 0) estimate.health["gaps"] = static_cast<double>(gaps);
 }
 
 }  // namespace tumble::scenarios

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "scenarios/methods/method.hpp"
 #include "tumble/attitude/regime_smoother.hpp"
@@ -13,5 +14,8 @@ void report_rates(const RegimeSmoother::Report& report, Estimate& result);
 
 /// Returns the fraction of hand-held samples, or nothing if it was not estimated.
 std::optional<double> carried_share(const RegimeSmoother::Report& report);
+
+/// Adds the number of gaps in the samples (kGapMaxS) to the health, if there is a gap.
+void report_gaps(std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios
