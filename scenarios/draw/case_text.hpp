@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// These functions convert the value of the YAML key `case` to and from NamedCase, without loss. Reading rejects an
+/// These functions convert a NamedCase from and to the value of the YAML key `case`, without loss. Reading rejects an
 /// unknown key, a repeated method, a missing `fails` or `holds`, and a `worse_than` without a metric. The error message
 /// states file and line.
 NamedCase case_from_yaml(const YamlNode& node);

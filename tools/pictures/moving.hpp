@@ -9,7 +9,7 @@
 #include "tools/pictures/paths.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// moving.hpp renders animations of a motion: the camera follows the robot, and copies of the robot mark its path.
+/// These functions render animations of a motion: the camera follows the robot, and copies of the robot mark its path.
 namespace tumble::tools {
 
 struct MovingOptions {
