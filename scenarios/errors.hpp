@@ -15,7 +15,7 @@ class BadInput : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws BadInput if the array `place.field` has another length than the other arrays of the record.
+/// Throws BadInput if the array `place.field` of a sensor record has another length than the other arrays.
 inline void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
   if (found == expected) return;
   throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries; it must have " +

@@ -49,8 +49,8 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< the budget was sufficient: no single item can be removed
   bool controlled = false;  ///< the control failed on no accepted run
-  /// This true input (sweep/triage.hpp) prevents the failure of the original run and of every accepted run; empty if no
-  /// single input does.
+  /// The true value of the input `cure` (sweep/triage.hpp) prevents the failure of the original run and of every
+  /// accepted run; empty if there is no such input.
   std::string cure;
 };
 

@@ -178,8 +178,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the change of the period due to the amplitude of 0.001 rad. This change is 6e-8 for a
-  // simple pendulum, and about fifty times larger for the higher modes.
+  // The accepted range includes the change of the period due to the amplitude of 0.001 rad. The amplitude changes the
+  // period by 6e-8 for a simple pendulum, and by about fifty times more for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",
@@ -243,8 +243,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured specific force has an error of 1e-6. During fast changes at the bars' turning points, Simpson's rule
-  // and RK4 have errors of a few parts in 1e8.
+  // The specific force of the simulated pendulum has an error of 1e-6. During fast changes at the bars' turning points,
+  // Simpson's rule and RK4 have errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",

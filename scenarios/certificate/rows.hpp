@@ -100,7 +100,7 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// This measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with the
+/// The real-gyro measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with the
 /// simulation. One simulated device has the sensing elements of the real gyro. Other simulated devices have random
 /// sensing elements from the distributions in the data sheets.
 struct RealRailsSetup {

@@ -54,9 +54,9 @@ Scenario load_scenario(const DataRoot& data, const std::string& name);
 /// BadInput if the scenario does not fit the data sheets or this build.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// These functions convert a resolved situation to and from YAML without loss of bits. Reading rejects unknown keys,
-/// and sim::resolve checks that this build has the named types and numbers. On invalid text or numbers, to_yaml and
-/// situation_from_yaml throw BadInput with a message that starts with `place`.
+/// The functions to_yaml and situation_from_yaml convert a resolved situation to and from YAML without loss of bits.
+/// Reading rejects unknown keys, and sim::resolve checks that this build has the named types and numbers. On invalid
+/// text or numbers, to_yaml and situation_from_yaml throw BadInput with a message that starts with `place`.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

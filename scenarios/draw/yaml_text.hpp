@@ -3,7 +3,7 @@
 
 #include <string>
 
-/// These functions write a number or a text as YAML.
+/// The functions in yaml_text.hpp write a number or a text as YAML.
 namespace tumble::scenarios {
 
 /// Converts a number to the shortest text that parses to the same double. Infinite values are `.inf` and `-.inf`.

@@ -30,8 +30,9 @@ BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Se
 /// Reads estimates and adds each as a track to `writing`, with the points and the truth of `writing`. Each path is
 /// either a folder with an estimate or a TUM file. The poses of a TUM file belong to the first IMU, or to the body if
 /// there is no IMU. The stamps of a TUM file refer to the recording's clock or to the clock of the recording's source.
-/// The track is named after the method, for example "slam_tumble", with a number appended if the name is taken. Throws
-/// BadInput with the path for a read error, for an estimate from other sensor data, and for the errors of in_bag.
+/// The track of an estimate is named after the method, for example "slam_tumble", with a number appended if the name is
+/// taken. Throws BadInput with the path for a read error, for an estimate from other sensor data, and for the errors of
+/// in_bag.
 void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sensors& sensors, BagWriting& writing);
 
 }  // namespace tumble::scenarios

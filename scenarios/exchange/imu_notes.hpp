@@ -7,8 +7,8 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// These functions check the readings of imported IMUs (ImuPlausibility), so that users see problems before they run an
-/// estimator.
+/// The functions in imu_notes.hpp check the readings of imported IMUs (ImuPlausibility), so that users see problems
+/// before they run an estimator.
 namespace tumble::scenarios {
 
 /// Returns a warning if an IMU repeats one reading, has permuted axes, or measures a force or rotation that contradicts

@@ -8,7 +8,7 @@
 #include "scenarios/draw/data_sheet.hpp"
 #include "sim/recording.hpp"
 
-/// These functions find the data sheet of a sensor from the sensor's name and data.
+/// The functions in probable_devices.hpp find the data sheet of a sensor from the sensor's name and data.
 namespace tumble::scenarios {
 
 /// ProbableDevice is the data sheet that probably belongs to a sensor, with the reason.

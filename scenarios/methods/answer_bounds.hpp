@@ -31,10 +31,10 @@ class AnswerBounds {
   /// reading the file.
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
 
-  /// These functions check the values of an external method's result and throw BadInput with location, value and limit.
-  /// Time stamps must be within 10 s of the recording. Positions [m] must be finite and within 1e7 m of the origin,
-  /// which allows Earth-centred coordinates. Quaternions must have norm 1 within 1 %, as in TUM files. Rates [rad/s]
-  /// must be finite and below 1e6, and their covariances must be finite.
+  /// The functions require_rates to require_slam check the values of an external method's result and throw BadInput
+  /// with location, value and limit. Time stamps must be within 10 s of the recording. Positions [m] must be finite and
+  /// within 1e7 m of the origin, which allows Earth-centred coordinates. Quaternions must have norm 1 within 1 %, as in
+  /// TUM files. Rates [rad/s] must be finite and below 1e6, and their covariances must be finite.
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;

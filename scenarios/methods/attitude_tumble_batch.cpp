@@ -17,8 +17,8 @@ namespace tumble::scenarios {
 namespace {
 
 /// The hand-held smoother replaces the rate smoother if the probability of hand-held motion in clipped intervals
-/// exceeds kCarried. In this case, the motion limits of the hand-held smoother give better rates than the rate
-/// smoother.
+/// exceeds kCarried. During hand-held motion, the motion limits of the hand-held smoother give better rates than the
+/// rate smoother.
 constexpr double kCarried = 0.5;
 
 /// Smooths the attitude with the recovered rates as gyro readings, for a body that was not hand-held while its gyro

@@ -31,9 +31,9 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// kPeriodsMax is the largest accepted ratio between the median time step and the sample period in the record. With a
-// wrong unit of the time stamps, the ratio differs at least 1000-fold from 1. A device that is read slowly stays below
-// kPeriodsMax.
+// kPeriodsMax is the largest accepted ratio between the median time step and the sample period in the IMU record. With
+// a wrong unit of the time stamps, the ratio differs at least 1000-fold from 1. A device that is read slowly stays
+// below kPeriodsMax.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {

@@ -16,8 +16,9 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
-/// The functions in bridge.hpp convert the records of the library `sim` to the messages of the estimator. Each of the
-/// two libraries documents its conventions. The following list compares the conventions of the two libraries:
+/// The functions in bridge.hpp convert the records of the library `sim` to the messages of the estimator. The libraries
+/// `sim` and `estimator` each document their conventions. The following list compares the conventions of `sim` and
+/// `estimator`:
 ///
 /// - The time of a sample is the end of its averaging window [ns] in both libraries.
 /// - The rate is that of I relative to W, in the axes of I [rad/s], in both libraries.
@@ -33,40 +34,40 @@ namespace tumble::scenarios::bridge {
 /// gap use kAnyGapS.
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
-/// A reading is accepted as a measurement up to kStatedRangesMax times the range in the record. Real saturation levels
-/// exceed the range in the data sheet (MTi-30: 1.4 times the range). A tilted saturation plane allows even larger
-/// readings. Readings beyond this limit cannot be measurements.
+/// A reading is accepted as a measurement up to kStatedRangesMax times the measurement range in the IMU record. Real
+/// saturation levels exceed the range in the data sheet (MTi-30: 1.4 times the range). A tilted saturation plane allows
+/// even larger readings. Readings beyond this limit cannot be measurements.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
 /// The conversion rejects a recording if more than this fraction of its readings is out of range, because unit or
 /// device must be wrong.
 inline constexpr double kWildShareMax = 0.01;
 
-/// Returns the noise and range parameters of an IMU record. The library's defaults replace parameters that the record
-/// lacks.
+/// Returns the noise and range parameters of an IMU record. The library's defaults replace parameters that the IMU
+/// record lacks.
 ImuSheet imu_sheet(const sim::ImuRecord& record);
 
 /// Returns `out_of_range`, with value and limit, for the first axis whose reading exceeds kStatedRangesMax times the
-/// range in the record. A range of 0 in the record disables the check.
+/// measurement range. A measurement range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
 /// Returns for each sample of an IMU whether the sample is usable. A sample is unusable if it is not finite, exceeds
 /// the range of any sensor, or has a time stamp out of order. Samples with one of these faults are rejected only if the
 /// faults are rare (may_leave_out). A sample is also unusable if the library's OutlierFilter rejects it. All samples
-/// are usable if the arrays of the record differ in length. The cost is O(N log N).
+/// count as usable if the arrays of the IMU record differ in length. The cost is O(N log N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
 /// Converts the samples of an IMU, in order, and drops the faulty readings that find_inliers rejects. The possible
 /// errors are `empty`, `non_finite`, `time_order`, `gap` (more than `gap_max_s`) and `out_of_range`. The error
-/// `out_of_range` comes from check_range, or from a median time step that differs 20-fold from the period in the
-/// record. On error, `out` is empty. Throws BadInput if the arrays of the record differ in length. The cost is O(N).
+/// `out_of_range` comes from check_range, or from a median time step that differs 20-fold from the sample period of the
+/// IMU. On error, `out` is empty. Throws BadInput if the arrays of the IMU record differ in length. The cost is O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 /// Converts the samples of the primary IMU. Returns `empty` if the recording has no IMU.
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 /// Converts the samples of the IMU, with the true readings before saturation from `truth`. Throws BadInput if `truth`
-/// does not belong to the record.
+/// does not belong to the IMU record.
 Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out);
 
 /// Returns the vector from the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.
@@ -86,7 +87,7 @@ struct Sweep {
   std::vector<LidarPoint> points;
 };
 
-/// Returns the number of sweeps in a lidar record. Throws BadInput if the arrays of the record are inconsistent.
+/// Returns the number of sweeps in a lidar record. Throws BadInput if the arrays of the lidar record are inconsistent.
 std::size_t sweep_count(const sim::LidarRecord& record);
 
 /// kRounding_ns is the tolerance for rounded time stamps [ns]. Time stamps stored as seconds since 1970 in a double

@@ -20,8 +20,8 @@ namespace tumble::scenarios {
 /// Returns the settings of the hand-held methods, with the library's defaults.
 const Settings<HandHeldSmoother::Params>& carried_settings();
 
-/// Finds the saturated sensing elements of each sample from the ranges in the record and the readings. The detected
-/// saturation limits are added to `health` (report_rails.hpp).
+/// Finds the saturated sensing elements of each sample from the measurement ranges of the IMU and the readings. The
+/// detected saturation limits are added to `health` (report_rails.hpp).
 ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health);
 
@@ -29,8 +29,8 @@ ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
 /// the recording.
 HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Runs the hand-held smoother over the primary IMU. Returns an error of the record or of the smoother; the outputs are
-/// then empty.
+/// Runs the hand-held smoother over the primary IMU. Returns an error of the IMU record or of the smoother; the outputs
+/// are then empty.
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
 

@@ -8,9 +8,9 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// These functions write and read the covariances of an estimate's poses or attitudes, one row per time stamp. The
-/// covariances have a separate file, because TUM files have no columns for covariances. ESTIMATE.md describes the
-/// columns.
+/// The functions in covariance_file.hpp write and read the covariances of an estimate's poses or attitudes, one row per
+/// time stamp. The covariances have a separate file, because TUM files have no columns for covariances. ESTIMATE.md
+/// describes the columns.
 namespace tumble::scenarios {
 
 /// Writes one covariance per time stamp: the upper triangle, row by row. If all covariances are zero (not estimated),

@@ -23,9 +23,9 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 /// - The sweeps and the map are in sweeps.csv, sweep_poses.csv and map.ply.
 /// - The file transcript.txt contains the output of an external program.
 ///
-/// The file estimate.json is written last. Reading restores all scored values bit-exactly, except that TUM quaternions
-/// are normalised and may change in the last bit. For `poses`, the files contain only the position covariance, without
-/// velocities and other covariances.
+/// The file estimate.json is written last. Reading an estimate restores all scored values bit-exactly, except that TUM
+/// quaternions are normalised and may change in the last bit. For `poses`, the files contain only the position
+/// covariance, without velocities and other covariances.
 ///
 /// Throws BadInput if writing fails. Throws std::invalid_argument if the length of `contacts` differs from `poses`, or
 /// if `uncertain` is neither empty nor as long as `poses`.

@@ -43,7 +43,7 @@ class RefusedAnswer : public BadInput {
 /// Creates the method that a file NAME.yaml or NAME.py describes (EXTERNAL.md). A command receives the sensor data in a
 /// separate folder in the requested formats. The command runs in a separate process with limits of time and memory, and
 /// writes its result to a file. A Python function exchanges the sensor data and the result through shared memory. The
-/// external program never receives the truth.
+/// external program of a method never receives the true motion.
 ///
 /// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
 /// invalid or if the version command fails. Running the method throws NoAnswer if there is no result, and RefusedAnswer

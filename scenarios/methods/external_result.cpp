@@ -190,8 +190,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit of the time stamps is checked before parsing. Without this check, time stamps in a wrong unit may
-      // overflow the time type, and the error message would be unhelpful.
+      // The unit of the time stamps is checked before parsing. Otherwise, time stamps in a wrong unit may overflow the
+      // time type, which would give an unhelpful error message.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

@@ -8,8 +8,8 @@
 
 #include "tumble/common/sensor_health.hpp"
 
-/// These functions store findings (suspected faults of sensors and estimate) in an Estimate, and derive the entries of
-/// its health.
+/// The functions in findings.hpp store findings (suspected faults of sensors and estimate) in an Estimate, and derive
+/// the entries of its health.
 namespace tumble::scenarios {
 
 struct Estimate;
@@ -30,8 +30,8 @@ bool has_implausible_readings(const Estimate& estimate);
 /// Sets the health entry `localised` and returns its value: false if a finding contradicts the pose in the map.
 bool report_localised(Estimate& estimate);
 
-/// These functions write and read a finding in estimate.json (ESTIMATE.md). Reading throws BadInput with the file name
-/// for an invalid finding.
+/// The functions json_of and finding_from write and read a finding in estimate.json (ESTIMATE.md). Reading throws
+/// BadInput with the file name for an invalid finding.
 nlohmann::json json_of(const HealthFinding& finding);
 HealthFinding finding_in(const std::filesystem::path& path, const nlohmann::json& object);
 

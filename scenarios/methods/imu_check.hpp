@@ -7,7 +7,8 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 
-/// These functions run the library's checks of IMU readings (imu_findings.hpp) and report the results in an estimate.
+/// The functions in imu_check.hpp run the library's checks of IMU readings (imu_findings.hpp) and report the results in
+/// an estimate.
 namespace tumble::scenarios {
 
 /// Returns the description of the primary IMU that the library's checks need.

@@ -44,7 +44,8 @@ struct Estimate {
   /// An element is true if its pose is in a slip event with uncertain displacement; parallel to `poses`, and empty if
   /// not estimated.
   std::vector<bool> uncertain;
-  /// This vector is the estimated position of the sphere's centre relative to the centre of mass, in body axes [m].
+  /// The vector `centre_B_m` is the estimated position of the sphere's centre relative to the centre of mass, in body
+  /// axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`

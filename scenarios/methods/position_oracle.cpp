@@ -41,7 +41,7 @@ bool prepare(const char* method, const sim::Sensors& sensors, Prepared& out, Est
   return true;
 }
 
-/// Returns the smoother's settings without the `fixed` parameters, which the oracle method takes from the truth.
+/// Returns the smoother's settings without the `fixed` parameters, which the method takes from the truth.
 Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
@@ -85,7 +85,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// The oracle method lacks the parameters of the attitude estimate, because its attitude is exact.
+/// A method with the true attitude lacks the parameters of the attitude estimate.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",

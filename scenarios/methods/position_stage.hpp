@@ -6,8 +6,8 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 
-/// These functions use a position method as the first stage of a sphere's slam method. The slam method has all
-/// parameters of the position method under equal names.
+/// The functions in position_stage.hpp use a position method as the first stage of a sphere's slam method. The slam
+/// method has all parameters of the position method under equal names.
 namespace tumble::scenarios {
 
 /// Returns the settings `own` of the slam method, followed by the settings of `position`. The two groups of settings

@@ -4,10 +4,10 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/processes/shared_memory.hpp"
 
-/// These functions exchange sensor data and results with a Python function through shared memory. In both directions,
-/// the memory contains the length of a JSON text (uint64, little endian), the text, and arrays. The arrays start at the
-/// next multiple of 64 bytes. The JSON text describes each array as {"dtype": "<f8", "shape": [N, 3], "offset": bytes
-/// after the start of the first array}; python_runner.py implements the Python side.
+/// The functions in python_exchange.hpp exchange sensor data and results with a Python function through shared memory.
+/// In both directions, the memory contains the length of a JSON text (uint64, little endian), the text, and arrays. The
+/// arrays start at the next multiple of 64 bytes. The JSON text describes each array as {"dtype": "<f8", "shape": [N,
+/// 3], "offset": bytes after the start of the first array}; python_runner.py implements the Python side.
 namespace tumble::scenarios {
 
 /// Writes all sensor data to shared memory. The names of the arrays are those of the Python package

@@ -5,8 +5,8 @@
 
 #include "scenarios/methods/external_description.hpp"
 
-/// These functions run a method that is one function of a Python file (EXTERNAL.md). The Python function receives the
-/// sensor data in shared memory, in a separate interpreter that only needs numpy.
+/// The functions in python_method.hpp run a method that is one function of a Python file (EXTERNAL.md). The Python
+/// function receives the sensor data in shared memory, in a separate interpreter that only needs numpy.
 namespace tumble::scenarios {
 
 /// Calls the Python function with the sensor data and returns the estimate. The text `transcript` receives the printed

@@ -11,8 +11,8 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// These functions estimate rates by the published method Saave. The rate method and the slam methods of Saave use
-/// these functions.
+/// The functions in rate_saave.hpp estimate rates by the published method Saave. The rate method and the slam methods
+/// of Saave use these functions.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();

@@ -29,7 +29,7 @@ const std::vector<std::string>& stated_densities();
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params);
 
 /// Returns the parameters of the rate smoother for an IMU record. The values in `parameters` override the values of the
-/// record, which override the defaults of `settings`.
+/// IMU record, which override the defaults of `settings`.
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
                                      const sim::Values& parameters);
 

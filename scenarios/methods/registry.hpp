@@ -83,12 +83,12 @@ struct KnownMotion {
 
 /// SlamChain contains the options of the lidar-inertial mapping chain.
 struct SlamChain {
-  /// If true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. With this calibration, the
+  /// If true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. If `calibration` is true, the
   /// mapping chain processes the recording twice. The second pass over the recording starts with the calibration from
   /// the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
-  /// This function is OracleInput::on_sweep, which displays progress.
+  /// The function `on_sweep` is OracleInput::on_sweep, which displays progress.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 

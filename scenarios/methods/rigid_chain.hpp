@@ -50,8 +50,8 @@ Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
-/// These functions return the settings of the rigid methods, and convert parameter values to the library's parameters.
-/// The lidar mounting T_IL comes from the calibration.
+/// The functions rigid_settings and rigid_params return the settings of the rigid methods, and convert parameter values
+/// to the library's parameters. The lidar mounting T_IL comes from the calibration.
 const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 

@@ -10,7 +10,7 @@ namespace tumble::scenarios::presets {
 /// Returns the vector from the rig's centre of mass to the MTi-30, in IMU axes, from `models/rig.xml`.
 Eigen::Vector3d rig_lever_arm_m();
 
-/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres. Lidar returns inside the box
+/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres. Lidar points inside the box
 /// are hits on the rig.
 Eigen::AlignedBox3d rig_body_L();
 

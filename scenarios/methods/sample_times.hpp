@@ -20,9 +20,9 @@ Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Esti
 Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
 /// Wraps the function of a method with the correction of sample times and the removal of outliers. All methods of
-/// tumble use this wrapper, except those that call the public API classes, which correct time stamps. Published methods
-/// receive the original time stamps. A method that uses the truth receives all outliers, because the truth has one
-/// value per sample.
+/// tumble use the wrapper, except methods that call the public API classes, which correct time stamps. Published
+/// methods receive the original time stamps. A method that uses the truth receives all outliers, because the truth has
+/// one value per sample.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   const auto timed = [&](const sim::Sensors& kept) {

@@ -44,14 +44,16 @@ void visit_numbers(Params& params, Each each) {
 
 /// SettingsOptions lists the fields of a `Params` struct that a method treats specially.
 struct SettingsOptions {
-  /// This list names the fields whose values the recording contains, unless the user sets them; a name may end in `*`.
+  /// The list `stated` names the fields whose values the recording contains, unless the user sets them; a name may end
+  /// in `*`.
   std::vector<std::string> stated = {};
-  /// This list names the fields that follow from other parameters and cannot be set; a name may end in `*`.
+  /// The list `fixed` names the fields that follow from other parameters, so users cannot set them; a name may end in
+  /// `*`.
   std::vector<std::string> fixed = {};
-  /// This list names the fields that the list of parameters shows first.
+  /// The list `first` names the fields that appear first in the list of parameters.
   std::vector<std::string> first = {};
-  /// This list contains the parameters of another stage of the method. A field with the same name as one of these
-  /// parameters gets `prefix` before its name.
+  /// The list `beside` contains the parameters of another stage of the method. A field with the same name as a
+  /// parameter of the other stage gets `prefix` before its name.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };

@@ -10,7 +10,8 @@
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 
-/// These functions compute the attitude for position methods of the sphere that do not estimate the attitude.
+/// The functions in sphere_attitude.hpp compute the attitude for position methods of the sphere that do not estimate
+/// the attitude.
 namespace tumble::scenarios {
 
 /// SphereAttitude contains the samples of the primary IMU after removal of the gyro bias, and the attitude at the end

@@ -137,7 +137,7 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. This cleanup is
+  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. The cleanup of HDF5 is
   // unnecessary, because the handles of this project close all files.
   static const herr_t once = H5dont_atexit();
   (void)once;

@@ -35,8 +35,9 @@ enum class GyroUnit { rad_s, deg_s };
 /// - The reader accepts the names that export_csv writes (each once, without other names).
 /// - The reader accepts short forms of these names (sec nsec wx.. fx.. or ax..).
 /// - The reader accepts names of ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x",
-///   ".../linear_acceleration/x", and y and z. These names may have points instead of slashes, as written by `rostopic
-///   echo -p` and bagpy. The reader uses the stamps of the message headers, instead of the times of recording.
+///   ".../linear_acceleration/x", and y and z. Names of ROS messages may have points instead of slashes, as written by
+///   `rostopic echo -p` and bagpy. The reader uses the stamps of the message headers, instead of the times of
+///   recording.
 /// - The reader accepts names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...",
 ///   "#timestamp [ns],w_RS_S_x [rad s^-1],..."
 ///

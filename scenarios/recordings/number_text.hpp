@@ -17,7 +17,7 @@ bool parse_number(std::string_view text, double& value);
 
 /// Parses a time, and converts it to nanoseconds by moving the decimal point by `decimals`: 9 for s, 6 for ms, 3 for
 /// us, 0 for ns. The time has the same notation as a number for parse_number. The result is exact, apart from rounding
-/// to whole nanoseconds. Returns nothing for another text, or for a time beyond the year 2255.
+/// to whole nanoseconds. Returns nothing for an invalid text, or for a time beyond the year 2255.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
 /// Parses a time stamp since 1970: decimal seconds, a whole number of 13, 16 or 19 digits (ms, us, ns), or a date in

@@ -81,7 +81,7 @@ void point_fields(Archive& archive, Points& points) {
   archive.rows("ring", points.ring, "1", "", Storage::deflated);
 }
 
-/// Visits the fields of a lidar's sweeps and points. The points are in the record or on disk (`lidar.sweeps`,
+/// Visits the fields of a lidar's sweeps and points. The points are in the lidar record or on disk (`lidar.sweeps`,
 /// `lidar.points`).
 template <class Archive, class Lidar>
 void lidar_fields(Archive& archive, Lidar& lidar) {

@@ -9,8 +9,8 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// These classes write output atomically: to a temporary file next to the final path, which is then renamed. The rename
-/// replaces only regular files.
+/// The classes in replace_file.hpp write output atomically: to a temporary file next to the final path, which is then
+/// renamed. The rename replaces only regular files.
 namespace tumble::scenarios {
 
 /// OutputFile is an unfinished output file next to its final path. The temporary file is removed unless it is moved to

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-/// These functions restore IMU time stamps that were rounded to milliseconds, although the period is not a whole number
-/// of milliseconds.
+/// The functions in rounded_stamps.hpp restore IMU time stamps that were rounded to milliseconds, although the period
+/// is not a whole number of milliseconds.
 namespace tumble::scenarios {
 
 /// Returns whether the time stamps are rounded to milliseconds. Rounded time stamps are whole milliseconds after the

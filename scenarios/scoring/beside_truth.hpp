@@ -11,9 +11,9 @@
 #include "scenarios/scoring/scored_estimate.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
-/// These functions pair the poses and rates of an estimate with the truth, for several groups of metrics. Each result
-/// is computed at its first use and cached for the estimate. All functions throw the exceptions of TruthTrack and
-/// ClippingTruth.
+/// The functions in beside_truth.hpp pair the poses and rates of an estimate with the truth, for several groups of
+/// metrics. Each result is computed at its first use and cached for the estimate. All functions throw the exceptions of
+/// TruthTrack and ClippingTruth.
 namespace tumble::scenarios {
 
 /// Returns the true motion of the estimate's frame.

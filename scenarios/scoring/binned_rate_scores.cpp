@@ -14,8 +14,8 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// These metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
-/// clipped axes.
+/// The metrics in binned_rate_scores.cpp are rate errors over clipped samples with similar clipping depth, clipping
+/// duration or number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {

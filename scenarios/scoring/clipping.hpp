@@ -22,13 +22,13 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// sqrt(density^2 / period), but at least 1e-6 rad/s. The scores ignore saturation deficits below the tolerance.
 ///
 /// If the elements are tilted (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes.
-/// This change is the saturation deficit times entries of the inverse of M. An axis has a cross-axis error if another
-/// element changes its reading by more than the tolerance, while its element is unsaturated. An axis with a cross-axis
-/// error does not count as clipped.
+/// The readings of the other axes change by the saturation deficit times entries of the inverse of M. An axis has a
+/// cross-axis error if another element changes its reading by more than the tolerance, while its element is
+/// unsaturated. An axis with a cross-axis error does not count as clipped.
 ///
 /// If the truth comes from a reference instrument, it contains rates, but no unclipped readings (FORMAT.md,
-/// "References"). In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp).
-/// Cross-axis errors are then unknown. Samples without a reference rate are not scored.
+/// "References"). With a reference, an axis is clipped if the reference confirms saturation (reference_clipping.hpp).
+/// With a reference, cross-axis errors are unknown. The scores ignore samples without a reference rate.
 class ClippingTruth {
  public:
   struct Sample {

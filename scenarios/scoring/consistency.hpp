@@ -3,8 +3,8 @@
 
 #include <vector>
 
-/// These functions compare estimation errors with reported covariances. Each normalised error is a squared error
-/// divided by its reported variance, with one degree of freedom.
+/// The functions in consistency.hpp compare estimation errors with reported covariances. Each normalised error is a
+/// squared error divided by its reported variance, with one degree of freedom.
 namespace tumble::scenarios {
 
 /// Returns the squared error divided by its reported variance. For a variance of 0, the result is infinite unless the

@@ -14,9 +14,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the latest end time of a sweep that the comparison uses. This time is a quarter of a period after the end of
-// the last sweep that the primary IMU covers completely. If the IMU covers only a part of a sweep, some methods drop
-// the sweep and others shorten it.
+// Returns the latest end time of a sweep that the comparison uses. The comparison ends a quarter of a period after the
+// end of the last sweep that the primary IMU covers completely. If the IMU covers only a part of a sweep, some methods
+// drop the sweep and others shorten it.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;

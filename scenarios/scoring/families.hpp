@@ -23,7 +23,7 @@ std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
 std::vector<Metric> health_metrics();       ///< for all kinds: how well the health detects wrong estimates
 
-/// These functions return quantities other than metrics: costs, motion values, and the quantities for binned metrics.
+/// Returns quantities other than metrics: costs, motion values, or the quantities for binned metrics.
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// These metrics measure whether an estimate is wrong, and whether its health reports the error.
+// The metrics in health_scores.cpp measure whether an estimate is wrong, and whether its health reports the error.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

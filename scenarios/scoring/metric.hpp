@@ -16,9 +16,9 @@ namespace tumble::scenarios {
 /// the sense `none` is not ranked (costs, counts, properties of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// Unit is the unit of the stored values of a metric. A metric in the unit `share` is in [0, 1]. A metric in the unit
-/// `verdict` is 0, or 1 for a failure; only the fraction of failures over many runs is meaningful. A metric in the unit
-/// `time_offset` is signed, stored in seconds and displayed in milliseconds.
+/// Unit is the unit in which the values of a metric are stored. A metric in the unit `share` is in [0, 1]. A metric in
+/// the unit `verdict` is 0, or 1 for a failure; only the fraction of failures over many runs is meaningful. A metric in
+/// the unit `time_offset` is signed, stored in seconds and displayed in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 /// Returns the unit at the end of metric names: "1", "rad", "rad/s", …
 const char* symbol(Unit unit);

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-/// These functions detect the clipped readings of a real gyro with a reference of the rate. The detection is
-/// independent of the detection in the estimator.
+/// The functions in reference_clipping.hpp detect the clipped readings of a real gyro with a reference of the rate. The
+/// detection is independent of the detection in the estimator.
 namespace tumble::scenarios {
 
 /// ReferenceRail is the saturation limit of axis j with sign s, a tilted plane of readings: s y_j = rail + slopes *

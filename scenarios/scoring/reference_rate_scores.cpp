@@ -63,7 +63,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
 }
 
 /// Returns the variance of the reference rate for each axis. The variance follows from the interquartile range of the
-/// difference between reference and unclipped gyro. This difference is assumed to be normally distributed.
+/// difference between reference and unclipped gyro. The difference between reference and gyro is assumed to be normally
+/// distributed.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();

@@ -10,20 +10,21 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// These metrics compare the slip and slide events that a position method detects with the true events.
+/// The metrics in slip_scores.cpp compare the slip and slide events that a position method detects with the true
+/// events.
 ///
 /// A slip event is a time interval with the contact labels slip and slide. The interval may contain up to kBridge_ns of
 /// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event is scored if
 /// it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower true events are
 /// indistinguishable from grip and cause no position error. The scores do not distinguish slip and slide.
 ///
-/// An estimated slip event is correct if true events cover at least half of it. This test also uses weak and short true
-/// events, and widens each true event by kMargin_ns. A true slip event is detected if correct estimated events cover at
-/// least half of it.
+/// An estimated slip event is correct if true events cover at least half of it. To test whether an estimated event is
+/// correct, the scores also use weak and short true events, and widen each true event by kMargin_ns. A true slip event
+/// is detected if correct estimated events cover at least half of it.
 ///
 /// The position is lost in a true slip event if the horizontal error grows by more than kLost_m during the event. The
-/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m. For these two tests,
-/// the event is widened by kMargin_ns on either side.
+/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m. To test for the loss
+/// and its report, the event is widened by kMargin_ns on either side.
 namespace tumble::scenarios {
 
 namespace {

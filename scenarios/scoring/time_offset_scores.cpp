@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// OffsetFit fits a time offset by least squares to `behind = offset * change`. Here, `behind` is the error of the
+/// OffsetFit fits a time offset by least squares to `behind = offset * change`. The vector `behind` is the error of the
 /// estimate, and `change` is the rate of change of the truth.
 class OffsetFit {
  public:

@@ -63,8 +63,8 @@ class TruthTrack {
   std::vector<bool> rest_;
 };
 
-/// PairedPose contains the estimated and the true pose at one time. Both poses are in W, after alignment of the
-/// estimate with the truth.
+/// PairedPose contains the estimated and the true pose at one time. The estimated and the true pose are in W, after
+/// alignment of the estimate with the truth.
 struct PairedPose {
   std::int64_t time_ns = 0;
   PoseState estimate;

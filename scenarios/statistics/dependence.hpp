@@ -7,7 +7,7 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// These functions compute the statistical dependence between two numbers over a set of simulated runs.
+/// The functions in dependence.hpp compute the statistical dependence between two numbers over a set of simulated runs.
 namespace tumble::scenarios {
 
 /// Returns the ranks of the values, starting from 1. Equal values get the mean of their ranks. Infinite values are

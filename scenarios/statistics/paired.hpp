@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-/// These functions test the paired results of two methods on the same simulated runs. The p-value is the probability of
-/// a result at least as extreme as the observed result, if the methods do not differ. Differences that are NaN or zero
-/// are ignored. Infinite differences (one method failed) get the highest ranks.
+/// The functions in paired.hpp test the paired results of two methods on the same simulated runs. The p-value is the
+/// probability of a result at least as extreme as the observed result, if the methods do not differ. Differences that
+/// are NaN or zero are ignored. Infinite differences (one method failed) get the highest ranks.
 namespace tumble::scenarios {
 
 /// Above kExactPairsMax differences, the signed-rank test uses the normal approximation.

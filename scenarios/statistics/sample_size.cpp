@@ -34,8 +34,8 @@ double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Returns the fraction of pairs of differences whose sum is positive, equation (S10) of statistics.md. A sum of zero
-/// counts half.
+/// Returns the fraction of pairs of differences whose sum is positive, equation (S10) of statistics.md. A pair with a
+/// sum of zero counts half.
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;

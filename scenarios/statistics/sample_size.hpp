@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <span>
 
-/// These functions compute how many pairs a test needs to detect an effect that is as large as the observed effect. The
-/// observed effect is uncertain. If the observed effect is due to chance, the computed number of pairs is too small.
+/// The functions in sample_size.hpp compute how many pairs a test needs to detect an effect that is as large as the
+/// observed effect. The observed effect is uncertain. If the observed effect is due to chance, the computed number of
+/// pairs is too small.
 namespace tumble::scenarios {
 
 struct Plan {

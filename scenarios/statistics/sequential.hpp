@@ -14,9 +14,10 @@ double spent_by(double risk, double share);
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations
 /// (S13) to (S15) of statistics.md. Each interim analysis sets a threshold for the count of positive signs and for the
 /// count of negative signs. If the methods do not differ, the probability of having reached a threshold is at most the
-/// part of the risk that may be spent so far. This probability is exact, because its distribution excludes the outcomes
-/// that reached an earlier threshold. Zero differences are ignored. The caller may choose the number and times of
-/// interim analyses if they do not depend on the results. The cost is O(pairs * sqrt(all pairs)).
+/// part of the risk that may be spent so far. The probability of reaching a threshold is exact, because its
+/// distribution excludes outcomes that reached an earlier threshold. Zero differences are ignored. The caller may
+/// choose the number and times of interim analyses if they do not depend on the results. The cost is O(pairs * sqrt(all
+/// pairs)).
 class SequentialSignTest {
  public:
   enum class Verdict { open, negative, positive };  ///< the more frequent sign
@@ -43,8 +44,8 @@ class SequentialSignTest {
   double risk_;
   double share_ = 0.0, spent_a_side_ = 0.0;
   std::int64_t pairs_ = 0, needed_ = 0;
-  // This list contains the probability of each number of positive signs, starting with `lowest_`, without an earlier
-  // stop.
+  // The list `going_on_` contains the probability of each number of positive signs, starting with `lowest_`, without an
+  // earlier stop.
   std::int64_t lowest_ = 0;
   std::vector<double> going_on_ = {1.0};
   Verdict verdict_ = Verdict::open;

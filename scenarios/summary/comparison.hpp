@@ -9,8 +9,8 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// These functions compare two methods on the same simulated runs: size and significance of the difference
-/// (docs/maths/statistics.md).
+/// The functions in comparison.hpp compare two methods on the same simulated runs: size and significance of the
+/// difference (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
 /// Margin is the largest accepted deficit of a method (non-inferiority margin). The margin is in the unit of the
@@ -56,8 +56,8 @@ struct MetricComparison {
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// This interval is the median of the paired differences, method minus reference, with its BCa interval. For a metric
-  /// with a target, each difference is between two distances from the target (`how_bad`).
+  /// The member `difference` is the median of the paired differences, method minus reference, with its BCa interval.
+  /// For a metric with a target, each difference is between two distances from the target (`how_bad`).
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` corrected by Holm over all metrics of the comparison

@@ -10,7 +10,7 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// These functions compute curves: a metric over a varied number, or over a quantity of the simulated runs.
+/// The functions in curves.hpp compute curves: a metric over a varied number, or over a quantity of the simulated runs.
 namespace tumble::scenarios {
 
 /// CurvePoint summarises one method at one x value of a curve, over all simulated runs. Failed runs rank worst, so a
@@ -45,10 +45,10 @@ struct Curve {
   std::vector<std::string> bins = {};
 };
 
-/// Computes every curve that the results allow. Each scenario and headline metric (first in the report) has a curve for
-/// each varied number. Each quantity with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve. Each
-/// clipping quantity of the simulated runs has a curve with at least three bins of equal counts. A run counts as failed
-/// if its status is not `ok` or its map failed. The cost is O(number of scores * log).
+/// Computes every curve for which the results contain data. Each scenario and headline metric (first in the report) has
+/// a curve for each varied number. Each quantity with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve.
+/// Each clipping quantity of the simulated runs has a curve with at least three bins of equal counts. A run counts as
+/// failed if its status is not `ok` or its map failed. The cost is O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
 /// Computes every curve from the results and the motion values `draws`. The function also computes `summary` in the
 /// same pass over the results.

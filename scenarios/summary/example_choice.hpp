@@ -9,7 +9,7 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// These functions choose which simulated runs of a sweep become examples, from the results alone.
+/// The functions in example_choice.hpp choose which simulated runs of a sweep become examples, from the results alone.
 namespace tumble::scenarios {
 
 /// ExampleCandidate is a scenario of the sweep, in the order of the suite.

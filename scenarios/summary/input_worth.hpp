@@ -9,7 +9,8 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/suite_triage.hpp"
 
-/// These functions find which true input improves a method most, over many simulated runs (docs/maths/statistics.md).
+/// The functions in input_worth.hpp find which true input improves a method most, over many simulated runs
+/// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
 /// InputWorth is the effect of replacing one input of a method by its true value. Only simulated runs on which the
@@ -23,8 +24,8 @@ struct InputWorth {
   std::int64_t broken = 0;             ///< failures only with the true input
   Interval cured_share{};              ///< fraction of `failed` (Clopper and Pearson, 95 %); NaN if `failed` is 0
   std::int64_t better = 0, worse = 0;  ///< draws, by the metric
-  /// This interval is the median decrease of the metric's badness (`how_bad`), with its BCa interval. Runs that are not
-  /// ok rank worst. The interval is NaN if no run has the metric.
+  /// The member `improvement` is the median decrease of the metric's badness (`how_bad`), with its BCa interval. Runs
+  /// that are not ok rank worst. The interval is NaN if no run has the metric.
   Interval improvement{};
   double chance = 1.0;     ///< p-value of the two-sided signed-rank test
   double corrected = 1.0;  ///< corrected by Holm, over all rows

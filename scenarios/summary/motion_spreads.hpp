@@ -8,7 +8,7 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// These functions compare simulated motions with the published experiment with the tumbling rig.
+/// The functions in motion_spreads.hpp compare simulated motions with the published experiment with the tumbling rig.
 namespace tumble::scenarios {
 
 /// Spread contains the values of one quantity over the simulated runs of one scenario. Simulated runs without a value
@@ -19,7 +19,7 @@ struct Spread {
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< text about the published value; empty if none
-  /// These limits are the published range in `unit`; equal limits mean one number, and NaN means no published value.
+  /// The published range in `unit` has two limits; equal limits mean one number, and NaN means no published value.
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< from SI to `unit`

@@ -7,7 +7,7 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// These functions select methods, metrics and simulated runs of a summary.
+/// The functions in selection.hpp select methods, metrics and simulated runs of a summary.
 namespace tumble::scenarios {
 
 /// Returns whether `name` denotes the method. The name "tumble" matches the method of every kind; "rate/tumble" matches

@@ -13,8 +13,8 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
-/// These functions compute how the scores of a method depend on each random number of its simulated runs
-/// (docs/maths/statistics.md).
+/// The functions in sensitivity.hpp compute how the scores of a method depend on each random number of its simulated
+/// runs (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
 /// An influence is significant if its corrected p-value is at most kInfluenceRisk.
@@ -36,8 +36,8 @@ struct Influence {
   Correlation correlation;  ///< correlation with the badness; positive if larger numbers are worse
   FirstOrder first_order;   ///< of the ranks of the score
   double corrected = 1.0;   ///< p-value of both statistics, corrected by Holm over all numbers of the row
-  /// These numbers are the median score over the quarter of the runs with the lowest numbers, and over the quarter with
-  /// the highest numbers.
+  /// The member `median_low` is the median score over the quarter of the runs with the lowest numbers; `median_high` is
+  /// that of the highest numbers.
   double median_low = 0.0, median_high = 0.0;
   /// The partial dependence is the median score, or the fraction of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};

@@ -19,8 +19,8 @@ struct WorkerTerms {
   double timeout_s;                ///< time limit of a method
   double memory_mib;               ///< memory limit of the worker and of each process that it starts
   bool recordings_unseen = false;  ///< as in SweepOptions
-  /// This folder is for temporary files of the worker and its methods, because a killed process cannot remove its
-  /// files.
+  /// The folder `temporary` is for temporary files of the worker and its methods, because a killed process cannot
+  /// remove its files.
   std::filesystem::path temporary = {};
 };
 

@@ -45,16 +45,16 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 void require_applies(const Method& method, const Scenario& scenario);
 
 /// Runs a method on the sensor data of `draw`, and returns the estimate. After an exception or an error status, the
-/// status of `outcome` is failed. Otherwise, the status of `outcome` is ok, and the estimate can be scored. The CPU
-/// time of the method becomes the first score.
+/// status of `outcome` is failed. Without an error, the status of `outcome` is ok, and the estimate can be scored. The
+/// CPU time of the method becomes the first score.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
 /// Adds the status and the scores of a completed estimate to the outcome. The pointer `surface` may be null.
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns the original simulated run `draw` with the IMU time stamps of `given`. With these time stamps, an estimate
-/// is compared with the truth of the IMU sample to which it belongs, even if time stamps were changed.
+/// Returns the original simulated run `draw` with the IMU time stamps of `given`. With the time stamps of `given`, each
+/// estimate is compared with the truth of its IMU sample, even if time stamps were changed.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
 /// Returns the CPU time of this process and of its finished children [s].

@@ -14,8 +14,8 @@
 
 /// A gate compares new results of a suite with accepted results, separately for each simulated run.
 ///
-/// Both results contain the same simulated runs with equal sensor data, so differences between seeds cancel in each
-/// pair. The gate makes the following checks for each scenario and method in the accepted results.
+/// New and accepted results contain the same simulated runs with equal sensor data, so differences between seeds cancel
+/// in each pair. The gate makes the following checks for each scenario and method in the accepted results.
 ///
 /// The check of outcomes requires that a run that was ok is ok again, and that no pass-fail metric (`map_failed`)
 /// changes to 1. The check of presence requires that an ok outcome still has every metric of the accepted outcome.
@@ -60,7 +60,7 @@ struct GatePolicy {
 };
 
 /// Gate contains the accepted results of a suite, and the limits for new results. The file scenarios/gates/SUITE.yaml
-/// contains the limits, and SUITE.csv contains the results. Both files are kept in git.
+/// contains the limits, and SUITE.csv contains the results. The two files of a gate are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -74,8 +74,8 @@ std::vector<std::string> gate_names(const DataRoot& data);
 /// for an unknown gate suggests the nearest name. Throws BadInput also for an unknown key, kind, method, metric or
 /// status, a wrong row length, or a number out of bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
-/// These functions return the limits and the accepted results of a gate as text that `load_gate` can read. Reading
-/// restores all numbers exactly.
+/// Returns the limits or the accepted results of a gate as text that `load_gate` can read. Reading restores all numbers
+/// exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
@@ -101,8 +101,8 @@ struct GateResult {
 /// results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Such results must not become
-/// accepted results.
+/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Results without an ok outcome
+/// must not become accepted results.
 void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

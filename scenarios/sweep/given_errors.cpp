@@ -68,7 +68,7 @@ void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, dou
   sensors.sphere_radius_m += size;
 }
 
-/// Sets the range in the record above every reading, so that no reading counts as clipped.
+/// Sets the measurement range of the IMU above every reading, so that no reading counts as clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
@@ -93,8 +93,8 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Changes the range in the record relative to the true saturation level. The function also removes the clip flags of
-/// the device, which would reveal the true level.
+/// Sets the measurement range of the IMU relative to the true saturation level. The function also removes the clip
+/// flags of the device, which would reveal the true level.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);

@@ -14,8 +14,8 @@
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// These functions keep recordings and estimates of a sweep's simulated runs next to its database (README.md, "What is
-/// kept").
+/// The functions in keep.hpp keep recordings and estimates of a sweep's simulated runs next to its database (README.md,
+/// "What is kept").
 namespace tumble::scenarios {
 
 /// Keep is the rule that selects which simulated runs of a sweep are kept on disk. The selection depends only on the
@@ -45,7 +45,8 @@ struct DrawName {
 /// Returns the simulated runs that the keep rule selects. The rule `all` keeps every run in the results. The rule
 /// `failed` keeps runs whose status is not ok. The rule `worst` keeps the worst runs of each scenario and each method
 /// that does not use the truth. The first headline metric of the method's kind ranks the runs. Runs that are not ok
-/// rank worst. Among equally bad runs, lower seeds are kept first. Rejected runs have no recording and are never kept.
+/// rank worst. Among equally bad runs, lower seeds are kept first. A run that could not be simulated has no recording
+/// and is never kept.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
 /// KeptDraws is the folder of kept runs next to a database, FILE.db.files/kept. Each run has a folder SCENARIO/SEED/

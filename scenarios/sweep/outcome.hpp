@@ -55,7 +55,7 @@ bool outranks(OutcomeStatus status, OutcomeStatus other);
 bool may_run_again(OutcomeStatus status);
 
 /// RejectedDraw is a scenario and a seed with which the simulation is impossible on any machine. In the database, a
-/// rejected run has an empty kind and method. If a process dies instead, the status of its methods is crashed, timeout
+/// RejectedDraw has an empty kind and method. If a process dies instead, the status of its methods is crashed, timeout
 /// or killed.
 struct RejectedDraw {
   std::string scenario;

@@ -8,8 +8,8 @@
 
 #include "scenarios/sweep/evaluate.hpp"
 
-/// These functions handle the recordings in a suite. Each recording counts as one simulated run, with the file's name
-/// as scenario and seed 1.
+/// The functions in recorded_draw.hpp handle the recordings in a suite. Each recording counts as one simulated run,
+/// with the file's name as scenario and seed 1.
 namespace tumble::scenarios {
 
 inline constexpr std::uint64_t kRecordingSeed = 1;

@@ -19,8 +19,8 @@
 namespace tumble::scenarios {
 
 /// ScoreRow is one row of the database view scores(scenario, seed, kind, method, status, metric, value). An outcome
-/// without scores has one row with an empty metric and the value NaN. A rejected run has one row with empty kind and
-/// method and the status `rejected`.
+/// without scores has one row with an empty metric and the value NaN. A run that could not be simulated has one row
+/// with empty kind and method and the status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -44,8 +44,8 @@ struct MergeCounts {
 /// Names contains the names that many rows share, such as names of metrics. The reader stores each name once.
 using Names = std::set<std::string, std::less<>>;
 
-/// OutcomeView refers to an outcome while the outcome is read. Its pointers are valid until the next outcome; pointers
-/// to names remain valid.
+/// OutcomeView refers to an outcome while the outcome is read. The pointers in an OutcomeView are valid until the next
+/// outcome; pointers to names remain valid.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< in the `Names` of the reader
@@ -92,9 +92,9 @@ class Results {
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// Copies all rows of the database `shard`, with constant memory; if both databases have a row, `outranks` decides.
-  /// The notes are not copied. Throws BadInput if two scored rows differ in status, digest or a score other than cost,
-  /// unless `mixed` is true.
+  /// Copies all rows of the database `shard`, with constant memory; of two rows with the same key, the row with the
+  /// higher-ranked status is kept (`outranks`). The notes are not copied. Throws BadInput if two scored rows differ in
+  /// status, digest or a score other than cost, unless `mixed` is true.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   /// Calls `work` within one transaction. If `work` throws, nothing is stored, and the exception is rethrown.
   void in_one_transaction(const std::function<void()>& work);

@@ -21,15 +21,15 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// ShardRow is a row of the table `outcomes` in the database that is copied (the shard). The texts in a ShardRow are
-/// valid until the next row is read.
+/// ShardRow is a row of the table `outcomes` in the source database (the shard). The texts in a ShardRow are valid
+/// until the next row is read.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
   double setting;
 };
 
-/// Joining copies the rows of a database (the shard) to another database with prepared statements. Joining reads
+/// Joining copies the rows of a source database (the shard) to another database with prepared statements. Joining reads
 /// outcomes and scores in parallel, sorted by the number of the outcome. The new numbers of the outcomes have the same
 /// order as the old numbers, so that scores are only appended.
 class Joining {
@@ -112,7 +112,7 @@ class Joining {
     statement.bind(4, row.setting);
   }
 
-  /// Moves to the next row of the statement. Error messages contain the path of the shard.
+  /// Moves to the next row of the statement. Error messages contain the path of the source database.
   bool next(SQLite::Statement& select) const {
     try {
       return select.executeStep();
@@ -253,7 +253,7 @@ class Joining {
                     path_.string(), words(row), metric, here, elsewhere));
   }
 
-  /// Visits the scores of a row in the shard, sorted by name. The caller must request the rows in order.
+  /// Visits the scores of a row in the source database, sorted by name. The caller must request the rows in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);

@@ -7,11 +7,11 @@
 
 namespace tumble::scenarios {
 
-// The database stores an unsigned 64-bit seed as a signed number with the same bits. A rejected run is an outcome with
-// an empty kind and method and the status 'rejected'. The view `scores` has a row for each score, and a row with a null
-// metric for an outcome without scores. The column `varied` contains the keys of a curve point, and `setting` contains
-// their value. For unmodified scenarios and methods, `varied` is empty. The view `scores` contains only rows with an
-// empty `varied`, and the view `curves` contains points of curves.
+// The database stores an unsigned 64-bit seed as a signed number with the same bits. A run that could not be simulated
+// is an outcome with an empty kind and method and the status 'rejected'. The view `scores` has a row for each score,
+// and a row with a null metric for an outcome without scores. The column `varied` contains the keys of a curve point,
+// and `setting` contains their value. For unmodified scenarios and methods, `varied` is empty. The view `scores`
+// contains only rows with an empty `varied`, and the view `curves` contains points of curves.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,

@@ -74,8 +74,8 @@ struct DrawValue {
   }
 };
 
-/// RowsInto inserts rows in order, with many rows per SQL statement. This reduces the fixed cost of a statement, which
-/// is as large as the cost of a row.
+/// RowsInto inserts rows in order, with many rows per SQL statement. Many rows per statement reduce the fixed cost,
+/// which is as large as the cost of a row.
 template <typename Row>
 class RowsInto {
  public:

@@ -11,7 +11,7 @@
 /// contain this command for failed runs.
 namespace tumble::scenarios {
 
-/// RunKey is the key of a row in the results; kind and method are empty for a rejected run.
+/// RunKey is the key of a row in the results; kind and method are empty for a run that could not be simulated.
 struct RunKey {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -20,8 +20,8 @@ struct RunKey {
 };
 RunKey key_of(const Outcome& outcome);
 
-/// These functions return the keys of the notes that a sweep stores so that runs can be repeated. The notes contain the
-/// path of an external method's description and the path of a recording.
+/// Returns the key of a note that a sweep stores so that runs can be repeated. The notes contain the path of an
+/// external method's description and the path of a recording.
 std::string description_note(const std::string& kind, const std::string& method);
 std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);

@@ -13,7 +13,8 @@
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/triage.hpp"
 
-/// These functions run the triage for many simulated runs, to find which true input helps most over a suite.
+/// The functions in suite_triage.hpp run the triage for many simulated runs, to find which true input helps most over a
+/// suite.
 namespace tumble::scenarios {
 
 /// DrawTriage is the triage result of one simulated run: outcomes with true inputs.

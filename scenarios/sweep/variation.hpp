@@ -29,7 +29,7 @@ struct Variation {
   std::vector<Setting> settings() const;
 };
 
-/// Reach states which part of a run a setting affects. This part is repeated for each value of the setting.
+/// Reach states which part of a run a setting affects. A run repeats the affected part for each value of the setting.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 

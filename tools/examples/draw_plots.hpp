@@ -9,7 +9,7 @@
 #include "tools/examples/example.hpp"
 #include "tools/pictures/paths.hpp"
 
-/// These functions plot one simulated run of any robot.
+/// The functions in draw_plots.hpp plot one simulated run of any robot.
 namespace tumble::tools {
 
 /// Returns the indices of the methods to plot, in increasing order. If there are more methods than colours, methods

@@ -12,7 +12,7 @@
 #include "sim/recording.hpp"
 #include "sim/render/renderer.hpp"
 
-/// These functions draw maps whose points are coloured by their distance to the true surface.
+/// The functions in map_pictures.hpp draw maps whose points are coloured by their distance to the true surface.
 namespace tumble::tools {
 
 /// Errors of at least kMapErrorMax_m have the last colour of the scale [m].

@@ -9,7 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// These functions compute paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
+/// The functions in paths.hpp compute paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
 namespace tumble::tools {
 
 /// Path is the path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass

@@ -10,7 +10,7 @@
 #include "sim/render/renderer.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// These functions provide viewpoints, times and paths for still pictures and animations.
+/// The functions in staging.hpp provide viewpoints, times and paths for still pictures and animations.
 namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);

@@ -6,8 +6,8 @@
 #include "tools/replay/motion.hpp"
 #include "tools/replay/replay.hpp"
 
-/// These functions provide the lidar points that a replay shows, with their distance to the true surface for a given
-/// motion.
+/// The functions in points.hpp provide the lidar points that a replay shows, with their distance to the true surface
+/// for a given motion.
 namespace tumble::tools {
 
 /// Selects at most `most` returns of the first lidar, spread evenly over its sweeps and beams. Return i is selected if

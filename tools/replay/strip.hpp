@@ -5,7 +5,8 @@
 
 #include "tools/replay/replay.hpp"
 
-/// These functions provide readings of the primary gyro, and the rate in gyro axes by the truth and by estimates.
+/// The functions in strip.hpp provide readings of the primary gyro, and the rate in gyro axes by the truth and by
+/// estimates.
 namespace tumble::tools {
 
 /// Selects at most `most` samples of the primary IMU: all samples, or the fastest of each group of equal size. Clipped

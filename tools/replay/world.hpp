@@ -6,7 +6,7 @@
 
 #include "tools/replay/replay.hpp"
 
-/// These functions reduce the world of a replay to a size that fits into the page.
+/// The functions in world.hpp reduce the world of a replay to a size that fits into the page.
 namespace tumble::tools {
 
 /// Counts the triangles of a part, including the triangles of a height field's cells.

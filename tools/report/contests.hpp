@@ -9,8 +9,8 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// These functions compute the headline of a report: the best method of each section, its margin, and the statistical
-/// certainty.
+/// The functions in contests.hpp compute the headline of a report: the best method of each section, its margin, and the
+/// statistical certainty.
 namespace tumble::tools {
 
 /// Certainty is the statistical significance of a difference.

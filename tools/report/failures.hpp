@@ -10,7 +10,7 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// These functions list the simulated runs on which methods failed, with commands to repeat the runs.
+/// The functions in failures.hpp list the simulated runs on which methods failed, with commands to repeat the runs.
 namespace tumble::tools {
 
 /// kFailedDrawsShown is the maximum number of failed runs on the page.

@@ -7,7 +7,7 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// These functions select and run one method on a recording, without the truth.
+/// The functions in chosen_method.hpp select and run one method on a recording, without the truth.
 namespace tumble::tools {
 
 /// Returns the method with this name that can run on this recording without the truth. Throws BadInput if there is no

@@ -9,8 +9,8 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/importing.hpp"
 
-/// These functions report what `odometry` detected in a recording, and add properties that neither the recording nor
-/// the user supplies.
+/// The functions in found.hpp report what `odometry` detected in a recording, and add properties that neither the
+/// recording nor the user supplies.
 namespace tumble::tools {
 
 /// FoundItem is one detected or assumed property.

@@ -7,7 +7,7 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// These functions read an estimate that the command line names in addition to the recording.
+/// The functions in given_estimate.hpp read an estimate that the command line names in addition to the recording.
 namespace tumble::tools {
 
 /// Returns the frame of the poses in a TUM file: the frame that the user names, or else the first IMU, or the body if

@@ -11,7 +11,7 @@
 #include "tools/tumble/import_options.hpp"
 #include "tools/tumble/session.hpp"
 
-/// These functions read a recording of any format for `import`, `odometry` and `doctor`.
+/// The functions in importing.hpp read a recording of any format for `import`, `odometry` and `doctor`.
 namespace tumble::tools {
 
 /// Imports a recording of one format, with the notes of the reader and of the checks. The argument `rotation` receives

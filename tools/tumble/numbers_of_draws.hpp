@@ -8,7 +8,8 @@
 #include "scenarios/summary/sensitivity.hpp"
 #include "tools/tumble/session.hpp"
 
-/// These functions return the random numbers of the simulated runs in a results database, by scenario.
+/// The functions in numbers_of_draws.hpp return the random numbers of the simulated runs in a results database, by
+/// scenario.
 namespace tumble::tools {
 
 using NumbersByScenario = std::map<std::string, scenarios::NumbersOfDraws>;

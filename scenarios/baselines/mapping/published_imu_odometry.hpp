@@ -13,7 +13,7 @@ namespace tumble::baselines {
 
 /// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
 /// frame "odom". PublishedChain uses PublishedImuOdometry for deskewing and as initial pose of the registration. The
-/// estimated position is constant until the first velocity feedback.
+/// estimated position is constant until registration supplies the first velocity.
 class PublishedImuOdometry {
  public:
   /// Stores the IMU samples and `rates`, which contains one angular rate per sample that replaces the gyro reading. The

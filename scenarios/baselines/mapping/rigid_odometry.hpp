@@ -82,8 +82,7 @@ class RigidOdometry {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// These functions return the predicted and the registered motion state at the end of the last sweep, with
-  /// covariance.
+  /// The functions predicted() and registered() return the motion state at the end of the last sweep, with covariance.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

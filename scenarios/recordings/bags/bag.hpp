@@ -52,20 +52,20 @@ struct BagWriting {
   const StoredTruth* truth = nullptr;  ///< written if not null
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and differ from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();
-  /// This vector gives access to the points of each lidar on disk; null if the points are in the records.
+  /// The vector `points` gives access to the points of each lidar on disk; null if the points are in memory.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< if set: only the first IMU and the first lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
 
-/// These functions write a recording as a bag in one of the following three formats.
+/// Each export function writes a recording as a bag in one of the following three formats.
 ///
 /// - The ROS 1 format is version 2.0, written by librosbag.
 /// - The ROS 2 format is a folder with metadata.yaml (version 5) and a SQLite file of CDR messages with definitions
 ///   (schema 4, as since Iron).
 /// - The MCAP format is a file with profile ros2 (mcap.dev/spec), with indexed LZ4 chunks of 1 MiB and all checksums.
 ///
-/// All three formats contain the following topics.
+/// Bags in all three formats contain the following topics.
 ///
 /// - The topic "/NAME" is a sensor_msgs/Imu without attitude; its covariance is the white noise of the data sheet. The
 ///   text NAME is the exported name of the sensor (export_names). The topic of the primary IMU is the first topic of
@@ -116,14 +116,14 @@ struct BagReading {
   bool leave_out_topics = false;
 };
 
-/// These functions read a ROS 1 bag (a file or a folder of its parts, not encrypted), a ROS 2 bag, or an MCAP file. A
-/// ROS 2 bag is a folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP
-/// file may contain messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
+/// Each import function reads a ROS 1 bag (a file or a folder of its parts, not encrypted), a ROS 2 bag, or an MCAP
+/// file. A ROS 2 bag is a folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message.
+/// An MCAP file may contain messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
 /// The option `stamps` selects the message times. The notes of the result describe how the stamps of headers and
-/// records differ. The checks for CSV files compare the units with gravity. Specific force in g at rest, as from Livox
-/// drivers, is converted, with a note. Each sensor is named after its topic. The points of a bag are converted by the
-/// rules of import_sweeps. A duplicate message (equal stamp and content) is read once. Single faulty messages are
+/// records differ. The reader checks the units against gravity, as for CSV files. Specific force in g at rest, as from
+/// Livox drivers, is converted, with a note. Each sensor is named after its topic. The points of a bag are converted by
+/// the rules of import_sweeps. A duplicate message (equal stamp and content) is read once. Single faulty messages are
 /// skipped with a note (left_out.hpp).
 ///
 /// Unless the caller chooses topics, the reader skips clouds in the frames "world", "map" or "odom", because these

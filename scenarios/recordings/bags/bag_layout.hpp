@@ -26,8 +26,8 @@ struct PointColumn {
 
 /// SweepLayout describes the message layout of a sweep.
 struct SweepLayout {
-  /// These columns are the fields of a sensor_msgs/PointCloud2, in order, without gaps. The time fields are omitted if
-  /// the points have no times.
+  /// The list `columns` contains the fields of a sensor_msgs/PointCloud2, in order, without gaps. The time fields are
+  /// omitted if the points have no times.
   std::vector<PointColumn> columns;
   bool livox = false;          ///< writes a CustomMsg of Livox drivers, with times in ns, and ignores `columns`
   bool in_time_order = false;  ///< sorts points by time; else points keep the recording's order

@@ -24,7 +24,7 @@ class BagWriter {
  public:
   virtual ~BagWriter() = default;
   /// Registers these topics before all other topics, in the given order. Returns false if this type of bag registers
-  /// each topic with its first message. Such a bag may list other topics before these topics.
+  /// each topic with its first message. A bag that registers topics with their messages may list other topics first.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
   /// Writes a message to the bag. Messages must be sorted by time, and each topic has one message type. Throws BadInput
   /// if writing fails.

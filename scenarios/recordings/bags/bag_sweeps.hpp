@@ -11,14 +11,14 @@
 #include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/left_out.hpp"
 
-/// These functions read the point cloud topics of a bag.
+/// The functions in bag_sweeps.hpp read the point cloud topics of a bag.
 namespace tumble::scenarios {
 
 /// CloudHeaders contains the stamps and the frame of a topic's clouds, from a first pass that skips the points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
   std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
-  /// This list contains the start of the sweep in each message; empty for duplicate and skipped messages.
+  /// The list `starts` contains the start of the sweep in each message; empty for duplicate and skipped messages.
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;

@@ -13,7 +13,7 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// These classes encode messages in ROS 2's format CDR by the library Fast-CDR.
+/// The classes in cdr_archives.hpp encode messages in ROS 2's format CDR by the library Fast-CDR.
 namespace tumble::scenarios::ros {
 
 /// CdrBound computes an upper bound of a message's size in bytes, including padding.

@@ -78,7 +78,7 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
-/// Returns the first reading of each IMU, in the order of the sensors.
+/// Returns the event of each IMU's first reading, in the order of the sensors.
 std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& events) {
   std::vector<Event> first;
   for (std::size_t s = 0; s < imus; ++s) {

@@ -13,7 +13,7 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// These classes encode and decode records of MCAP files.
+/// The classes in mcap_bytes.hpp encode and decode records of MCAP files.
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);

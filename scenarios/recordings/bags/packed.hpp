@@ -11,9 +11,9 @@ namespace tumble::scenarios {
 /// Compresses the bytes to an LZ4 frame with independent blocks of at most 4 MiB, without checksums.
 std::string packed_lz4(std::string_view plain);
 
-/// These functions decompress any LZ4 frame (linked blocks, checksums, content size) or a series of Zstandard frames to
-/// exactly `bytes` bytes. The memory grows with the decompressed data, so a wrong size in the file cannot exhaust the
-/// memory. Throws BadInput, without a location, if the data are damaged or have another size.
+/// Decompresses any LZ4 frame (linked blocks, checksums, content size) or a series of Zstandard frames to exactly
+/// `bytes` bytes. The memory grows with the decompressed data, so a wrong size in the file cannot exhaust the memory.
+/// Throws BadInput, without a location, if the data are damaged or have another size.
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 

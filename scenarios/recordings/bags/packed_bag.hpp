@@ -8,7 +8,7 @@
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
 
-/// These functions read ROS 2 bags with Zstandard compression.
+/// The functions in packed_bag.hpp read ROS 2 bags with Zstandard compression.
 namespace tumble::scenarios {
 
 /// Decompresses files of Zstandard frames ("bag_0.db3.zstd") to a temporary folder, and calls `open` with the paths of

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-/// These classes encode and decode messages in ROS 1's little-endian layout. The decoder checks every length against
-/// the remaining bytes before it allocates memory.
+/// The classes in ros1_archives.hpp encode and decode messages in ROS 1's little-endian layout. The decoder checks
+/// every length against the remaining bytes before it allocates memory.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;

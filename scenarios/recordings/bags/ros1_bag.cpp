@@ -40,7 +40,7 @@ struct TypedBytes {
 
 }  // namespace tumble::scenarios
 
-// These traits of TypedBytes are the traits that librosbag requires of a message type.
+// The library librosbag requires the following traits of a message type.
 namespace ros {
 using tumble::scenarios::TypedBytes;
 namespace message_traits {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-/// These functions copy ROS 1 bags and decompress their chunks.
+/// The functions in ros1_chunks.hpp copy ROS 1 bags and decompress their chunks.
 namespace tumble::scenarios {
 
 /// Ros1Chunk is a chunk of a bag as stored in the file.
@@ -19,7 +19,7 @@ struct Ros1Chunk {
 /// Returns whether any chunk of the bag has LZ4 compression. The bag must have passed `check_ros1_bag`.
 bool has_lz4_chunks(const std::filesystem::path& file);
 
-/// Returns the size of the bag after its LZ4 chunks are decompressed [bytes]. The bag must have passed
+/// Returns the size that the bag will have after decompression of its LZ4 chunks [bytes]. The bag must have passed
 /// `check_ros1_bag`.
 std::uint64_t bytes_unpacked(const std::filesystem::path& file);
 

@@ -3,10 +3,10 @@
 
 #include <string>
 
-/// These functions return the message types and definitions that ROS 2 bags store.
+/// The functions in ros2_definitions.hpp return the message types and definitions that ROS 2 bags store.
 namespace tumble::scenarios {
 
-/// These functions convert a type name such as "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu" and back.
+/// Converts a type name such as "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu", or back.
 std::string ros2_type(const std::string& type);
 std::string ros1_type(std::string type);
 

@@ -22,7 +22,7 @@ struct Ros2Summary {
 
   /// Returns the index of a topic in the list; a new topic is appended.
   std::size_t place_of(const BagTopic& topic);
-  /// Counts a message of a topic and extends the time range.
+  /// Counts a message of a topic and extends the time range of the bag to its stamp.
   void count(const BagTopic& topic, std::int64_t stamp_ns);
 };
 

@@ -91,8 +91,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// Checks that all words of a text file are numbers, and that each line has as many numbers as the header claims.
-/// Without this check, PCL silently reads the start of a word, or 0, or NaN.
+/// Checks that all words of a text file are numbers, and that each line has as many numbers as the header claims. PCL
+/// alone would silently read the start of a word, or 0, or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');

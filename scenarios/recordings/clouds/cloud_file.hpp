@@ -43,8 +43,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// These functions read and check the header of a point file, without the points. The functions throw BadInput like
-/// read_cloud.
+/// Reads and checks the header of a point file, without the points. Both header readers throw BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

@@ -91,8 +91,8 @@ class HeaderLines {
     }
   }
 
-  /// PCL continues to read the header while lines are empty, are comments, or start with a header word. Point data that
-  /// look like header lines would therefore change the header.
+  /// The library PCL reads the header of a point file up to the first line that is not empty, not a comment and starts
+  /// with no header word. Point data that look like header lines would therefore change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));

@@ -53,19 +53,19 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
-  /// This list contains the time of the last point of each cloud, in the clock of the stamps; the sweep's start for
-  /// points without times; empty for a skipped cloud.
+  /// For each cloud, `last_point_ns` is the time of the last point, or the sweep's start for points without times;
+  /// empty for a skipped cloud.
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
 /// SweepBuilder builds a lidar record from clouds that arrive in order of time. The first ten clouds are kept in
 /// memory. Later, memory contains one cloud at a time if the points are stored on disk.
 ///
-/// A point counts as a ray without hit if it is not finite, farther than 1000 km, or at the origin. Intensities (column
-/// "intensity" or "reflectivity") up to 1 are unchanged. Intensities up to 255 are divided by 255, and larger
-/// intensities by the maximum. Ring numbers (column "ring", "line" or "channel") are integers up to 65535. A sweep
-/// starts at its time stamp. If the first point of a sweep is before the stamp, or a period after it, the sweep starts
-/// at the first point. A cloud must have the columns x, y and z; other columns are optional.
+/// A lidar point counts as a ray without hit if it is not finite, farther than 1000 km, or at the origin. Intensities
+/// (column "intensity" or "reflectivity") up to 1 are unchanged. If intensities exceed 1, they are divided by 255, or
+/// by their maximum if it exceeds 255. Ring numbers (column "ring", "line" or "channel") are integers up to 65535. A
+/// sweep starts at its time stamp. If the first point of a sweep is before the stamp, or a period after it, the sweep
+/// starts at the first point. A cloud must have the columns x, y and z; other columns are optional.
 ///
 /// A few points with times outside the sweep are skipped. A cloud is skipped if it lacks a field, has an invalid ring,
 /// or starts before the previous sweep. A cloud is also skipped if many points have times outside the sweep, or if most

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 /// Returns the files of a folder with the extension `ending` (".ply", in any case) in natural order ("9" before "10").
 /// Hidden files and leading zeros are ignored. The stem of a file name is the part before its last numbers ("lidar" in
 /// "lidar_000012"). All files must have the stem `stem`, or the same stem if `stem` is empty. Throws BadInput for a
-/// missing folder, no matching file, or several stems.
+/// missing folder, if no file matches, or if the files have several stems.
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem);
 
@@ -26,9 +26,9 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
 
 /// Reads time stamps from a text file, one per line; '#' starts a comment. A time stamp is decimal seconds, a whole
 /// number of 13, 16 or 19 digits (ms, us, ns), or a date in UTC, as in the raw data of KITTI. Throws BadInput with file
-/// and line for another text, or for a time stamp that does not increase. If `disorder` is not null, the function
-/// accepts time stamps that do not increase. The list `disorder` then receives a message for each of these time stamps,
-/// and "" for all others.
+/// and line for an invalid time stamp, or for a time stamp that does not increase. If `disorder` is not null, the
+/// function accepts time stamps that do not increase. The list `disorder` then receives a message for each of these
+/// time stamps, and "" for all others.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder = nullptr);
 
 /// Returns the median step of increasing times (the larger of two middle values), or 0 for fewer than two times.

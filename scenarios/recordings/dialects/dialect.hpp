@@ -49,14 +49,14 @@ Dialect norlab_dialect();
 
 std::span<const Dialect> all_dialects();
 
-/// These functions return a point layout with x y z and an intensity of 0 to 255 (float32), the ring (uint16), and the
-/// time since the sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds
-/// ("t", Ouster's driver).
+/// Returns a point layout with x y z and an intensity of 0 to 255 (float32), the ring (uint16), and the time since the
+/// sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's
+/// driver).
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 
-/// These functions return the names and the sweep layout for FAST-LIO and its derivatives. A Livox lidar has the topics
-/// and the message CustomMsg of its driver. Any other lidar has the topics of a Velodyne lidar.
+/// Returns the names or the sweep layout for FAST-LIO and its derivatives. A Livox lidar has the topics and the message
+/// CustomMsg of its driver. Any other lidar has the topics of a Velodyne lidar.
 ReaderNames fast_lio_names(const SensorFacts& facts);
 SweepLayout fast_lio_layout(const SensorFacts& facts);
 

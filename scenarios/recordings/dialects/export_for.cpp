@@ -66,8 +66,8 @@ void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWri
   writers.at(dialect.bag_format)(sensors, writing, place);
 }
 
-/// Removes empty sweeps from the bag if the published estimator cannot read them, and adds their number to the notes of
-/// the dialect. Returns the notes for the user.
+/// Excludes empty sweeps from the bag if the published estimator cannot read them, and adds their number to the notes.
+/// Returns the notes for the user.
 std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& lidar) {
   const std::size_t empty = lidar.empty_sweeps;
   if (dialect.takes_empty || empty == 0) return {};

@@ -49,7 +49,7 @@ struct SensorFacts {
 };
 
 /// Computes the properties of the sensors in a recording. The vector `points` gives access to the points of each lidar
-/// on disk; null if the points are in the records. Only one sweep is in memory at a time.
+/// on disk; null if the points are in memory. Only one sweep is in memory at a time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

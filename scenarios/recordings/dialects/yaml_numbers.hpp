@@ -9,8 +9,8 @@
 
 #include "scenarios/recordings/number_text.hpp"
 
-/// These functions write numbers that every YAML reader accepts as doubles. All numbers have a decimal point: ROS 2
-/// requires it for a double, and YAML 1.1 requires it before an exponent.
+/// The functions in yaml_numbers.hpp write numbers that every YAML reader accepts as doubles. All numbers have a
+/// decimal point: ROS 2 requires it for a double, and YAML 1.1 requires it before an exponent.
 namespace tumble::scenarios {
 
 inline std::string decimal(double value) {

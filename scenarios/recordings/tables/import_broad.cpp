@@ -24,9 +24,9 @@ constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-/// kSlopeReach is half of the time interval for differentiating the reference: 70 ms. With this interval, the noise at
-/// rest is below the thresholds that the scores use for rest (half the interval: 0.022 rad/s). The interval of 140 ms
-/// blurs fast rotations.
+/// kSlopeReach is half of the time interval for differentiating the reference: 70 ms. The interval of 140 ms keeps the
+/// noise at rest below the thresholds that the scores use for rest (half the interval: 0.022 rad/s). The interval is
+/// too long for fast rotations, which it blurs.
 constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {

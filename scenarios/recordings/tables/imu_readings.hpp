@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 /// Returns the IMU record without its readings.
 sim::ImuRecord without_readings(sim::ImuRecord device);
 
-/// Appends one IMU reading to the record. Throws BadInput for a value that is not finite or beyond 1e6; the message
-/// starts with `where`.
+/// Appends one reading to the IMU record `imu`. Throws BadInput for a value that is not finite or beyond 1e6; the
+/// message starts with `where`.
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 

@@ -5,7 +5,7 @@
 
 #include "scenarios/recordings/tables/imu_columns.hpp"
 
-/// These functions identify the columns in IMU tables of loggers and data sets.
+/// The functions in logger_columns.hpp identify the columns in IMU tables of loggers and data sets.
 namespace tumble::scenarios {
 
 /// Finds the IMU columns of a table by common names, in any order. Case, blanks, points and underscores are ignored.

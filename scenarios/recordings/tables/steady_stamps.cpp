@@ -21,7 +21,7 @@ double line_offset_ns(std::span<const std::int64_t> stamps, std::span<const Stam
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (std::size_t i = first; i <= last; ++i) {
     const double u = static_cast<double>(i) - static_cast<double>(k);
-    // This is the middle of the interval that contains the true time.
+    // The variable `middle` is the middle of the interval that contains the true time.
     const double middle = 0.5 * static_cast<double>(bounds[i].after_ns - bounds[i].before_ns);
     const double v = static_cast<double>(stamps[i] - stamps[k]) + middle;
     n += 1.0, x += u, y += v, xx += u * u, xy += u * v;

@@ -24,7 +24,7 @@ constexpr int kSearch_ms = 100;
 constexpr double kSlopeStep_s = 4e-3;
 constexpr int kAlignmentParts = 8;
 constexpr int kRounds = 20;
-/// These standard deviations apply to the vector pairs, with this number of consecutive samples with correlated errors.
+/// The vector pairs have the following standard deviations and number of consecutive samples with correlated errors.
 constexpr double kRateSigma_rad_s = 0.15, kForceSigma_m_s2 = 1.0;
 constexpr double kRateRun = 5.0, kForceRun = 25.0;
 

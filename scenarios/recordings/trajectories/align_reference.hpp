@@ -6,7 +6,7 @@
 
 #include "scenarios/recordings/trajectories/reference.hpp"
 
-/// These functions align an optical reference with the IMU in time and rotation.
+/// The functions in align_reference.hpp align an optical reference with the IMU in time and rotation.
 namespace tumble::scenarios {
 
 /// The alignment is w_I(t) = R_IV w_V(t + delay), where V is the reference's body frame and I the IMU frame. The

@@ -9,7 +9,8 @@
 
 #include "sim/recording.hpp"
 
-/// These functions read the motion of a real recording that a reference instrument measured (FORMAT.md, "References").
+/// The functions in reference.hpp read the motion of a real recording that a reference instrument measured (FORMAT.md,
+/// "References").
 namespace tumble::scenarios {
 
 /// ReferencePose is a pose of frame A (body or lidar) in the instrument's world with z up. An unknown position is NaN.
@@ -66,10 +67,10 @@ std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// Converts reference poses of the body to a truth. The stamps of `poses` must increase in the recording's clock; they
 /// may start before time 0. If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid
-/// with unchanged poses. Otherwise, the truth has steps of 1 ms, or longer steps if it would have more than two million
-/// samples. Between poses that are at most 2.5 median steps apart, position is interpolated linearly and attitude by
-/// slerp. In larger gaps, position and attitude are unknown. The truth ends with the poses or at `end_ns`, whichever is
-/// earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
+/// with unchanged poses. If the poses are not on a grid, the truth has steps of 1 ms, or longer steps if it would have
+/// more than two million samples. Between poses that are at most 2.5 median steps apart, position is interpolated
+/// linearly and attitude by slerp. In larger gaps, position and attitude are unknown. The truth ends with the poses or
+/// at `end_ns`, whichever is earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 /// Returns the rotation vector of `q`, with an angle of at most pi.

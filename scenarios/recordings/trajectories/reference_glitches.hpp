@@ -22,8 +22,8 @@ struct GlitchReport {
 
 /// Removes erroneous samples from `poses`, judged by their attitudes alone. The time stamps of the poses must increase.
 /// A jump is a step whose rate exceeds the rates before and after by more than 10 rad/s. The rates before and after are
-/// medians of four steps, three to six steps away from the jump. This threshold assumes that no recorded body rotates
-/// 10 rad/s faster for only 30 ms. The three samples on either side of a jump are also removed.
+/// medians of four steps, three to six steps away from the jump. The threshold of 10 rad/s assumes that no recorded
+/// body rotates this much faster for only 30 ms. The three samples on either side of a jump are also removed.
 ///
 /// Two jumps less than 0.5 s apart form a pair, and the samples between them are removed. After a jump without a second
 /// jump, the attitude is uncertain; the function only counts this jump in `leaps`. The cost is O(N).

@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// These functions compare the attitudes in a pose file with a gyro. A pose file does not specify the frame of its
-/// poses, its quaternion convention or its clock. The gyro reveals frame, quaternion convention and clock.
+/// The functions in turning.hpp compare the attitudes in a pose file with a gyro. A pose file does not specify the
+/// frame of its poses, its quaternion convention or its clock. The gyro reveals frame, quaternion convention and clock.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -62,8 +62,8 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< a delay of 0.3 s would be detected
   bool order_known = false;  ///< another order or direction of the quaternions would be detected
-  /// This fit has another quaternion convention that agrees equally well with the gyro and makes gravity vertical;
-  /// empty if the written convention does.
+  /// The fit `upright` has another quaternion convention that agrees equally well with the gyro and makes gravity
+  /// vertical; empty if the written convention does.
   std::optional<TurningFit> upright;
 };
 
