@@ -21,9 +21,9 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// The control is a method of the same kind, which must succeed where the tested method fails; null disables the
-  /// control. The control excludes scenarios that no method can solve. The search ignores the control if it fails on
-  /// the original run.
+  /// The control is a method of the same kind, which must succeed on each run on which the tested method fails; null
+  /// disables the control. The control excludes scenarios that no method can solve. The search ignores the control if
+  /// it fails on the original run.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< limit of one method run

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Converts a certificate to JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value,
-/// low, high, verdict, note}]}. Non-finite numbers become null.
+/// Converts a certificate (checks of the simulation) to JSON: {"build", "verdict": "pass" | "fail", "entries": [{row,
+/// subject, law, unit, value, low, high, verdict, note}]}. Non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
 /// Parses the JSON text of a certificate bit-exactly. A JSON null becomes NaN; pass or fail is computed from the value

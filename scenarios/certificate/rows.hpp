@@ -8,9 +8,9 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// The header rows.hpp declares the measurements of the certificate with their settings. The default settings are those
-/// of the certificate. Tests modify one setting and check that the measurement then fails. Members named `stated_*`
-/// change the value that the closed form assumes.
+/// The header rows.hpp declares the measurements of the certificate (checks of the simulation) with their settings. The
+/// certificate uses the default settings of each measurement. Tests modify one setting of a measurement and check that
+/// the measurement then fails. Members named `stated_*` change the value that the closed form assumes.
 namespace tumble::scenarios {
 
 /// The free-flight measurement throws the rig high, with a rotation near its unstable axis. Euler's equations of the
@@ -46,7 +46,8 @@ struct RollingSetup {
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)).
+/// In the sliding measurement, a sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g
+/// (1 + m r^2 / I)).
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;

@@ -96,8 +96,8 @@ inline constexpr std::int64_t kRounding_ns = 1000;
 
 /// Converts the sweep with number `index`, which must be less than sweep_count(record). The sweep ends after one
 /// period, or earlier, at the start of the next sweep. The times of points up to kRounding_ns after the sweep's end are
-/// set to the end. Points with later times are dropped. A sweep without a time per point has zero duration, so it is
-/// not deskewed. The cost is proportional to the number of points of the sweep.
+/// set to the end. Points more than kRounding_ns after the sweep's end are dropped. A sweep without a time per point
+/// has zero duration, so it is not deskewed. The cost is proportional to the number of points of the sweep.
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

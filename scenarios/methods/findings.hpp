@@ -30,7 +30,7 @@ bool has_implausible_readings(const Estimate& estimate);
 /// Sets the health entry `localised` and returns its value: false if a finding contradicts the pose in the map.
 bool report_localised(Estimate& estimate);
 
-/// The functions json_of and finding_from write and read a finding in estimate.json (ESTIMATE.md). Reading throws
+/// The functions json_of and finding_in write and read a finding in estimate.json (ESTIMATE.md). Reading throws
 /// BadInput with the file name for an invalid finding.
 nlohmann::json json_of(const HealthFinding& finding);
 HealthFinding finding_in(const std::filesystem::path& path, const nlohmann::json& object);

@@ -41,8 +41,8 @@ struct Estimate {
   /// The estimated contact mode at each pose is parallel to `poses`; empty if not estimated. The contact mode `air`
   /// means that there is no contact, or a contact with unknown motion (a bump).
   std::vector<sim::ContactLabel> contacts;
-  /// An element is true if its pose is in a slip event with uncertain displacement; parallel to `poses`, and empty if
-  /// not estimated.
+  /// An element of `uncertain` is true if the pose is in a slip event with uncertain displacement; empty if not
+  /// estimated.
   std::vector<bool> uncertain;
   /// The vector `centre_B_m` is the estimated position of the sphere's centre relative to the centre of mass, in body
   /// axes [m].
@@ -51,8 +51,8 @@ struct Estimate {
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam
   SensorHealth faults;  ///< suspected faults of the sensors and of the estimate (add_finding)
-  /// For each of `rates`, this vector contains the covariance that failed health checks added; empty if no check failed
-  /// (imu_check.hpp).
+  /// For each of `rates`, `suspect_rad2_s2` contains the covariance that failed health checks added; empty if no check
+  /// failed (imu_check.hpp).
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name
@@ -93,12 +93,13 @@ struct MethodInfo {
   /// method can run. All slam methods need a lidar.
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
-  /// True for the baseline of a kind: the method without treatment of saturation or slip. Reports compare each other
-  /// method of the same kind with the baseline, run by run. The baseline of rate methods is the clipped gyro; the
-  /// baseline of slam methods is the mapping chain with the clipped gyro. A kind of method may have no baseline.
+  /// The flag `baseline` is true for the baseline of a kind: the method without treatment of saturation or slip.
+  /// Reports compare each other method of the same kind with the baseline, run by run. The baseline of rate methods is
+  /// the clipped gyro; the baseline of slam methods is the mapping chain with the clipped gyro. A kind of method may
+  /// have no baseline.
   bool baseline = false;
-  /// True if the method can start from a saved calibration of the rig, and saves the calibration that it estimates
-  /// (rate_tumble.hpp).
+  /// The flag `calibrates_rig` is true if the method can start from a saved calibration of the rig and saves its new
+  /// calibration (rate_tumble.hpp).
   bool calibrates_rig = false;
   std::string version;  ///< version of a method that is not part of this build
 };
@@ -125,8 +126,8 @@ std::span<const Method> methods();
 /// BadInput also for an external method with the name of a built-in method.
 std::vector<MethodPointer> find_methods(const std::string& name);
 
-/// Finds the methods in a list of names, and returns each method once. Throws BadInput also if two methods have the
-/// same kind and name.
+/// Finds the methods in a list of names, and returns each method once. Throws BadInput if two methods in the list have
+/// the same kind and name.
 std::vector<MethodPointer> find_methods(std::span<const std::string> names);
 
 /// Returns a non-owning pointer to a method of this build.

@@ -21,8 +21,8 @@ namespace tumble::scenarios {
 /// their limits. The pointer `oracle.truth` is set if the method needs the truth.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Creates a method from its description and its function `run`. The returned method sets missing parameters to their
-/// defaults, and passes the truth only to methods that need the truth. Running the method throws BadInput for an
+/// Creates a method from its description and its function `run`. When the method runs, missing parameters get their
+/// defaults, and `run` receives the truth only if the method needs the truth. Running the method throws BadInput for an
 /// unknown parameter, a value out of range, or a missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
@@ -83,9 +83,9 @@ struct KnownMotion {
 
 /// SlamChain contains the options of the lidar-inertial mapping chain.
 struct SlamChain {
-  /// If true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. If `calibration` is true, the
-  /// mapping chain processes the recording twice. The second pass over the recording starts with the calibration from
-  /// the first pass.
+  /// If `calibration` is true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. If
+  /// `calibration` is true, the mapping chain processes the recording twice. The second pass over the recording starts
+  /// with the calibration from the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   /// The function `on_sweep` is OracleInput::on_sweep, which displays progress.

@@ -13,9 +13,9 @@ namespace tumble::scenarios {
 /// detects quaternions with w first, inverse rotations (world in sensor), and a frame other than `estimate.frame`.
 ///
 /// The function compares rotations between poses with the gyro of the first IMU (recordings/trajectories/turning.hpp).
-/// A correction is reported if the difference exceeds half of the rotation and the correction reduces it below 0.15.
-/// The function cannot detect combined errors, or errors that leave rotations about a single axis unchanged. The cost
-/// is proportional to the number of samples and poses.
+/// A wrong convention is reported if the rotation difference exceeds half of the rotation and the correction reduces
+/// the difference below 0.15. The function cannot detect combined errors, or errors that leave rotations about a single
+/// axis unchanged. The cost is proportional to the number of samples and poses.
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
 /// Returns a message if the time stamps of the attitudes or poses have a constant error of 0.15 to 5 s; otherwise

@@ -27,8 +27,8 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the samples of one IMU from a text table. The separator is the comma, semicolon or tab that is most frequent
-/// in the first line that is no comment. If this line contains none of the three, blanks are the separator. The table
-/// may have comments, a row of units below the names, and a separator at the end of each line
+/// in the first line that is no comment. If the line contains no comma, semicolon or tab, blanks are the separator. The
+/// table may have comments, a row of units below the names, and a separator at the end of each line
 /// (tables/logged_table.hpp). Numbers may be in scientific notation.
 ///
 /// The names in the header line identify the columns. The reader accepts the following column names.
@@ -130,7 +130,8 @@ Imported import_broad(const std::filesystem::path& path);
 ///   slower accelerometer is interpolated between its distinct readings (repeated_readings.hpp).
 /// - Glitches of the optical reference are removed (reference_glitches.hpp).
 /// - Delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, the
-///   importer removes these alignment errors. The truth is then the attitude of the IMU in a world with z up.
+///   importer removes these alignment errors. After this correction, the truth is the attitude of the IMU in a world
+///   with z up.
 ///
 /// The true rates at the IMU's stamps are derivatives of the reference attitudes (reference_rate.hpp). The reference
 /// contains no positions.

@@ -70,8 +70,8 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Visits all fields of the truth. The argument `contacts` contains the contacts of the truth as columns;
-/// truth.contacts is not visited.
+/// Calls the archive with all fields of the truth. The argument `contacts` contains the contacts of the truth as
+/// columns; truth.contacts is not visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

@@ -17,9 +17,10 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 ///
 /// All scores use one definition: axis j of a sample is clipped if its sensing element is saturated. The saturation
 /// deficit of element j is the difference d_j of d = M (unclipped reading - delivered reading), with the misalignment
-/// matrix M. The unclipped reading has the errors of the delivered reading but no saturation. Element j is saturated if
-/// its deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white noise per sample,
-/// sqrt(density^2 / period), but at least 1e-6 rad/s. The scores ignore saturation deficits below the tolerance.
+/// matrix M. The unclipped reading has the errors of the delivered reading but no saturation. Sensing element j is
+/// saturated if its saturation deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white
+/// noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s. The scores ignore saturation deficits below the
+/// tolerance.
 ///
 /// If the elements are tilted (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes.
 /// The readings of the other axes change by the saturation deficit times entries of the inverse of M. An axis has a

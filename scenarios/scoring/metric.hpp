@@ -74,7 +74,7 @@ double how_bad(const MetricInfo& metric, double value);
 double worst_value(const MetricInfo& metric);
 
 /// The function headline_metrics returns the most important metrics of a kind; held_metrics returns all metrics of a
-/// kind that gates compare. The metrics are in order of registration.
+/// kind that gates compare. Both functions return the metrics in order of registration.
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
 

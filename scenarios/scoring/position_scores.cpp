@@ -22,7 +22,7 @@ bool end_error(const ScoredEstimate& scored, double& value) {
 }
 
 /// Divides the end error by the path length of the body's centre: the centre of a sphere, otherwise the centre of mass.
-/// A sensor that turns around the centre has a longer path. Relative errors in different frames would therefore not be
+/// A sensor that turns around the centre has a longer path. Relative errors in different frames are therefore not
 /// comparable.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;

@@ -38,8 +38,8 @@ struct FirstOrder {
 /// (S19). The estimator is that of Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each value is
 /// a class. If y contains ranks, the p-value of equation (S20) is the p-value of the Kruskal-Wallis test.
 ///
-/// All values of y must be finite or NaN; pairs with NaN are ignored. The estimate needs at least 24 pairs. Throws
-/// BadInput if the lengths differ.
+/// All values of y must be finite or NaN; pairs with NaN are ignored. The estimate of the index needs at least 24
+/// pairs. Throws BadInput if the lengths differ.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
 /// Centre selects the statistic of a class, which has a 95 % confidence interval. The mean of finite values has

@@ -16,8 +16,8 @@ struct Plan {
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
 /// (S11) of statistics.md. The formula assumes that the fraction of zero differences does not change. The returned
-/// number of pairs is at least the minimum that can be significant. The number is infinite if positive and negative
-/// differences are balanced. The cost is O(n log n). Throws BadInput for an invalid plan.
+/// number of pairs is at least the minimum that can be significant. The number of pairs is infinite if positive and
+/// negative differences are balanced. The cost is O(n log n). Throws BadInput for an invalid plan.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of

@@ -146,7 +146,7 @@ bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const 
   return !ranked.empty() || point.failed > 0;
 }
 
-/// Adds one point to each line of a curve.
+/// Adds one point per method to the lines of a curve.
 void add_place(const PickedRuns& runs, const std::string* metric, const CurvePoint& place, Curve& curve) {
   for (const auto& [method, own] : runs) {
     CurvePoint point = place;
@@ -165,7 +165,8 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the stored copy of a metric's name. If no score has this name, the function adds the name.
+/// Returns the stored copy of a metric's name. If no score has the name, the function adds the name to the stored
+/// names.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }

@@ -47,8 +47,8 @@ struct Curve {
 
 /// Computes every curve for which the results contain data. Each scenario and headline metric (first in the report) has
 /// a curve for each varied number. Each quantity with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve.
-/// Each clipping quantity of the simulated runs has a curve with at least three bins of equal counts. A run counts as
-/// failed if its status is not `ok` or its map failed. The cost is O(number of scores * log).
+/// Each clipping quantity of the simulated runs has a curve with at least three bins of equal counts. In a curve, a run
+/// counts as failed if its status is not `ok` or its map failed. The cost is O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
 /// Computes every curve from the results and the motion values `draws`. The function also computes `summary` in the
 /// same pass over the results.

@@ -11,8 +11,8 @@
 /// The functions in motion_spreads.hpp compare simulated motions with the published experiment with the tumbling rig.
 namespace tumble::scenarios {
 
-/// Spread contains the values of one quantity over the simulated runs of one scenario. Simulated runs without a value
-/// are omitted.
+/// Spread contains the values of one quantity over the simulated runs of one scenario. A Spread omits simulated runs
+/// without a value.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"

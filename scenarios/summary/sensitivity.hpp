@@ -46,8 +46,8 @@ struct Influence {
   double strength() const;
 };
 
-/// Sensitivity contains the influence of all random numbers on one metric of one method in one scenario. For failures,
-/// `metric` is "not ok".
+/// Sensitivity contains the influence of all random numbers on one metric of one method in one scenario. If the
+/// sensitivity is that of failures, `metric` is "not ok".
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;

@@ -66,7 +66,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // For an external command, the operating system counts the memory from the fork on.
+  // The memory of an external command is measured elsewhere, from the fork of its process on.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);

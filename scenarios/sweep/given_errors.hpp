@@ -18,7 +18,8 @@ struct GivenError {
   /// direction, it depends on the seed of the situation, and not on the size of the error.
   void (*put_in)(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation,
                  double size) = nullptr;
-  /// Applies the error to the parameters of a method. The function is null if the error does not affect parameters.
+  /// Applies the error to the parameters of a method. The function `tune` is null if the error does not affect
+  /// parameters of methods.
   void (*tune)(std::span<const sim::Parameter> known, double size, sim::Values& given) = nullptr;
 };
 

@@ -56,8 +56,8 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
   }
 }
 
-/// Joins the notes with the paths of method descriptions and recordings. If two paths conflict, the path of the first
-/// input is kept, even if the path no longer exists.
+/// Joins the notes with the paths of method descriptions and recordings. If two databases contain different paths, the
+/// path in the first database is kept, even if it no longer exists.
 void join_place_notes(const Notes& shard, Results& into) {
   for (const auto& [key, place] : shard) {
     if (is_place_note(key) && into.note(key).empty()) into.set_note(key, place);

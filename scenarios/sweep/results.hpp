@@ -41,7 +41,8 @@ struct MergeCounts {
   std::size_t rejected = 0;  ///< number of rejected runs among the added rows
 };
 
-/// Names contains the names that many rows share, such as names of metrics. The reader stores each name once.
+/// Names contains the names that many rows share, such as names of metrics. The reader of a results database stores
+/// each name once.
 using Names = std::set<std::string, std::less<>>;
 
 /// OutcomeView refers to an outcome while the outcome is read. The pointers in an OutcomeView are valid until the next

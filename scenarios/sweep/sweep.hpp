@@ -82,9 +82,9 @@ struct SweepOptions {
   std::vector<OutcomeStatus> again;  ///< repeat rows with these statuses: crashed, timeout, killed
   Keep keep;                         ///< which runs are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
-  /// If true, the simulation omits lidars if the built-in methods of the suite read no lidar. Without lidars, estimates
-  /// and scores are unchanged, but the digest of the recording differs. The option recordings_unseen cannot be combined
-  /// with `keep`.
+  /// If `recordings_unseen` is true, the simulation omits lidars, provided that the built-in methods of the suite read
+  /// no lidar. Without lidars, estimates and scores are unchanged, but the digest of the recording differs. The option
+  /// recordings_unseen cannot be combined with `keep`.
   bool recordings_unseen = false;
 };
 

@@ -47,7 +47,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
 /// Returns the simulated run with the error of the setting applied to its sensor data. Throws BadInput if the run lacks
-/// the sensor. Throws BadInput also for a recording, because the error depends on the simulated situation.
+/// the sensor to which the error applies. Throws BadInput also if the run is a recording, because an input error
+/// depends on the simulated situation.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
 /// Returns the method with the parameter value of the setting.

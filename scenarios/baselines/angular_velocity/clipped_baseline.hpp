@@ -40,13 +40,14 @@ class ClippedBaseline {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
-    /// Noise density of the gyro [rad/s/sqrt(Hz)].
+    /// The number `gyro_noise_density` is the noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
-    /// Density of the white angular acceleration that model `reject` assumes [rad^2/s^3].
+    /// The model `reject` assumes white angular acceleration with the density `acceleration_psd` [rad^2/s^3].
     double acceleration_psd = 1e3;
-    /// Density of the white angular snap that model `constant_jerk` assumes [rad^2/s^7].
+    /// The model `constant_jerk` assumes white angular snap with the density `snap_psd` [rad^2/s^7].
     double snap_psd = 1e9;
-    /// Standard deviation of one axis's rate that model `constant_jerk` assumes [rad/s].
+    /// The model `constant_jerk` assumes that the rate of one axis has the standard deviation `rate_sigma_rad_s`
+    /// [rad/s].
     double rate_sigma_rad_s = 20.0;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
     double gap_max_s = 1.0;        ///< longest accepted time between samples

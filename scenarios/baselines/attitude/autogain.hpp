@@ -37,12 +37,13 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// If true, the complementary step has the same error as the authors' code of 2021. In the authors' code, the check
-    /// for gimbal lock is always true. Because of this error, the target attitude keeps the current roll, so the filter
-    /// never corrects roll. The option serves to reproduce the attitudes in the authors' recordings.
+    /// If `roll_error_2021` is true, the complementary step has the same error as the authors' code of 2021. In the
+    /// authors' code, the check for gimbal lock is always true. Because of the error in this check, the target attitude
+    /// keeps the current roll, so the filter never corrects roll. The option serves to reproduce the attitudes in the
+    /// authors' recordings.
     bool roll_error_2021 = false;
-    /// If true, the complementary step is the smallest rotation that corrects the tilt, instead of a step towards
-    /// target roll, pitch and yaw. The `smooth` profile always uses the smallest rotation.
+    /// If `tilt_form` is true, the complementary step is the smallest rotation that corrects the tilt, instead of a
+    /// step in roll, pitch and yaw. The `smooth` profile always uses the smallest rotation.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 

@@ -32,7 +32,8 @@ class RigidOdometry {
     double sweep_voxel_m = 0.25;     ///< the filter registers one point per voxel of a sweep
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    /// If true, unregistered sweeps are inserted into the map at the predicted pose, as in most published methods.
+    /// If `extend_always` is true, unregistered sweeps are inserted into the map at the predicted pose, as in most
+    /// published methods.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
@@ -82,7 +83,8 @@ class RigidOdometry {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// The functions predicted() and registered() return the motion state at the end of the last sweep, with covariance.
+  /// The functions predicted() and state() return the predicted and the registered motion state at the end of the last
+  /// sweep, with covariance.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

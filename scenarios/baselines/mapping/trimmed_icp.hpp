@@ -31,9 +31,10 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If true, TrimmedIcp has the same error as the authors' code. In the authors' code, the kept fraction refers to
-    /// all match slots, although the sorted list of distances omits slots without a match. The authors' code therefore
-    /// reads beyond the end of the sorted list. TrimmedIcp stops at the end of the sorted list.
+    /// If `count_unmatched_slots` is true, TrimmedIcp has the same error as the authors' code. In the authors' code,
+    /// the kept fraction refers to all match slots, although the sorted list of distances omits slots without a match.
+    /// The authors' code therefore reads beyond the end of the sorted list. TrimmedIcp stops at the end of the sorted
+    /// list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound

@@ -111,8 +111,8 @@ struct BagReading {
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
-  /// If true, a topic that cannot be read is skipped with a note, if another topic of the same kind can be read. An
-  /// unreadable topic that the caller chose is always an error.
+  /// If `leave_out_topics` is true, an unreadable topic is skipped with a note, provided that another topic of the same
+  /// kind is readable. An unreadable topic that the caller chose is always an error.
   bool leave_out_topics = false;
 };
 
@@ -127,7 +127,7 @@ struct BagReading {
 /// skipped with a note (left_out.hpp).
 ///
 /// Unless the caller chooses topics, the reader skips clouds in the frames "world", "map" or "odom", because these
-/// clouds are not raw sensor data. Lidars whose points have times then come before other lidars.
+/// clouds are not raw sensor data. In this automatic selection, lidars whose points have times come first.
 ///
 /// The reader merges the parts of a ROS 1 bag in a folder by time. The files of a ROS 2 bag are read in order of time.
 /// Files that metadata.yaml does not list, but that have similar names, are also read.

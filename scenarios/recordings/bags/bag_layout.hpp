@@ -39,8 +39,8 @@ SweepLayout own_sweep_layout();
 /// Returns the layout of Livox drivers' CustomMsg.
 SweepLayout livox_sweep_layout();
 
-/// ReaderNames contains the topic and frame names that a reader for one IMU and one lidar expects. The names belong to
-/// the first IMU and the first lidar.
+/// ReaderNames contains the topic and frame names that a reader for one IMU and one lidar expects. The names in
+/// ReaderNames belong to the first IMU and the first lidar.
 struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;

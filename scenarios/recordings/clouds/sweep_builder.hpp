@@ -15,7 +15,8 @@
 
 namespace tumble::scenarios {
 
-/// SweepReading contains the options for reading lidar sweeps. The options supply information that the files lack.
+/// SweepReading contains the options for reading lidar sweeps. The options supply information that the sweep files
+/// lack.
 struct SweepReading {
   sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweeps' starts
   std::string time_field;    ///< "": a field with a usual name
@@ -23,7 +24,8 @@ struct SweepReading {
   bool not_skewed = false;   ///< the points were deskewed or measured at once; ignore their times
   double range_max_m = 0.0;  ///< from the data sheet; 0: unknown
   bool assumed = false;      ///< the stamps are a guess: absolute point times replace them
-  /// If this folder is not empty, the points are stored on disk in the folder; otherwise they are stored in memory.
+  /// If `scratch` is not empty, the points are stored on disk in the folder `scratch`; otherwise they are stored in
+  /// memory.
   std::filesystem::path scratch;
 };
 

@@ -32,9 +32,9 @@ struct LidarFacts {
   int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Points closer than this distance belong to the robot. For the rig, this distance is 0.7 m, the extent of its cage
-  /// from the lidar (the box that the mapper excludes). For other robots, this distance is the range of the nearest
-  /// point.
+  /// Points closer to the lidar than `own_body_m` belong to the robot. For the rig, `own_body_m` is 0.7 m, the extent
+  /// of its cage from the lidar (the box that the mapper excludes). For other robots, `own_body_m` is the range of the
+  /// nearest point.
   double own_body_m = 0.0;
 };
 

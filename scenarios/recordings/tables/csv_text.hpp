@@ -22,7 +22,7 @@ struct CsvLine {
 class CsvText {
  public:
   /// Opens a file; the separator is the comma, semicolon or tab that is most frequent in the first line that is no
-  /// comment. If this line contains none of the three, blanks separate the fields.
+  /// comment. If the line contains no comma, semicolon or tab, blanks separate the fields.
   explicit CsvText(const std::filesystem::path& path);
   /// Opens a file; throws BadInput if the file is missing or empty, or if the last line has no newline and may be
   /// truncated.

@@ -70,7 +70,7 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// Returns a note on the unit of the rates, for a format that does not specify the unit. If the motion is insufficient
-/// for the check, the note says so.
+/// for the check, the note explains this.
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 inline constexpr double kTeslaPerMicrotesla = 1e-6;

@@ -20,8 +20,8 @@ struct GlitchReport {
   std::string text(std::size_t samples) const;
 };
 
-/// Removes erroneous samples from `poses`, judged by their attitudes alone. The time stamps of the poses must increase.
-/// A jump is a step whose rate exceeds the rates before and after by more than 10 rad/s. The rates before and after are
+/// Removes erroneous samples from `poses`, judged by their attitudes alone. The time stamps in `poses` must increase. A
+/// jump is a step whose rate exceeds the rates before and after by more than 10 rad/s. The rates before and after are
 /// medians of four steps, three to six steps away from the jump. The threshold of 10 rad/s assumes that no recorded
 /// body rotates this much faster for only 30 ms. The three samples on either side of a jump are also removed.
 ///

@@ -278,8 +278,8 @@ double uprightness(const TurningComparison& comparison, const sim::ImuRecord& im
   return up.norm() < kUpMin_m_s2 ? 0.0 : up.z() / up.norm();
 }
 
-/// If the rotations do not determine the quaternion convention, gravity may decide. The comparison with gravity uses
-/// the delay of `fit`.
+/// If the rotations do not determine the quaternion convention, gravity may decide. The attitudes are compared with
+/// gravity at the delay of `fit`.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);
