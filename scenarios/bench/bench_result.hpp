@@ -42,8 +42,8 @@ struct BenchResult {
 std::string to_line(const BenchResult& result);
 
 /// Parses one line of JSON, as written by `to_line`. Throws BadInput, with a message that starts with `place`, if the
-/// line is not JSON, has another format or version, or repeats a simulated run. Throws BadInput also for a missing key,
-/// a wrong type, an unknown kind or an unknown status.
+/// line is not JSON, has another format or version, or repeats a simulated run. Throws BadInput for a missing key, a
+/// wrong type, an unknown kind or an unknown status.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
 /// Returns the path of the file with the stored results of a suite: SUITE.jsonl.

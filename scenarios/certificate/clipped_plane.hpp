@@ -13,7 +13,7 @@
 namespace tumble::scenarios {
 
 /// Returns a motion that saturates every sensing element. The body rotates about x, y and z one after another, faster
-/// than the gyro's saturation level [rad/s], with some rotation about the other axes. During this rotation, a constant
+/// than the gyro's saturation level [rad/s], with some rotation about the other axes. During the rotation, a constant
 /// acceleration [m/s^2] saturates the three accelerometer elements one after another.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 

@@ -12,8 +12,8 @@
 // residuals below are in rad/s; a residual in brackets belongs to a plane without cross-axis sensitivity.
 //
 // For the x axis of the hand-held wand, Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each.
-// The residual of the planes of the wand's x axis is 0.003 to 0.009 (0.005 to 0.010). The offset of these planes
-// changes from day to day with the gyro bias.
+// The residual of the planes of the wand's x axis is 0.003 to 0.009 (0.005 to 0.010). The offset of the planes of the
+// wand's x axis changes from day to day with the gyro bias.
 //
 // For the y axis of the wand, Test06 trial 1 has 39 and 42 readings at the two limits, and the residual is 0.004
 // (0.014). Because only one recording exists, the accepted interval is three standard errors. The interval includes
@@ -22,8 +22,8 @@
 // For the z axis of the pendulum, the gyro of the third segment saturates in Test02a, 02b, 07 trials 1 to 3 and 08.
 // Test02a (37 readings) and Test07 trial 3 (10 readings) have a residual of 0.0003 (0.07 and 0.09), below the gyro's
 // resolution of 0.0005. The offsets of the planes in Test02a and Test07 are 0.0001 and 0.0003. Fits with repeated
-// readings and partly saturated windows have residuals of 0.02 to 0.07. The cross-axis sensitivities of these fits
-// scatter: 0.045 to 0.054 and -0.027 to 0.009.
+// readings and partly saturated windows have residuals of 0.02 to 0.07. The cross-axis sensitivities of fits with
+// repeated readings scatter: 0.045 to 0.054 and -0.027 to 0.009.
 #include <algorithm>
 #include <array>
 #include <cmath>

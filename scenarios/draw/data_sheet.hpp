@@ -27,7 +27,7 @@ struct DataSheet {
 
 std::vector<std::string> device_names(const DataRoot& data);
 /// Loads the data sheet of the sensor `device`. Throws BadInput for an unknown device; the message suggests the nearest
-/// name. Throws BadInput also for an unknown key, a wrong unit, a missing number, or a number without a source.
+/// name. Throws BadInput for an unknown key, a wrong unit, a missing number, or a number without a source.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 /// kApart_s is the largest accepted time between the starts of two sensors. A sensor whose driver needs several seconds
-/// to boot exceeds this limit.
+/// to boot exceeds kApart_s.
 constexpr double kApart_s = 0.5;
 /// kLostShareMax is the largest accepted fraction of lost readings or sweeps. A single lost reading costs no accuracy;
 /// many lost readings indicate a fault of the bus, the driver or the recorder.

@@ -9,7 +9,7 @@
 #include "scenarios/methods/method.hpp"
 
 /// The function run_attitude_filter runs an attitude filter sample by sample on the primary IMU. All attitude methods
-/// use this function.
+/// use run_attitude_filter.
 namespace tumble::scenarios {
 
 /// NoCovariance marks a filter that reports no covariance.

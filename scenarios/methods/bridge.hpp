@@ -36,11 +36,11 @@ inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::
 
 /// A reading is accepted as a measurement up to kStatedRangesMax times the measurement range in the IMU record. Real
 /// saturation levels exceed the range in the data sheet (MTi-30: 1.4 times the range). A tilted saturation plane allows
-/// even larger readings. Readings beyond this limit cannot be measurements.
+/// even larger readings. Readings beyond kStatedRangesMax times the measurement range cannot be measurements.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
-/// The conversion rejects a recording if more than this fraction of its readings is out of range, because unit or
-/// device must be wrong.
+/// The conversion rejects a recording if more than the fraction kWildShareMax of its readings is out of range, because
+/// unit or device must be wrong.
 inline constexpr double kWildShareMax = 0.01;
 
 /// Returns the noise and range parameters of an IMU record. The library's defaults replace parameters that the IMU

@@ -14,7 +14,7 @@
 #include "tumble/attitude/hand_held_smoother.hpp"
 
 /// The functions in carried.hpp run the hand-held smoother on the primary IMU after saturation detection. All methods
-/// for hand-held motion use these functions.
+/// for hand-held motion use the functions in carried.hpp.
 namespace tumble::scenarios {
 
 /// Returns the settings of the hand-held methods, with the library's defaults.

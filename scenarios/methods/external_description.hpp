@@ -48,7 +48,7 @@ std::string filled(const std::string& word, const std::map<std::string, std::str
 
 /// Reads the description NAME.yaml, or a file NAME.py with exactly one function called `rate`, `attitude`, `position`
 /// or `slam`. The function's name sets the kind of the method. Throws BadInput with file, line and reason for an
-/// unknown or missing key, or for an unknown kind, frame or placeholder. Throws BadInput also for a command without the
+/// unknown or missing key, or for an unknown kind, frame or placeholder. Throws BadInput for a command without the
 /// placeholder of its output, a limit out of range, or a Python file without exactly one method function.
 ExternalDescription read_external(const std::filesystem::path& file);
 

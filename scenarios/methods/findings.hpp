@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 struct Estimate;
 
 /// Adds a finding to the estimate, and its entries to the health, for example `imu_implausible` or
-/// `imu_2_frozen_since_s`. A second finding of the same kind, sensor and axis is dropped. All keys of findings in the
-/// health come from this function.
+/// `imu_2_frozen_since_s`. A second finding of the same kind, sensor and axis is dropped. The function add_finding
+/// defines all keys of findings in the health.
 void add_finding(const HealthFinding& finding, Estimate& estimate);
 
 /// Adds all findings in `health` to the estimate. The list `names` contains the names of the IMUs in the recording, in

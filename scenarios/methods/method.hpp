@@ -123,7 +123,7 @@ std::span<const Method> methods();
 
 /// Finds methods by name: all methods called `name` ("saave"), the method of one kind ("rate/oracle"), or an external
 /// method in a file NAME.yaml. Throws BadInput for an unknown name; the message suggests the nearest name. Throws
-/// BadInput also for an external method with the name of a built-in method.
+/// BadInput for an external method with the name of a built-in method.
 std::vector<MethodPointer> find_methods(const std::string& name);
 
 /// Finds the methods in a list of names, and returns each method once. Throws BadInput if two methods in the list have

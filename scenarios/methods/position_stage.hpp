@@ -10,8 +10,8 @@
 /// method has all parameters of the position method under equal names.
 namespace tumble::scenarios {
 
-/// Returns the settings `own` of the slam method, followed by the settings of `position`. The two groups of settings
-/// have different names.
+/// Returns the settings `own` of the slam method, followed by the settings of `position`. The settings of the slam
+/// method and of `position` have different names.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 
 /// Returns the values in `parameters` that belong to the position method.

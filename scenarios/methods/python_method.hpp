@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 /// describes.
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
-/// Returns the versions of the interpreter and of numpy, and a digest of the Python file. The digest covers only this
-/// file, without imported modules. Throws BadInput if there is no interpreter with numpy.
+/// Returns the versions of the interpreter and of numpy, and a digest of the Python file. The digest covers only the
+/// Python file of the method, without imported modules. Throws BadInput if there is no interpreter with numpy.
 std::string python_version(const ExternalDescription& description);
 
 }  // namespace tumble::scenarios

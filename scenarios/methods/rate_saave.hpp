@@ -12,7 +12,7 @@
 #include "tumble/common/status.hpp"
 
 /// The functions in rate_saave.hpp estimate rates by the published method Saave. The rate method and the slam methods
-/// of Saave use these functions.
+/// of Saave use the functions in rate_saave.hpp.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();

@@ -83,9 +83,9 @@ struct KnownMotion {
 
 /// SlamChain contains the options of the lidar-inertial mapping chain.
 struct SlamChain {
-  /// If `calibration` is true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. If
-  /// `calibration` is true, the mapping chain processes the recording twice. The second pass over the recording starts
-  /// with the calibration from the first pass.
+  /// If `calibration` is true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. A mapping
+  /// chain with calibration processes the recording twice. The second pass over the recording starts with the
+  /// calibration from the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   /// The function `on_sweep` is OracleInput::on_sweep, which displays progress.

@@ -16,7 +16,7 @@ void write_rig_calibration(const std::filesystem::path& path, const CalibratedRi
 /// Reads the calibration of a rig from a JSON file. Files of earlier versions may lack the gyro sensing elements with
 /// their six covariance rows, the accelerometer planes, or the device errors. Default values replace missing values.
 /// Throws BadInput with path and key for a missing, misspelt or extra key, an invalid number, or a wrong count. Throws
-/// BadInput also if a covariance is not symmetric positive definite.
+/// BadInput if a covariance is not symmetric positive definite.
 CalibratedRig read_rig_calibration(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

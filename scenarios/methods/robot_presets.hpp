@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 /// The header robot_presets.hpp defines parameters without a default in the library: numbers of the robots in
-/// `models/`. The values in a recording override these defaults.
+/// `models/`. The values in a recording override the parameters in robot_presets.hpp.
 namespace tumble::scenarios::presets {
 
 /// Returns the vector from the rig's centre of mass to the MTi-30, in IMU axes, from `models/rig.xml`.

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
 /// Writes the final poses, map and status of a run to the estimate, which already contains the sweeps and the findings.
-/// All slam methods call this function. The run is localised unless a finding contradicts its pose in the map
+/// All slam methods call the function `conclude`. The run is localised unless a finding contradicts its pose in the map
 /// (report_localised). The status is `too_few` if no sweep was registered. The pointer `scale` is null if the scale of
 /// the lidar was not checked. Returns true if the run is localised and completed.
 bool conclude(const LidarInertialOdometry& odometry, const Localisation& localisation, const SweepScale* scale,

@@ -67,7 +67,7 @@ class Track {
 };
 
 // The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre. For methods that do
-// not estimate the offset between these two points, the offset is zero.
+// not estimate the offset of the centre of mass, the offset is zero.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();

@@ -157,7 +157,7 @@ class Collector {
 
 /// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its averaging window, each
 /// sweep after its last point. If `whole` is true, sweeps that end after the last sample are also used. If `whole` is
-/// false, these sweeps are only counted.
+/// false, sweeps that end after the last sample are only counted.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();

@@ -42,9 +42,9 @@ struct ExportChoices {
 /// time 0 of the recording is export_origin_ns.
 ///
 /// Returns notes about sensors that were renamed (export_names.hpp), and about sensors without a message type in a bag.
-/// Throws BadInput for an unknown format; the message suggests the nearest name. Throws BadInput also if the recording
-/// lacks data that the format needs, or if the output path cannot be written. A bag is written sweep by sweep. Memory
-/// then contains the IMU samples, 32 bytes per message, and the poses from `choices`.
+/// Throws BadInput for an unknown format; the message suggests the nearest name. Throws BadInput if the recording lacks
+/// data that the format needs, or if the output path cannot be written. A bag is written sweep by sweep. Memory then
+/// contains the IMU samples, 32 bytes per message, and the poses from `choices`.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 

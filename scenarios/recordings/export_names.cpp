@@ -10,13 +10,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bags (bag.hpp) and the truth of a CSV export use these names.
+/// Bags (bag.hpp) and the truth of a CSV export use the names in own_names.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Readers of bags, including those of this project, do not treat these frames as sensors.
+/// Readers of bags, including those of this project, do not treat the frames in frames_of_no_sensor as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;

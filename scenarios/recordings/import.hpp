@@ -56,9 +56,9 @@ enum class GyroUnit { rad_s, deg_s };
 /// that does not increase (left_out.hpp). A line whose readings are all 0 is also skipped.
 ///
 /// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or a truncated last
-/// line. Throws BadInput also if more than 5 % of the lines are faulty, or for fewer than two samples. The median
-/// specific force must be 3 to 30 m/s^2, and the period must be 20 us to 2 s. At most 1 % of the rates may exceed twice
-/// the device's range (100 rad/s if unknown). Gravity must not rotate 57 times faster or slower than the gyro's rates.
+/// line. Throws BadInput if more than 5 % of the lines are faulty, or for fewer than two samples. The median specific
+/// force must be 3 to 30 m/s^2, and the period must be 20 us to 2 s. At most 1 % of the rates may exceed twice the
+/// device's range (100 rad/s if unknown). Gravity must not rotate 57 times faster or slower than the gyro's rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
@@ -85,8 +85,8 @@ struct SweepSource {
 /// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from the file `times`, or else from the file names,
 /// from absolute point times, or from `steady_ns`. Time 0 of the recording is the start of the first sweep. If the
 /// clock started less than a second earlier, time 0 is the zero of the clock. A file that cannot be read or used is
-/// skipped with a note. Throws BadInput with the file if more than 5 % of the files are faulty. Throws BadInput also
-/// for different numbers of stamps and files, files of several lidars, or sweeps without times.
+/// skipped with a note. Throws BadInput with the file if more than 5 % of the files are faulty. Throws BadInput for
+/// different numbers of stamps and files, files of several lidars, or sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// ReferenceSource describes a pose file of another program.
@@ -108,8 +108,9 @@ Imported import_trajectory(const ReferenceSource& source);
 /// Throws BadInput for errors of the reader, for lidar poses without a lidar, or if the times do not overlap.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds the IMUs of the recording `imu` to `recording`. The two recordings must use the same clock. The time 0 of the
-/// result is the earlier of the two. Throws BadInput if the times of the two recordings do not overlap.
+/// Adds the IMUs of the recording `imu` to `recording`. The recordings `imu` and `recording` must use the same clock.
+/// The result has the earlier time 0 of the two recordings. Throws BadInput if the times of the two recordings do not
+/// overlap.
 void attach_imus(Imported& recording, Imported imu);
 
 /// Reads a trial of the data set BROAD (Laidig et al., Data 2021, 6(7), 72) from its HDF5 file: imu_gyr, imu_acc,
@@ -137,8 +138,8 @@ Imported import_broad(const std::filesystem::path& path);
 /// contains no positions.
 ///
 /// Throws BadInput with file, line, value and limit for unknown, missing or repeated columns, invalid numbers,
-/// non-finite IMU readings, a stamp that does not increase, or a truncated last line. Throws BadInput also if the norm
-/// of more than a fifth of the quaternions differs from 1 by more than 1 %.
+/// non-finite IMU readings, a stamp that does not increase, or a truncated last line. Throws BadInput if the norm of
+/// more than a fifth of the quaternions differs from 1 by more than 1 %.
 Imported import_repoimu(const std::filesystem::path& path, bool align);
 
 /// Returns whether the file starts like a recording of RepoIMU.

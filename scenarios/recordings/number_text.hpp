@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// Parses a number of a text file: decimal or scientific notation, optional sign, surrounding blanks, nan and inf.
-/// Returns false for any other text. All readers of text tables use this function.
+/// Returns false for any other text. All readers of text tables use parse_number.
 bool parse_number(std::string_view text, double& value);
 
 /// Parses a time, and converts it to nanoseconds by moving the decimal point by `decimals`: 9 for s, 6 for ms, 3 for

@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 /// BinnedMetric is a metric over the samples whose quantity `axis` is in [low, high), for example
 /// "rate_error_median_rad_s@clip_depth_rad_s:1:2". The limit `high` may be infinite. Reports plot binned metrics as a
-/// curve over this quantity; tables omit them.
+/// curve over the quantity `axis`; tables omit binned metrics.
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
   std::string axis;  ///< "clip_depth_rad_s"; ends in its unit, as metrics do

@@ -29,8 +29,8 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-// Returns the last sweep that the IMU covers and that is within the time of the truth. The comparison ends at this
-// sweep for all methods. If a clock is delayed, the last sweeps of a recording may have stamps after the truth.
+// Returns the last sweep that the IMU covers and that is within the time of the truth. The comparison ends at the last
+// covered sweep for all methods. If a clock is delayed, the last sweeps of a recording may have stamps after the truth.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
@@ -43,7 +43,7 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
 }
 
 // Returns the first and last pose of the estimate between which the end error is measured. Returns false if the
-// estimate lacks one of these poses.
+// estimate lacks the first or the last pose.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // external trajectory
@@ -100,7 +100,7 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
 }
 
 // Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose. For a
-// consistent covariance, the mean of this error is 1.
+// consistent covariance, the mean of the normalised error is 1.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);

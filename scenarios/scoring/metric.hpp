@@ -7,8 +7,8 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// The header metric.hpp defines the description that each metric has. Tables, reports, gates and triage use only this
-/// description.
+/// The header metric.hpp defines the description that each metric has. Tables, reports, gates and triage use only the
+/// description of a metric.
 namespace tumble::scenarios {
 
 /// Sense states which values of a metric are better. Lower values are better for errors; higher values are better for
@@ -70,7 +70,7 @@ bool is_better(const MetricInfo& metric, double a, double b);
 double how_bad(const MetricInfo& metric, double value);
 
 /// Returns the value that a failed run gets: infinity, or minus infinity if higher is better. For two-sided and
-/// unranked metrics, this value is NaN, which statistics ignore.
+/// unranked metrics, a failed run gets NaN, which statistics ignore.
 double worst_value(const MetricInfo& metric);
 
 /// The function headline_metrics returns the most important metrics of a kind; held_metrics returns all metrics of a

@@ -17,7 +17,7 @@ struct Jumps {
 };
 
 // Computes the error of the velocity change at each sweep boundary, from the last pose of a sweep to the first pose of
-// the next sweep. The velocities are those of the first and last step inside each sweep.
+// the next sweep. The velocity at a boundary is that of the nearest step inside each sweep.
 Jumps border_jumps(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   Jumps jumps;

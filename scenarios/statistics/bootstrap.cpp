@@ -61,8 +61,8 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
-  // Equation (S1) of statistics.md gives the lower middle of n uniform random numbers. The equation also gives the next
-  // larger number, given the lower middle.
+  // Equation (S1) of statistics.md gives the lower middle of n uniform random numbers. Equation (S1) also gives the
+  // next larger number, given the lower middle.
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 /// MedianBootstrap computes bootstrap confidence intervals of the median, for samples of one size, by equations (S1) to
 /// (S4) of statistics.md. The intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks
-/// of a resample's middle values do not depend on the values. The constructor therefore draws these ranks once, instead
+/// of a resample's middle values do not depend on the values. The constructor therefore draws the ranks once, instead
 /// of resampling n values for each interval. For a given sample size, the random ranks are equal on every machine. The
 /// constructor evaluates `resamples` inverse beta functions; each interval costs O(resamples log resamples).
 class MedianBootstrap {

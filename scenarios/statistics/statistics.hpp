@@ -38,8 +38,8 @@ Interval median_interval(std::span<const double> values);
 /// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Returns the values, with one value `worst` added for each failed run. All statistics of a metric use this extended
-/// list. If `worst` is NaN, nothing is added (scenarios/scoring/metric.hpp, `worst_value`).
+/// Returns the values, with one value `worst` added for each failed run. All statistics of a metric use the extended
+/// list of values. If `worst` is NaN, nothing is added (scenarios/scoring/metric.hpp, `worst_value`).
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

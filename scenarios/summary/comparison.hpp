@@ -87,8 +87,8 @@ struct Comparison {
 
 /// Compares the methods of a summary with their reference methods, in the order of the summary's sections. Costs and
 /// other unranked metrics are compared only if the caller names them, and give no finding. Throws BadInput for methods
-/// or metrics that the results do not contain; the message suggests the nearest name. Throws BadInput also for a risk,
-/// power or margin out of range.
+/// or metrics that the results do not contain; the message suggests the nearest name. Throws BadInput for a risk, power
+/// or margin out of range.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

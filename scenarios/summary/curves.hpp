@@ -39,8 +39,8 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// For binned samples, this list contains the labels of all bins, including empty bins. The point x belongs to bins[x
-  /// -
+  /// For binned samples, the list `bins` contains the labels of all bins, including empty bins. The point x belongs to
+  /// bins[x -
   /// 1].
   std::vector<std::string> bins = {};
 };

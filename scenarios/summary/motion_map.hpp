@@ -43,8 +43,8 @@ struct MotionMap {
 
 /// Computes the density of the runs: counts in cells, smoothed along both axes by a Gaussian of Scott's width in
 /// logarithms (at least half a cell). Scott's width is sigma n^(-1/6) (Multivariate Density Estimation, 1992, section
-/// 6.3). The part of a kernel beyond the grid is distributed over the grid. The two maxima of a run may occur at
-/// different times. The cost is O(draws + cells^(3/2)).
+/// 6.3). The part of a kernel beyond the grid is distributed over the grid. The maximum rate and the maximum force of a
+/// run may occur at different times. The cost is O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -28,8 +28,8 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// kPublishedMotion is the source of the `published` values. The report displays this text after the words "compared
-/// with".
+/// kPublishedMotion is the source of the `published` values. The report displays kPublishedMotion after the words
+/// "compared with".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 

@@ -43,7 +43,7 @@ struct Answer {
 };
 
 /// Throws BadInput for equal methods, methods of two kinds, methods without a full name, or an unranked metric. Throws
-/// BadInput also for a margin or risk out of range, or if there is no interim analysis.
+/// BadInput for a margin or risk out of range, or if there is no interim analysis.
 void require_sound(const Question& question);
 
 /// Stores the question in the results database, before the first simulated run. Throws BadInput if the database

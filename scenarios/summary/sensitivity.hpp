@@ -41,8 +41,8 @@ struct Influence {
   double median_low = 0.0, median_high = 0.0;
   /// The partial dependence is the median score, or the fraction of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};
-  /// Returns the larger of the first-order index and the square of the rank correlation. Influences are sorted by this
-  /// value.
+  /// Returns the larger of the first-order index and the square of the rank correlation. Influences are sorted by their
+  /// strength.
   double strength() const;
 };
 

@@ -66,7 +66,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // The memory of an external command is measured elsewhere, from the fork of its process on.
+  // Peak memory is recorded only for built-in methods, because the operating system counts the memory of an external
+  // command from the fork on.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);

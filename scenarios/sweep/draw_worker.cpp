@@ -36,8 +36,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // An idle worker must not hold memory of its last draw.
-    // The last message of a run is sent after all destructors. If the worker process dies before this message, the
-    // current task fails.
+    // The last message of a run is sent after all destructors. If the worker process dies before the last message of a
+    // run, the current task fails.
     write_all(fd, to_line({}));
   }
 }

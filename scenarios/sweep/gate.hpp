@@ -22,9 +22,9 @@
 ///
 /// The check of the median requires that no gate metric (metric.hpp, `held_metrics`) becomes worse by more than the
 /// margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
-/// (`Compared`). The exact signed-rank test (statistics/paired.hpp) tests these differences minus the margin. A metric
-/// with a target is checked on both sides, so a covariance that becomes too small also fails. If the new results are
-/// not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni).
+/// (`Compared`). The exact signed-rank test (statistics/paired.hpp) tests the differences of the pairs minus the
+/// margin. A metric with a target is checked on both sides, so a covariance that becomes too small also fails. If the
+/// new results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni).
 ///
 /// The check of the median over all scenarios of a method detects shifts that are too small for one scenario.
 ///
@@ -71,8 +71,8 @@ std::vector<std::string> gate_names(const DataRoot& data);
 /// Loads the gate of a suite by its name, or from a file if `name` ends in ".yaml". The accepted results are in a
 /// ".csv" file with the same name. The list `described` contains external methods (external_method.hpp) that may occur
 /// in the gate. Throws BadInput with file and line for an unknown gate, another suite, or empty results; the message
-/// for an unknown gate suggests the nearest name. Throws BadInput also for an unknown key, kind, method, metric or
-/// status, a wrong row length, or a number out of bounds.
+/// for an unknown gate suggests the nearest name. Throws BadInput for an unknown key, kind, method, metric or status, a
+/// wrong row length, or a number out of bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 /// Returns the limits or the accepted results of a gate as text that `load_gate` can read. Reading restores all numbers
 /// exactly.

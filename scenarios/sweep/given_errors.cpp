@@ -77,7 +77,7 @@ void state_no_rail(sim::ImuRecord& imu) {
 }
 
 /// Replaces clipped readings by unclipped readings with a constant error per clipping interval, and removes all clip
-/// flags. The changed readings simulate the output of a rate method with this error.
+/// flags. The changed readings simulate the output of a rate method with a constant error.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);

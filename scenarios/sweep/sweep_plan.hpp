@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 class SweepPlan {
  public:
   /// Throws BadInput for an unknown method, scenario or recording, or for a scenario from which no situation can be
-  /// drawn. Throws BadInput also if no method applies to any scenario.
+  /// drawn. Throws BadInput if no method applies to any scenario.
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
             const std::filesystem::path& database);
 

@@ -109,7 +109,7 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Returns the true pose of the first lidar at a given time. The track must belong to the frame of this lidar.
+/// Returns the true pose of the first lidar at a given time. The track must belong to the frame of the first lidar.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -172,8 +172,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first, because this correction needs the time of each point. Removing the motion
-/// distortion deletes these times.
+/// Range errors are corrected first, because this correction needs the time of each point. The removal of the motion
+/// distortion deletes the times of the points.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

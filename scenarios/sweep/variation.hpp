@@ -37,7 +37,7 @@ Reach reach(const Setting& setting);
 bool needs_lidar(const Setting& setting);
 
 /// Throws BadInput if a key is unknown, is of another sort than the other keys, or does not apply to one of the
-/// scenarios. The message for an unknown key suggests the nearest name. Throws BadInput also if no situation with seed
+/// scenarios. The message for an unknown key suggests the nearest name. Throws BadInput if no situation with seed
 /// `seed` can be drawn with one of the values.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
@@ -47,8 +47,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
 /// Returns the simulated run with the error of the setting applied to its sensor data. Throws BadInput if the run lacks
-/// the sensor to which the error applies. Throws BadInput also if the run is a recording, because an input error
-/// depends on the simulated situation.
+/// the sensor to which the error applies. Throws BadInput if the run is a recording, because an input error depends on
+/// the simulated situation.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
 /// Returns the method with the parameter value of the setting.

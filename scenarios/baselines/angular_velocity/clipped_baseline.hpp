@@ -27,8 +27,8 @@ namespace tumble::baselines {
 ///   bounded rate (`rate_sigma_rad_s`). The smoother of `constant_jerk` uses clipped readings as hard lower limits of
 ///   the rate's magnitude. The `constant_jerk` model suits swings without impacts and gaps up to about 2 / lambda =
 ///   0.15 s, with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer gaps, the rate that `constant_jerk`
-///   estimates returns towards the saturation level. The variance that `constant_jerk` reports in such gaps belongs to
-///   a curve above the saturation level.
+///   estimates returns towards the saturation level. In longer gaps, the variance that `constant_jerk` reports belongs
+///   to a curve above the saturation level.
 ///
 /// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative of the rate. On
 /// simulated tumbles of the rig, `interpolate` and `constant_jerk` have a larger mean error than the clipped reading.

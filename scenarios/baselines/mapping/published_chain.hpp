@@ -17,7 +17,7 @@
 namespace tumble::baselines {
 
 /// PublishedChain estimates trajectory and map from given rates with the published mapping chain (Deschenes et al.,
-/// ICRA 2024). The constants are those of the authors' launch files. Madgwick's filter estimates attitude, and
+/// ICRA 2024). PublishedChain has the constants of the authors' launch files. Madgwick's filter estimates attitude, and
 /// accelerometer odometry estimates position with velocity feedback from registration. The chain deskews each sweep,
 /// weights its points by time, and registers the voxelised points to a map by trimmed point-to-plane registration. Each
 /// sweep is deskewed to its start, or to the common time of its points. The published chain inserts points only where

@@ -78,7 +78,7 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers the points of a sweep from `start_ns` to `end_ns` to the map. The possible errors are those of
+  /// Registers the points of a sweep from `start_ns` to `end_ns` to the map. The errors of add_sweep are those of
   /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);

@@ -121,10 +121,10 @@ struct BagReading {
 /// An MCAP file may contain messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
 /// The option `stamps` selects the message times. The notes of the result describe how the stamps of headers and
-/// records differ. The reader checks the units against gravity, as for CSV files. Specific force in g at rest, as from
-/// Livox drivers, is converted, with a note. Each sensor is named after its topic. The points of a bag are converted by
-/// the rules of import_sweeps. A duplicate message (equal stamp and content) is read once. Single faulty messages are
-/// skipped with a note (left_out.hpp).
+/// records differ. The reader checks the units of the IMU against gravity, as for CSV files. Specific force in g at
+/// rest, as from Livox drivers, is converted, with a note. Each sensor is named after its topic. The points of a bag
+/// are converted by the rules of import_sweeps. A duplicate message (equal stamp and content) is read once. Single
+/// faulty messages are skipped with a note (left_out.hpp).
 ///
 /// Unless the caller chooses topics, the reader skips clouds in the frames "world", "map" or "odom", because these
 /// clouds are not raw sensor data. In this automatic selection, lidars whose points have times come first.

@@ -39,8 +39,8 @@ class File {
   /// Opens an MCAP file and reads its summary, or scans the file if it has no summary. If the file contains a checksum
   /// of the data section, the function verifies the checksum. The cost is proportional to the file size; memory
   /// contains some MiB and the summary. Throws BadInput with the offset if the file is not MCAP, is truncated or
-  /// damaged, or has a compression other than none, lz4 or zstd. Throws BadInput also for a chunk or record larger than
-  /// 256 MiB.
+  /// damaged, or has a compression other than none, lz4 or zstd. Throws BadInput for a chunk or record larger than 256
+  /// MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }

@@ -8,8 +8,8 @@
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
 /// The header ros_fields.hpp lists the fields of each message type in the order of the message definition. ROS 1 and
-/// ROS 2 encode these fields differently. The archives (encoders and decoders) in ros_bytes.hpp implement both
-/// encodings.
+/// ROS 2 encode the fields of a message differently. The archives (encoders and decoders) in ros_bytes.hpp implement
+/// both encodings.
 ///
 /// An archive must have the following members:
 /// - The member operator()(uint8 | uint32 | uint64 | float | text | array of doubles) handles one field.

@@ -92,7 +92,7 @@ struct LivoxCustomMsg {
   std::vector<LivoxPoint> points;
 };
 
-/// Message is any message type that the bag writers write. The type names are those of ROS 1.
+/// Message is any message type that the bag writers write. The names of message types are those of ROS 1.
 using Message = std::variant<Imu, PointCloud2, Odometry, TransformStamped, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";

@@ -86,14 +86,14 @@ class SweepBuilder {
   /// clouds cannot be interpreted.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
-  /// Returns the counts of skipped clouds. The caller adds the clouds that cannot be read to these counts.
+  /// Returns the counts of skipped clouds. The caller adds the clouds that cannot be read to the counts.
   LeftOut& left_out() { return left_out_; }
 
   /// Returns the lidar record in the clock of the stamps, and adds notes, for example about the unit of point times. If
   /// the device has no period, the period is the median step of the stamps, or the latest point offset if that is
   /// larger. Throws BadInput, with a message that starts with `where`, if too many clouds were skipped or if there are
-  /// no points. Throws BadInput also if most points are beyond twice the range in the data sheet, or for a single sweep
-  /// of unknown length.
+  /// no points. Throws BadInput if most points are beyond twice the range in the data sheet, or for a single sweep of
+  /// unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

@@ -18,8 +18,8 @@ std::vector<std::string> peer_dialects();
 /// contains a configuration for the sensors of this recording, and manifest.json. If `with_truth` is true, the folder
 /// contains truth.tum for the program evo: body poses in the bag's clock. Returns notes about omitted empty sweeps.
 ///
-/// Throws BadInput for an unknown name; the message suggests the nearest name. Throws BadInput also for a recording
-/// without the lidar, IMU or point times that the estimator needs, and for errors of the bag writers.
+/// Throws BadInput for an unknown name; the message suggests the nearest name. Throws BadInput for a recording without
+/// the lidar, IMU or point times that the estimator needs, and for errors of the bag writers.
 std::vector<std::string> export_for(const std::filesystem::path& recording, const std::string& peer,
                                     const std::filesystem::path& folder, bool with_truth);
 

@@ -114,7 +114,7 @@ constexpr double kLeastCorrelation = 0.8;
 constexpr double kBriskRotation = 0.25;
 
 /// Within a burst of readings, a time step is at most the fraction kBurstStep of the mean step. In a recording with
-/// bursts, at least half of the time steps are this short.
+/// bursts, at least the fraction kBurstShare of the time steps are within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;

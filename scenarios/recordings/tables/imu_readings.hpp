@@ -65,8 +65,8 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
 
 /// Checks the unit of the rates against the rotation of gravity, and returns a note on the result, or on a gyro that
 /// always reads 0. Returns "" if the motion is insufficient for the check. Throws BadInput if gravity indicates that
-/// the rates are in deg/s instead of rad/s or vice versa (factor 57.3). Throws BadInput also if more than 1 % of the
-/// rates exceed twice the range of the IMU (100 rad/s if unknown). The error message starts with `where`.
+/// the rates are in deg/s instead of rad/s or vice versa (factor 57.3). Throws BadInput if more than 1 % of the rates
+/// exceed twice the range of the IMU (100 rad/s if unknown). The error message starts with `where`.
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// Returns a note on the unit of the rates, for a format that does not specify the unit. If the motion is insufficient

@@ -21,8 +21,8 @@ namespace tumble::scenarios {
 /// function ignores other columns and lists them in the notes.
 ///
 /// Returns nothing if the table has none of these column names. Throws BadInput with file and line if some columns are
-/// missing or an axis is repeated. Throws BadInput also for an unknown unit, for axes with different units, or for
-/// names with several IMU numbers (gyro1_x, gyro2_x).
+/// missing or an axis is repeated. Throws BadInput for an unknown unit, for axes with different units, or for names
+/// with several IMU numbers (gyro1_x, gyro2_x).
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
 /// Finds the columns that the user lists, for example in "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word in the list that

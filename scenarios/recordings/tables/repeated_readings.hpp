@@ -28,10 +28,10 @@ struct RepeatReport {
 
 /// Converts the readings of a log to IMU samples, without repeated readings. A sensor repeats its readings if 5 to 98 %
 /// of its rows have the same three axes as the previous row. A sensor whose rows repeat more often counts as frozen.
-/// Only rows with new gyro readings are kept. The times of these readings become regular, within the log step in which
-/// each reading arrived. If the accelerometer repeats its readings for longer than the gyro, they are interpolated
-/// linearly at the gyro's times, which acts as a low-pass filter. The function sets time_ns, gyro, accelerometer and
-/// clip_flags (0) of `imu`. The cost is O(N).
+/// The function keeps only rows with new gyro readings. The times of new gyro readings become regular, within the log
+/// step in which each reading arrived. If the accelerometer repeats its readings for longer than the gyro, they are
+/// interpolated linearly at the gyro's times, which acts as a low-pass filter. The function sets time_ns, gyro,
+/// accelerometer and clip_flags (0) of `imu`. The cost is O(N).
 RepeatReport remove_repeats(const LoggedReadings& log, sim::ImuRecord& imu);
 
 /// Describes a probable saturation of the accelerometer, or returns "". An axis counts as saturated in one direction if

@@ -38,8 +38,8 @@ std::string pose_format(const std::filesystem::path& file);
 
 /// Reads a TUM file with "t x y z qx qy qz qw" per line, t in seconds; '#' starts a comment, and blanks or commas
 /// separate. The argument `sorted` is that of finish_poses. Throws BadInput with file and line for a line without eight
-/// finite numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput also for a stamp that
-/// does not increase (unless sorted), or fewer than two poses.
+/// finite numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput for a stamp that does not
+/// increase (unless sorted), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
 /// Reads a KITTI file, in which each line has the upper three rows of a pose matrix. The list `times_ns` contains the
@@ -77,7 +77,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
 
 /// Computes velocity and rate of the truth by central differences over `reach` samples on each side. Velocity and rate
-/// are unknown if one of these samples is unknown.
+/// are unknown if a sample within `reach` is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach);
 
 }  // namespace tumble::scenarios
