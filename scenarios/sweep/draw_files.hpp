@@ -41,7 +41,7 @@ class DrawFiles {
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
-  /// Describes the error in one line, or returns an empty text if there is none.
+  /// Describes the error in one line, or returns an empty text without an error.
   const std::string& error_code() const { return trouble_; }
 
  private:

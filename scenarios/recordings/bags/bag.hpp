@@ -127,7 +127,7 @@ struct BagReading {
 /// faulty messages are skipped with a note (left_out.hpp).
 ///
 /// Unless the caller chooses topics, the reader skips clouds in the frames "world", "map" or "odom", because these
-/// clouds are not raw sensor data. In this automatic selection, lidars whose points have times come first.
+/// clouds are not raw sensor data. If the caller chooses no topics, lidars whose points have times come first.
 ///
 /// The reader merges the parts of a ROS 1 bag in a folder by time. The files of a ROS 2 bag are read in order of time.
 /// Files that metadata.yaml does not list, but that have similar names, are also read.

@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the first line that is neither empty nor a comment, or the first line of the file if there is none.
+/// Returns the first line that is neither empty nor a comment, or the first line of a file without such a line.
 std::string_view first_row(std::string_view text) {
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trimmed(rest.substr(0, rest.find('\n')));

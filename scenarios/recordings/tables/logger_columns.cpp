@@ -101,7 +101,7 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   return name;
 }
 
-/// NamedAxis is an axis of a gyro or accelerometer, with the number of the IMU in the name ("" if there is none).
+/// NamedAxis is an axis of a gyro or accelerometer, with the number of the IMU in the name ("" without a number).
 struct NamedAxis {
   std::size_t axis = 0;
   std::string number;
@@ -268,7 +268,7 @@ std::vector<std::string> names_of(const std::string& choice, const std::string& 
   return names;
 }
 
-/// Returns the column with this name or, if there is none, the column at this position.
+/// Returns the column with the name `name`; if no column has this name, returns the column at the position `name`.
 std::size_t column_of(const LoggedTable& table, const std::string& name) {
   const std::vector<std::string_view>& fields = table.header().fields;
   const auto count = table.has_header() ? std::count(fields.begin(), fields.end(), name) : 0;
