@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// DataRoot contains the folders of the data files that are read at run time. The caller of DataRoot supplies the root
-/// folder.
+/// DataRoot contains the folders of the data files that the program reads at run time. The caller supplies the common
+/// root of the data folders.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

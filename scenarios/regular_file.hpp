@@ -24,9 +24,9 @@ inline std::filesystem::file_status require_file(const std::filesystem::path& pa
   return found;
 }
 
-/// Throws BadInput if `path` is not a regular file. The check follows symbolic links, and the error message states the
-/// type of the path. Callers check a path before they open it, because opening a pipe without a writer blocks for ever,
-/// and devices have no end.
+/// Throws BadInput if `path` is not a regular file. The check follows symbolic links, and the error message contains
+/// the type of the path. The check must precede opening, because opening a pipe without a writer blocks for ever, and
+/// devices have no end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {
     case std::filesystem::file_type::regular:

@@ -23,7 +23,7 @@ std::string name_of(const BenchDraw& draw) {
   return draw.scenario + " " + std::to_string(draw.seed);
 }
 
-/// Returns the scenarios and seeds of the suite, with empty results.
+/// Returns the scenarios and seeds of the bench suite, with empty results.
 std::vector<BenchDraw> draws_of(const Suite& suite) {
   std::vector<BenchDraw> draws;
   for (const DrawClass& each : suite.classes)
@@ -42,7 +42,7 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Returns whether a simulated run has nothing to score, because another method completed the run without a value of
+/// Returns whether the run does not count for the metric: a method completed the run with `ok` but without a value of
 /// the metric.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
@@ -139,7 +139,7 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
 std::string other_recording(const BenchResult& a, const BenchResult& b) {
   for (const BenchDraw& draw : a.draws) {
     const BenchDraw* other = b.find(draw);
-    // A run has no digest if the method's process crashed.
+    // The digest of the recording is missing if the method's process crashed.
     if (other != nullptr && !draw.recording.empty() && !other->recording.empty() && draw.recording != other->recording)
       return name_of(draw);
   }

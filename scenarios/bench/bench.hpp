@@ -9,49 +9,49 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
-/// bench.hpp compares the stored results of methods on fixed suites. Each kind of method (rate, attitude, position,
-/// slam) has one suite.
+/// The functions in bench.hpp compare the stored results of methods on fixed suites of simulated runs. Each kind of
+/// method (rate, attitude, position, slam) has one suite.
 namespace tumble::scenarios {
 
 /// Returns the name of the bench suite of a kind of method, for example "bench_rate_v1". The version in the name
-/// increases if the suite's simulated runs, limits or classes change.
+/// increases if the suite's simulated runs, limits or classes of runs change.
 std::string bench_suite_name(Kind kind);
 
-/// Returns the digest of the suite's scenarios, seeds, classes and time limit. Only results with equal suite digests
-/// are comparable.
+/// Returns a hash of the suite's scenarios, seeds, classes of runs and time limit. Only results with equal suite
+/// digests are comparable.
 std::string bench_suite_digest(const Suite& suite);
 
-/// Collects the results of one method from a sweep over the suite. The caller fills in command and date of the result.
-/// Throws BadInput if a simulated run of the suite has no outcome.
+/// Collects the results of one method from a stored sweep over the bench suite. The caller adds the command line and
+/// the date to the result. Throws BadInput if a simulated run of the suite has no outcome.
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
-/// Stores published results in a database next to measured results, each with a note of its build and date. The
-/// computing cost is omitted, because it is comparable only on one machine. The database must not contain results of
-/// the published methods.
+/// Adds published bench results to a database of measured results, each with a note of its build and date. The
+/// computing cost is omitted, because only costs from the same machine are comparable. The database must not contain
+/// other results of the published methods.
 void add_published(std::span<const BenchResult> published, Results& results);
 
 /// Throws BadInput unless the result belongs to this suite and has an outcome for every simulated run.
 void require_of_suite(const BenchResult& result, const Suite& suite);
 
-/// Returns the first simulated run whose recordings differ between the two results, or an empty text. Two bench results
-/// are comparable only if all recordings are equal.
+/// Returns the first simulated run whose recordings differ between the results `a` and `b`, or an empty text. Two bench
+/// results are comparable only if all recordings are equal.
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
-/// BenchCell contains median and rank of one metric of one method over one class of simulated runs. Simulated runs
-/// whose status is not `ok`, or that have no value, rank worst. A simulated run is skipped if another method ended with
-/// `ok` but without a value, for example because no reading was clipped.
+/// BenchCell contains the median of one metric over one class of simulated runs for one method, and the method's rank.
+/// Simulated runs whose status is not `ok`, or that have no value of the metric, rank worst. A simulated run is skipped
+/// if another method completed the run without a value, for example because no reading was clipped.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
   double median = 0.0;  ///< infinite if half of the runs failed; NaN without runs
 };
 
-/// Computes the BenchCell of `result`. An empty `group` selects all classes of simulated runs. `beside` contains the
-/// results to compare with, and may include `result`.
+/// Computes the median and rank of `result` for one metric. An empty `group` selects all classes of simulated runs. The
+/// list `beside` contains the results to compare with, and may include `result`.
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// BenchWins is the number of simulated runs on which `result` is better than `baseline`. BenchWins counts only runs
-/// that count for both methods.
+/// BenchWins is the number of simulated runs on which `result` is better than `baseline`. Only runs that have a value
+/// for both methods count.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

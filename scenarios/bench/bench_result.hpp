@@ -24,8 +24,8 @@ struct BenchDraw {
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 
-/// BenchResult is the result of one method on a bench suite, published as one line of JSON. README.md describes the
-/// JSON schema.
+/// BenchResult is the result of one method on a bench suite, which is published as one line of JSON. README.md
+/// describes the JSON schema.
 struct BenchResult {
   std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;
@@ -38,21 +38,21 @@ struct BenchResult {
   const BenchDraw* find(const BenchDraw& draw) const;
 };
 
-/// Returns the result as one line of JSON without a newline.
+/// Converts the bench result to one line of JSON without a newline.
 std::string to_line(const BenchResult& result);
 
-/// Parses one line of JSON that `to_line` wrote. Throws BadInput, with a message that starts with `place`, if the line
-/// is not JSON, has another format or version, or repeats a simulated run. Throws BadInput also for a missing key, a
+/// Parses one line of JSON, as written by `to_line`. Throws BadInput, with a message that starts with `place`, if the
+/// line is not JSON, has another format or version, or repeats a simulated run. Throws BadInput for a missing key, a
 /// wrong type, an unknown kind or an unknown status.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
-/// Returns the path of the file with a suite's stored results: SUITE.jsonl.
+/// Returns the path of the file with the stored results of a suite: SUITE.jsonl.
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
-/// Returns the results in a file, one per line; empty lines are ignored, and a missing file gives an empty list.
+/// Reads the results in a file, one per line; empty lines are ignored, and a missing file gives an empty list.
 std::vector<BenchResult> read_bench_results(const std::filesystem::path& file);
 
-/// Stores results in the file; each new result replaces the stored result of the same method.
+/// Stores bench results in the file; each new result replaces the stored result of the same method.
 void store_bench_results(const std::filesystem::path& file, const std::vector<BenchResult>& results);
 
 }  // namespace tumble::scenarios

@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Complication is a removable detail of a simulated run, for example a sensor error, stones or a spin. A complication
-/// consists of numbers of the scenario and their ideal values.
+/// Complication is a removable detail of a simulated run, for example a sensor error, stones on the floor or a spin. A
+/// complication consists of numbers of the scenario, each with its ideal value.
 struct Complication {
   std::string name;                                     ///< "sensors.imu: white noise", "world: rocks"
   std::vector<std::pair<std::string, double>> without;  ///< place (fixed_number.hpp) and ideal value
@@ -19,9 +19,9 @@ struct Complication {
   bool whole = false;                                   ///< the amount is a count
 };
 
-/// Returns all removable details of a scenario with fixed numbers (fixed_scenario.hpp). The order of the complications
-/// is world, robot, motion, then each sensor's errors. Related complications are adjacent in the list. Each
-/// complication is registered by one line of complication.cpp. Complications whose numbers are all ideal are omitted.
+/// Returns all complications of a scenario with fixed numbers (fixed_scenario.hpp). The list starts with the world, the
+/// robot and the motion, then contains the errors of each sensor. Related complications are adjacent in the list. Each
+/// complication has one line in a table of complication.cpp. A complication is omitted if all of its numbers are ideal.
 std::vector<Complication> complications(const Scenario& scenario);
 
 /// Sets the numbers of this complication in the scenario to their ideal values.

@@ -19,7 +19,7 @@ Indices without(const Indices& kept, std::size_t first, std::size_t count) {
   return out;
 }
 
-/// Asked caches the result of each trial.
+/// Asked runs each trial of the search once and caches its result.
 class Asked {
  public:
   explicit Asked(const FailsWith& fails) : fails_(fails) {}

@@ -6,11 +6,12 @@
 #include <optional>
 #include <vector>
 
-/// delta_debugging.hpp searches for the smallest failing configuration. The caller runs the trials of the search. If
-/// the caller returns no result, the budget is used up, and the search ends with its best result.
+/// The functions in delta_debugging.hpp search for the smallest set of items, or the smallest number, with which a run
+/// fails. The caller runs the trials of the search. If the caller returns no result, the budget is used up, and the
+/// search ends with the best result so far.
 namespace tumble::scenarios {
 
-/// Returns whether a run that keeps only the items in `kept` (ascending indices) still fails.
+/// FailsWith returns whether a run that keeps only the items with the indices `kept` (ascending) still fails.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -19,15 +20,16 @@ struct LeastSet {
   bool complete = false;            ///< all of `kept` are needed: the set is 1-minimal
 };
 
-/// Returns a 1-minimal failing subset of the items 0 to `count` - 1; removing any single item of this subset removes
-/// the failure. A run with all items must fail. The search is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183,
-/// 2002, algorithm ddmin) with complements only. The search first removes all items, then halves of the remaining
-/// items, quarters, down to single items, and repeats until no item can be removed. The caller should order the items
-/// so that related items are adjacent. Smaller failing sets may exist if adding items can repair a failure. The search
-/// needs about 2 log2(count) trials if one item is needed, and at most O(count^2). The search never repeats a trial.
+/// Returns a 1-minimal failing subset of the items 0 to `count` - 1: without any single item of this subset, the run
+/// does not fail. The run with all items must fail. The method is delta debugging (Zeller and Hildebrandt, IEEE TSE
+/// 28:183, 2002, algorithm ddmin), which tests complements only. The search first removes all items, then halves of the
+/// remaining items, then quarters, down to single items, until no item can be removed. The caller should order the
+/// items so that related items are adjacent. If adding an item can prevent the failure, a smaller failing set may
+/// exist. The search needs about 2 log2(count) trials if one item is needed, and at most O(count^2). The search never
+/// repeats a trial.
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// Returns whether a run with the number `value` still fails.
+/// FailsAt returns whether a run with the number `value` still fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {
@@ -36,9 +38,9 @@ struct LeastNumber {
   bool complete = false;  ///< `fails_at` and `holds_at` differ by at most `resolution`
 };
 
-/// Bisects between the value `failing`, at which a run fails, and the value `ideal`, at which a run is assumed to
-/// succeed. Returns the failing value closest to `ideal`, within `resolution` (above 0). If `whole` is true, the search
-/// tries integers only.
+/// Bisects between the number `failing`, at which a run fails, and the number `ideal`, at which a run is assumed to
+/// succeed. Returns the failing number closest to `ideal`, within `resolution` (above 0). If `whole` is true, the
+/// search tries integers only.
 LeastNumber least_failing_number(double failing, double ideal, double resolution, bool whole, const FailsAt& fails);
 
 }  // namespace tumble::scenarios

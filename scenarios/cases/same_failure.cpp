@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns true if a metric exceeds its limit; false for NaN.
+/// Returns whether the metric of an outcome exceeds its limit; NaN gives false.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;

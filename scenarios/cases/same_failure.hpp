@@ -7,19 +7,19 @@
 
 namespace tumble::scenarios {
 
-/// SameFailure describes how an outcome failed: by its status, by the requested metric, or by a verdict (`map_failed`).
-/// The search for a simpler run (shrink.hpp) thus rejects runs that fail for another reason. A run without the metric
-/// counts as passed, because a run without clipping has no error at clipped samples. The struct Failure
-/// (sweep/triage.hpp) in contrast counts a run without the metric as failed.
+/// SameFailure describes how an outcome failed: by its status, by the metric that the caller chose, or by a pass-fail
+/// metric (`map_failed`). With SameFailure, the search for a simpler run (shrink.hpp) rejects runs that fail for
+/// another reason. A run without the metric passes, because a run without clipping has no error at clipped samples. In
+/// contrast, struct Failure (sweep/triage.hpp) counts a run without the metric as failed.
 class SameFailure {
  public:
   /// Throws BadInput if `outcome` does not fail, or if its status is `killed`.
   SameFailure(const Failure& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;
-  /// Returns a description of the failure such as "diverged", "map_failed" or "translation_error_end_m beyond 0.5".
+  /// Describes the failure, for example "diverged", "map_failed" or "translation_error_end_m beyond 0.5".
   std::string describe() const;
-  /// Returns the metric of the failure, or an empty text if the status is the failure.
+  /// Returns the metric that defines the failure, or an empty text if the status defines it.
   const std::string& metric() const { return metric_; }
 
  private:

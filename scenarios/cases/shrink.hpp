@@ -8,10 +8,10 @@
 
 #include "scenarios/sweep/triage.hpp"
 
-/// shrink.hpp makes a failing simulated run shorter and simpler, to show the cause of the failure.
+/// The function `shrink` makes a failing simulated run shorter and simpler, to show the cause of the failure.
 namespace tumble::scenarios {
 
-/// ShrinkTrial is one trial of the search: a simpler scenario, simulated and estimated.
+/// ShrinkTrial is one trial of the search: a simpler scenario that was simulated and estimated.
 struct ShrinkTrial {
   int run = 0;        ///< from 1, the original run
   std::string what;   ///< "4.5 s", "without world: rocks", "without 12 of 26"
@@ -21,9 +21,9 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// Control: a method of the same kind that must succeed where the tested method fails; null disables the control. A
-  /// failure of the control method excludes scenarios that no method can solve. The control is not used if it fails on
-  /// the original run.
+  /// The control is a method of the same kind, which must succeed on each run on which the tested method fails; null
+  /// disables the control. The control excludes scenarios that no method can solve. The search ignores the control if
+  /// it fails on the original run.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< limit of one method run
@@ -49,21 +49,21 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< the budget was sufficient: no single item can be removed
   bool controlled = false;  ///< the control failed on no accepted run
-  /// True input (sweep/triage.hpp) that removes the failure on the original run and on every accepted run; empty if no
-  /// single input does.
+  /// The true value of the input `cure` (sweep/triage.hpp) prevents the failure of the original run and of every
+  /// accepted run; empty if there is no such input.
   std::string cure;
 };
 
-/// Simplifies a simulated run on which `method` fails, while the method still fails. The search first reduces the
+/// Simplifies a simulated run on which `method` fails, as long as the method still fails. The search first reduces the
 /// duration, which makes further trials cheap. The search then removes complications (complication.hpp) by delta
-/// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. Each trial
-/// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp). The true input
-/// that removes the original failure must also remove the failure of the trial; otherwise the search could end at
-/// another cause. The search is deterministic. All trials use the random seed of the original run. The search misses
-/// simpler runs that can only be reached through a passing run.
+/// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. The search
+/// accepts a simpler run if it fails like the original run (same_failure.hpp). The true input that prevents the
+/// original failure must also prevent the failure of the simpler run; otherwise the search could end at another cause.
+/// The search is deterministic. All trials use the random seed of the original run. The search misses simpler runs if
+/// the way to them leads through a run that passes.
 ///
-/// Throws the exceptions of simulate_draw for the original run. Throws BadInput if the original run does not fail, or
-/// if method or control do not apply.
+/// Throws the exceptions of simulate_draw if the original run cannot be simulated. Throws BadInput if the original run
+/// does not fail, or if method or control do not apply.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);
 

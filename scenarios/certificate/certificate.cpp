@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Registers a measurement with the certificate's default settings.
+/// Registers a measurement of the simulation (a row of the certificate) with its default settings.
 template <auto kMeasure>
 std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
   return kMeasure(input, {});

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// CertificateEntry is one measured quantity of the certificate with its accepted range.
+/// CertificateEntry is one measured quantity of the simulation, with its accepted range.
 struct CertificateEntry {
   std::string row;      ///< quantity: "free_flight_energy"
   std::string subject;  ///< object: "rig", "hill", "mti30 gyro"
@@ -26,7 +26,7 @@ struct CertificateEntry {
   bool operator==(const CertificateEntry&) const = default;
 };
 
-/// Certificate contains the measured deviations of this build's simulation from physics and from the data sheets.
+/// Certificate contains the measured deviations of this build's simulation from physical laws and sensor data sheets.
 struct Certificate {
   std::string build;  ///< build_id()
   std::vector<CertificateEntry> entries;
@@ -34,21 +34,22 @@ struct Certificate {
   bool operator==(const Certificate&) const = default;
 };
 
-/// CertificateInput contains data and program that the measurements need.
+/// CertificateInput contains the data files and the program that the certificate's measurements need.
 struct CertificateInput {
   DataRoot data;
   std::filesystem::path program;  ///< the program `tumble`, started to check the digest in a new process
 };
 
-/// CertificateRow is a registered measurement of the certificate. Each certificate measurement has its own file and one
-/// registration line. `measure` uses the default settings; rows.hpp declares versions with custom settings.
+/// CertificateRow registers one measurement that checks the simulation. Each measurement has a separate source file and
+/// one registration line. The function `measure` uses the default settings; rows.hpp declares versions with custom
+/// settings.
 struct CertificateRow {
   std::string name;
   std::string doc;
   std::vector<CertificateEntry> (*measure)(const CertificateInput& input);
 };
 
-/// Returns all registered certificate measurements, in order.
+/// Returns all registered measurements that check the simulation, in order.
 std::span<const CertificateRow> certificate_rows();
 
 struct CertifyOptions {
@@ -57,9 +58,10 @@ struct CertifyOptions {
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each row
 };
 
-/// Runs all certificate measurements in this process, in about a minute on one core. A failed measurement gives an
-/// entry with the reason and the value NaN, which does not pass. Throws BadInput for missing models or an unknown name;
-/// the message suggests the nearest name. Throws sim::InvalidSituation.
+/// Runs the measurements that check the simulation in this process, which takes about a minute on one core. If a
+/// measurement fails, its entry contains the reason and the value NaN, which does not pass. Throws BadInput for missing
+/// models or an unknown name; the message suggests the nearest name. Throws sim::InvalidSituation if a situation cannot
+/// be simulated.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

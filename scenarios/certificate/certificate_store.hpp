@@ -8,11 +8,11 @@
 
 namespace tumble::scenarios {
 
-/// CertificateStore caches certificates in a folder, one file per combination of build, data and machine (processor
-/// model). File system errors disable the certificate cache silently.
+/// CertificateStore caches certificates (checks of the simulation) in a folder, one file per combination of build, data
+/// and machine (processor model). File system errors disable the certificate cache silently.
 class CertificateStore {
  public:
-  /// An empty path disables the certificate cache.
+  /// Opens the cache in `folder`; an empty path disables the cache.
   CertificateStore(std::filesystem::path folder, const DataRoot& data);
 
   std::optional<Certificate> find() const;

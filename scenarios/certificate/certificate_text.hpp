@@ -7,12 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// Returns the certificate as JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value,
-/// low, high, verdict, note}]}. Non-finite numbers become null.
+/// Converts a certificate (checks of the simulation) to JSON: {"build", "verdict": "pass" | "fail", "entries": [{row,
+/// subject, law, unit, value, low, high, verdict, note}]}. Non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
-/// Parses the JSON of a certificate bit-exactly. Null becomes NaN, and verdicts are recomputed. Throws BadInput with a
-/// message that starts with `place`.
+/// Parses the JSON text of a certificate bit-exactly. A JSON null becomes NaN; pass or fail is computed from the value
+/// and its range. Throws BadInput with a message that starts with `place`.
 Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

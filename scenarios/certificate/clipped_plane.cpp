@@ -21,7 +21,7 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
   return out;
 }
 
-/// Returns the sign of the saturated reading if only element `j` is saturated during the whole of sample k; otherwise
+/// Returns the sign of the saturated reading if only element `j` is saturated during all of sample k; otherwise
 /// 0.
 int side(const SensedTriad& triad, std::size_t k, int j) {
   constexpr double kMargin = 0.08;  // fraction of the limit: larger than the signal's change between samples

@@ -14,7 +14,7 @@ namespace {
 constexpr double kWindow_s = 0.002;  // approximately the bandwidth of the devices
 constexpr double kAfterTouch_s = 0.06;
 
-/// Returns attitudes in which the cage lands on a corner, on an edge and at an oblique angle.
+/// Returns attitudes in which the rig's cage lands on a corner, on an edge and at an oblique angle.
 const std::array<Eigen::Quaterniond, 4>& attitudes() {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns one scenario for each type of world: the scenario with the world's name, else the first scenario in this
+/// Returns one scenario for each type of world: the scenario with the world's name, or the first scenario in this
 /// world.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;

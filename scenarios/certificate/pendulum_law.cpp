@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr double kSegment_m = 0.25, kMass_kg = 0.3;
 
 /// Chain computes the frictionless motion of three equal slim bars in a plane, in closed form (Lagrange's equations of
-/// the multiple pendulum). Each angle of a bar is measured from the vertical, about +y.
+/// the multiple pendulum). The angle of each bar is measured from the vertical, about +y.
 class Chain {
  public:
   Chain(double segment_m, double gravity_m_s2) : length_m_(segment_m) {
@@ -27,8 +27,8 @@ class Chain {
       const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // An off-diagonal entry of the mass matrix couples the upper bar's end to the lower bar's middle. A diagonal
-        // entry is the inertia of a bar about its end, with the bars below as point masses.
+        // An off-diagonal entry of the mass matrix couples the end of the upper bar to the middle of the lower bar. A
+        // diagonal entry is the inertia of a bar about its end, with the bars below as point masses.
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -69,13 +69,13 @@ class Chain {
     return f_W + turned(q_WB * p_B_m, rate[2], alpha[2]);
   }
 
-  /// Returns the angular frequencies of small oscillations, lowest first, and the mode shapes in columns.
+  /// Computes the angular frequencies of small oscillations, lowest first, and the mode shapes in columns.
   Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d> modes() const {
     return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d>(Matrix3d(weight_nm_.asDiagonal()), coupling_);
   }
 
  private:
-  /// Returns the acceleration of the end of an arm relative to its start.
+  /// Returns the acceleration of the end of a rotating arm relative to its start.
   static Vector3d turned(const Vector3d& arm_W_m, double rate, double acceleration) {
     const Vector3d w(0.0, rate, 0.0);
     return Vector3d(0.0, acceleration, 0.0).cross(arm_W_m) + w.cross(w.cross(arm_W_m));
@@ -86,7 +86,7 @@ class Chain {
   Vector3d weight_nm_;
 };
 
-/// Pendulum is the simulated pendulum without friction.
+/// Pendulum simulates the pendulum without friction.
 class Pendulum {
  public:
   Pendulum(const CertificateInput& input, sim::Integrator integrator)
@@ -147,7 +147,7 @@ CertificateEntry energy(const CertificateInput& input, const PendulumSetup& setu
           ""};
 }
 
-/// Returns the mean over ten periods of the lowest bar's angle.
+/// Returns the period of the lowest bar's angle, averaged over ten periods.
 double measured_period_s(Pendulum& pendulum, double expected_s) {
   constexpr int kPeriods = 10;
   double before = pendulum.angle()[2], first_s = 0.0;
@@ -178,8 +178,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect of the amplitude is
-  // 6e-8 for a simple pendulum, and about fifty times larger for the higher modes.
+  // The accepted range includes the change of the period due to the amplitude of 0.001 rad. The amplitude changes the
+  // period by 6e-8 for a simple pendulum, and by about fifty times more for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",
@@ -190,13 +190,13 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
           ""};
 }
 
-/// Joints contains angles and rates of the three bars at one instant.
+/// Joints contains the angles and rates of the three bars at one instant.
 struct Joints {
   Vector3d angle, rate;
 };
 
-/// Returns the mean specific force over a step by Simpson's rule, in axes midway between the attitudes at the step's
-/// ends. A cubic Hermite polynomial gives the joint angles in the middle of the step.
+/// Returns the mean specific force over a step by Simpson's rule, in axes midway between the attitudes at both ends of
+/// the step. A cubic Hermite polynomial gives the joint angles in the middle of the step.
 Vector3d mean_force(const Chain& chain, const Joints& before, const Joints& after, double step_s,
                     const Vector3d& lever_m, double gravity_m_s2) {
   const Joints middle{0.5 * (before.angle + after.angle) + 0.125 * step_s * (before.rate - after.rate),
@@ -243,8 +243,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured error of the specific force is 1e-6. During fast changes at the bars' turning points, Simpson's rule
-  // and RK4 have errors of a few parts in 1e8.
+  // The specific force of the simulated pendulum has an error of 1e-6. During fast changes at the bars' turning points,
+  // Simpson's rule and RK4 have errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",

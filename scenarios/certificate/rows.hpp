@@ -8,13 +8,13 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// rows.hpp declares the certificate's measurements with their settings. The default settings are those of the
-/// certificate. Tests modify one setting and check that the measurement fails. Members named `stated_*` change the
-/// value that the closed form assumes.
+/// The header rows.hpp declares the measurements of the certificate (checks of the simulation) with their settings. The
+/// certificate uses the default settings of each measurement. Tests modify one setting of a measurement and check that
+/// the measurement then fails. Members named `stated_*` change the value that the closed form assumes.
 namespace tumble::scenarios {
 
-/// For the free-flight measurement, the rig is thrown high and rotates near its unstable axis. Euler's equations
-/// conserve energy and angular momentum.
+/// The free-flight measurement throws the rig high, with a rotation near its unstable axis. Euler's equations of the
+/// free rotation conserve energy and angular momentum.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -22,8 +22,8 @@ struct FreeFlightSetup {
 };
 std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input, const FreeFlightSetup& setup = {});
 
-/// An ideal IMU at the centre of mass measures zero specific force in free flight. `lever_arm_m` is the distance of the
-/// IMU from the centre of mass.
+/// An ideal IMU at the centre of mass measures zero specific force in free flight. The IMU has the distance
+/// `lever_arm_m` from the centre of mass.
 struct FlightForceSetup {
   double duration_s = 2.0;
   double rate_rad_s = 18.0;
@@ -38,7 +38,7 @@ struct FreeFallSetup {
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// The velocity of the rolling sphere's centre must equal r w x n. The rolling law is tested on a plane and on the
+/// The velocity of the rolling sphere's centre must equal r w x n. The rolling law is measured on a plane and on the
 /// ground of each sphere scenario.
 struct RollingSetup {
   double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
@@ -46,7 +46,8 @@ struct RollingSetup {
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)).
+/// In the sliding measurement, a sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g
+/// (1 + m r^2 / I)).
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;
@@ -54,9 +55,9 @@ struct SlipToGripSetup {
 };
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
-/// The measurement drops the rig on its corners and records the first peak of the specific force, averaged over 2 ms.
-/// The measurement reports the relative change of the peak when the engine's step is reduced to a quarter. The
-/// measurement also reports the exponent of the peak as a function of the contact time constant; an ideal spring has
+/// The impact measurement drops the rig on its corners and records the first peak of the specific force, averaged over
+/// 2 ms. The measurement reports the relative change of the peak when the simulation step is reduced to a quarter. The
+/// measurement also reports how the peak depends on the contact time constant, as an exponent; an ideal spring has the
 /// exponent -1.
 struct ImpactSetup {
   double height_m = 1.0;
@@ -65,14 +66,14 @@ struct ImpactSetup {
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
-/// The measurement compares the points of a moving lidar without range error with the walls of an empty room. The true
-/// pose at each firing transforms the points. `added_range_m` is added to every range.
+/// The range measurement compares the points of a moving lidar without range error with the walls of an empty room. The
+/// true pose at each firing transforms the points to world axes. The setting `added_range_m` is added to every range.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup = {});
 
-/// The measurement compares rays in the lidar's copy of each world with the engine's own rays.
+/// The ray measurement compares rays in the lidar simulation's copy of each world with rays in the physics engine.
 struct LidarRaysSetup {
   int rays = 2000;              ///< per world
   double mirror_shift_m = 0.0;  ///< shifts the copy's rays upward
@@ -80,7 +81,7 @@ struct LidarRaysSetup {
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// The measurement compares an hour of each IMU at rest with the noise and bias of the data sheet. The factors in
+/// The noise measurement compares an hour of each IMU at rest with the noise and bias of the data sheet. The factors in
 /// ImuNoiseSetup multiply the noise and bias of the simulated IMU.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
@@ -90,8 +91,8 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// The measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares the fitted
-/// planes with the simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed
+/// The plane measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them
+/// with the simulated planes. The setting `assumed_tilt` is added to one entry of the misalignment matrix in the closed
 /// form.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< distribution of the elements; scales use half of it, offsets 0.5 % of the limit
@@ -100,9 +101,9 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The measurement compares saturation planes of real gyros (a hand-held device, a pendulum) with the simulation. One
-/// simulated device has the measured sensing elements. Other simulated devices are drawn from the distribution in the
-/// data sheets.
+/// The real-gyro measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with the
+/// simulation. One simulated device has the sensing elements of the real gyro. Other simulated devices have random
+/// sensing elements from the distributions in the data sheets.
 struct RealRailsSetup {
   double tilt_factor = 1.0;         ///< factor on the elements' slopes; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope
@@ -113,8 +114,8 @@ struct RealRailsSetup {
 };
 std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
 
-/// The measurement compares a frictionless pendulum, with large and small swings, with Lagrange's equations of three
-/// bars.
+/// The pendulum measurement compares a frictionless pendulum, with large and small swings, with Lagrange's equations of
+/// three bars.
 struct PendulumSetup {
   double duration_s = 5.0;
   sim::Integrator integrator = sim::Integrator::runge_kutta_4;

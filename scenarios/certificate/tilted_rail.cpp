@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensing elements saturate along their own axes, so the readings of a saturated element lie on one plane for each
-// element and sign (clipped_plane.hpp). The measurement simulates devices with random elements and saturates one
-// element at a time. The measurement then fits a plane to the readings and compares the fitted plane with the simulated
-// plane. The planes of real devices are in real_rails.cpp.
+// Each sensing element saturates along its own axis, so the readings of a saturated element lie on one plane per sign
+// (clipped_plane.hpp). The measurement simulates IMUs with random misalignments, scales and offsets, and saturates one
+// sensing element at a time. The measurement then compares a plane fitted to the readings with the simulated plane. The
+// measurement with planes of real devices is in real_rails.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -75,7 +75,7 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
-    // The law is exact; rounding causes the measured error of 1e-15.
+    // The closed form is exact, so rounding causes the measured error of 1e-15.
     entries.push_back(
         {"tilted_rail_slope", subject,
          "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Distribution is a number of a scenario, either constant or random. Each random number has its own named random
-/// stream, so an added number does not change the existing numbers.
+/// Distribution is a number of a scenario, either constant or random. Each random number has a separate random stream,
+/// so an added number does not change the other numbers.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;
@@ -18,7 +18,7 @@ struct Distribution {
   bool operator==(const Distribution&) const = default;
 };
 
-/// Returns the name of the shape in scenario files, for example "log_uniform".
+/// Returns the name of the distribution's shape in scenario files, for example "log_uniform".
 const char* to_string(Distribution::Shape shape);
 
 /// Returns why the distribution is invalid (for example "low 3 is above high 2"), or an empty text if it is valid. A
@@ -29,9 +29,9 @@ std::string find_problem(const Distribution& distribution);
 /// distribution without truncation, the function returns only the mean.
 std::vector<double> support_points(const Distribution& distribution);
 
-/// Draws the number for `seed` and `place` from the random stream sim::Stream(seed, "draw." + place). A truncated
-/// normal distribution is sampled again until the number is within the limits. Throws BadInput if find_problem returns
-/// a problem.
+/// Draws the random number of `place` from the random stream sim::Stream(seed, "draw." + place). The number is drawn
+/// again until it is within the limits of a truncated normal distribution. Throws BadInput if find_problem returns a
+/// problem.
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
 }  // namespace tumble::scenarios

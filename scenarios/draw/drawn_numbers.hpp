@@ -13,11 +13,11 @@ namespace tumble::scenarios {
 struct DrawnNumber {
   std::string place;  ///< stream name: "world.slope_rad", "sensors.imu.mount_error.x_m"
   Distribution distribution;
-  /// Returns the number for `seed` without resolving or simulating the scenario.
+  /// Draws the number with `seed`, without resolving or simulating the scenario.
   double of(std::uint64_t seed) const { return draw_number(distribution, seed, place); }
 };
 
-/// Returns all random numbers of the scenario, in the order of the file.
+/// Returns all random numbers of the scenario, in the order of the scenario file.
 std::vector<DrawnNumber> drawn_numbers(const Scenario& scenario);
 
 }  // namespace tumble::scenarios

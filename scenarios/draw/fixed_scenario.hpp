@@ -7,12 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// Returns the scenario with every number fixed to its value in `situation`, which was drawn from the scenario. The
-/// fixed numbers include defaults and numbers of data sheets. With the seed of `situation`, the fixed scenario
-/// reproduces the simulated run, even if the catalogue, data sheets or defaults change later.
+/// Returns the scenario with every random number replaced by its value in `situation`, which was drawn from the
+/// scenario. The returned numbers include defaults and the numbers of data sheets. With the seed of `situation`, the
+/// returned scenario reproduces the simulated run, even if data sheets, defaults or scenario files change later.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
-/// Returns a scenario without random numbers as YAML. Parsing the text gives an equal scenario. Throws BadInput if a
+/// Converts a scenario without random numbers to YAML. Parsing the text gives an equal scenario. Throws BadInput if a
 /// number is random.
 std::string to_yaml(const Scenario& scenario);
 

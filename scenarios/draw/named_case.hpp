@@ -21,8 +21,8 @@ struct Expectation {
 };
 
 /// NamedCase is the value of the key `case` in a file of scenarios/regressions: origin and expected results of one
-/// simulated run. NamedCase stores methods, metrics and statuses as plain texts; scenarios/cases checks that they
-/// exist.
+/// simulated run. NamedCase contains methods, metrics and statuses as plain texts; the code in scenarios/cases checks
+/// that they exist.
 struct NamedCase {
   std::string scenario;    ///< scenario from which the case was drawn
   std::uint64_t seed = 0;  ///< seed of all random values that the listed numbers do not fix

@@ -24,7 +24,8 @@ std::vector<std::string> case_names(const DataRoot& data) {
 
 namespace {
 
-/// Finds the file of a scenario in the catalogue. The error message for an unknown name also suggests names of cases.
+/// Finds the file of a scenario in the catalogue. For an unknown name, the error message also suggests names of named
+/// cases.
 std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::string> cases, const std::string& name) {
   std::vector<std::string> known = scenario_names(data);
   if (std::binary_search(known.begin(), known.end(), name)) return data.catalogue() / (name + ".yaml");

@@ -28,8 +28,8 @@ constexpr std::uintmax_t kLargestFile = 4u << 20;
 /// including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counter counts parser events to detect endless loops, which the parser enters on some invalid texts. Each event
-/// consumes at least one byte of text, so more events than bytes indicate an endless loop.
+/// Counter counts the events of the YAML parser to detect an endless loop, which some invalid texts cause. Each event
+/// consumes at least one byte of text, so an endless loop has more events than bytes.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -192,7 +192,8 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // Blocks, aliases and empty values have no usable line number, so errors refer to the line of their key.
+    // YAML blocks, aliases and empty values have no usable line number, so error messages contain the line of their
+    // key.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

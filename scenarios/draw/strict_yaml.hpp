@@ -13,15 +13,14 @@
 
 namespace tumble::scenarios {
 
-/// Returns the text of a file. Throws BadInput if the file cannot be read or exceeds 4 MiB.
+/// Reads a file and returns its text. Throws BadInput if the file cannot be read or exceeds 4 MiB.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// YamlNode is a YAML node with its location in the file. Every error is a BadInput with a one-line message:
-/// "FILE:LINE: PLACE: what". YamlNode is stricter than YAML: it rejects repeated keys, non-text keys, and a second
-/// document.
+/// YamlNode is a YAML node with its location in the file. Each error is a BadInput with a one-line message: "FILE:LINE:
+/// PLACE: what". YamlNode rejects some valid YAML: repeated keys, keys that are not text, and a second document.
 class YamlNode {
  public:
-  /// Parses a text with one document and returns the root node. Error messages start with `file`.
+  /// Parses a YAML text with one document and returns the root node. Error messages start with `file`.
   static YamlNode parse(const std::string& text, const std::string& file);
 
   int line() const { return line_; }  ///< starts at 1
@@ -31,16 +30,16 @@ class YamlNode {
   bool is_scalar() const { return node_.IsScalar(); }
   bool is_map() const { return node_.IsMap(); }
 
-  /// Returns a non-empty scalar as text.
+  /// Returns the value as text; the value must be a non-empty scalar.
   std::string text() const;
-  /// Returns a scalar as text, possibly empty.
+  /// Returns the value as text; the value must be a scalar, possibly empty.
   std::string any_text() const;
-  /// Returns a lower-case identifier of at most 100 characters. An identifier is a letter, followed by letters, digits
-  /// and underscores.
+  /// Returns the value as an identifier of at most 100 characters. An identifier is a lower-case letter, followed by
+  /// lower-case letters, digits and underscores.
   std::string identifier() const;
-  /// Returns a finite number; rejects quoted text.
+  /// Returns the value as a finite number; quoted text is an error.
   double number() const;
-  /// Returns a number, which may be `.inf` or `-.inf`.
+  /// Returns the value as a number, which may be `.inf` or `-.inf`.
   double number_or_infinity() const;
   std::uint64_t unsigned_integer() const;
   std::vector<YamlNode> items() const;
@@ -61,7 +60,7 @@ class YamlNode {
   int line_ = 0;
 };
 
-/// Returns "; did you mean 'slope_rad'?" for a similar known name, else the list of known names.
+/// Suggests a known name: returns "; did you mean 'slope_rad'?" for a similar name, or else the list of known names.
 std::string suggestion(const std::string& name, std::span<const std::string> known);
 
 }  // namespace tumble::scenarios

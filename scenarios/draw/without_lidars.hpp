@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 /// Returns true if the scenario has a lidar.
 bool has_lidar(const Scenario& scenario);
 
-/// Returns the situation without its lidars, which need most of a simulation's memory and much of its time. Motion and
-/// IMU readings stay bit-identical without lidars, because each sensor has its own random streams.
+/// Returns the situation without its lidars, whose simulation needs most of the memory and much of the time. Without
+/// lidars, motion and IMU readings stay bit-identical, because each sensor has separate random streams.
 sim::ResolvedSituation without_lidars(const sim::ResolvedSituation& situation);
 
 }  // namespace tumble::scenarios

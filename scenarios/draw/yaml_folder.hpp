@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 std::vector<std::string> yaml_stems(const std::filesystem::path& folder);
 
 /// Returns the path of NAME.yaml in a folder. Throws BadInput with a message such as "unknown scenario 'hil'; did you
-/// mean 'hill'?". `what` supplies the noun "scenario" in the error message.
+/// mean 'hill'?". The text `what` is the noun in the message, here "scenario".
 std::filesystem::path find_yaml(const std::filesystem::path& folder, const std::string& what, const std::string& name);
 
 }  // namespace tumble::scenarios

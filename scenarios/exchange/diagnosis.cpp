@@ -18,18 +18,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kApart_s is the largest accepted time between the starts of two sensors. Drivers that boot for seconds exceed
-/// kApart_s.
+/// kApart_s is the largest accepted time between the starts of two sensors. A sensor whose driver needs several seconds
+/// to boot exceeds kApart_s.
 constexpr double kApart_s = 0.5;
 /// kLostShareMax is the largest accepted fraction of lost readings or sweeps. A single lost reading costs no accuracy;
-/// many lost readings are a fault of the bus, the driver or the recorder.
+/// many lost readings indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
 constexpr std::int64_t kLeastLost = 2;
-/// A time step longer than kLostStep periods contains a lost reading.
+/// A reading is lost if the time step between two readings exceeds kLostStep sample periods.
 constexpr double kLostStep = 1.5;
-/// In the first kStart_s seconds, the estimators initialise attitude and gyro bias.
+/// The estimators initialise attitude and gyro bias in the first kStart_s seconds of a recording.
 constexpr double kStart_s = 1.0;
-/// kRegisteredShareMin is the smallest accepted fraction of registered sweeps.
+/// kRegisteredShareMin is the smallest accepted fraction of sweeps that are registered to the map.
 constexpr double kRegisteredShareMin = 0.8;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
@@ -40,7 +40,7 @@ std::string percent_text(double share) {
   return rounded(100.0 * share) + " %";
 }
 
-/// Returns a finding about lost readings or sweeps if the lost fraction exceeds kLostShareMax.
+/// Describes lost readings or sweeps if their fraction exceeds kLostShareMax; otherwise returns nothing.
 std::optional<RecordingFinding> lost_items(const std::string& name, const char* items, std::int64_t period_ns,
                                            std::span<const std::int64_t> times_ns) {
   if (times_ns.size() < 2 || period_ns <= 0) return std::nullopt;

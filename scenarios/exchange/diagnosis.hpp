@@ -9,11 +9,11 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// diagnosis.hpp finds faults of a recording that impair an estimate. Readers and estimators already report most
-/// faults; diagnosis.hpp collects their reports and checks the sensors together.
+/// The functions in diagnosis.hpp find faults of a recording that increase the error of an estimate. The functions
+/// collect the warnings of importers and estimators, and check the sensors together.
 namespace tumble::scenarios {
 
-/// RecordingFinding is a fault of a recording.
+/// RecordingFinding describes one fault of a recording.
 struct RecordingFinding {
   std::string where;     ///< sensor, topic or file
   std::string evidence;  ///< description of the fault, with numbers and limits
@@ -22,26 +22,27 @@ struct RecordingFinding {
   bool operator==(const RecordingFinding&) const = default;
 };
 
-/// Returns the option that a message recommends as "(set '--gyro-unit deg/s')" or "; set '--stamps record'". Returns ""
-/// for other messages.
+/// Returns the option in a message that contains "(set '--gyro-unit deg/s')" or "; set '--stamps record'". Returns ""
+/// for messages without an option.
 std::string recommended_option(const std::string& message);
 
-/// Returns a finding for each note of an importer that is a caution. A note has the form "NAME: caution: TEXT".
+/// Converts each warning of an importer to a finding. A warning has the form "NAME: caution: TEXT".
 std::vector<RecordingFinding> findings_in_notes(std::span<const std::string> notes);
 
-/// Saturation describes the saturated readings of one IMU, as ClippingFinder finds them.
+/// Saturation describes the saturated readings of one IMU that ClippingFinder detects.
 struct Saturation {
   double gyro_share = 0.0, accel_share = 0.0;  ///< samples with at least one saturated axis
   double gyro_rad_s = 0.0, accel_m_s2 = 0.0;   ///< smallest saturated reading; 0: none
 };
-/// Cost: O(N log N). All saturation values are 0 if the IMU cannot be used.
+/// Detects the saturated readings of an IMU, in O(N log N). All values of the result are 0 if the readings of the IMU
+/// are unusable.
 Saturation saturation_of(const sim::ImuRecord& imu);
 
-/// Checks the readings: sensors that start apart, lost readings and sweeps, saturation, motion at the start, and points
-/// without times. O(N).
+/// Checks the readings for different start times, lost readings and sweeps, saturation, motion at the start, and points
+/// without times. The cost is O(N).
 std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors);
 
-/// Checks the result of a slam method: an error, sweeps that were not registered, and the findings of its health.
+/// Checks the result of a slam method for an error, sweeps that were not registered, and failed health checks.
 std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std::size_t sweeps);
 
 }  // namespace tumble::scenarios

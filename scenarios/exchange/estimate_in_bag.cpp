@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int64_t kHole_ns = 200000000;
 
-/// Returns the pose of the estimate's frame relative to the body.
+/// Returns the pose of the estimate's frame (an IMU, a lidar or a centre) relative to the body.
 Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const StoredTruth* truth) {
   Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
   switch (estimate.frame) {
@@ -42,7 +42,7 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
   return T_BA;
 }
 
-/// Returns the alignment of an estimate with the truth that the scores also use.
+/// Computes the alignment of an estimate with the truth, as for the scores.
 Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   if (truth == nullptr) return {};
   for (const PoseState& pose : estimate.poses) {
@@ -65,7 +65,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return out;
 }
 
-/// Returns the pose and its covariance after the alignment with the truth.
+/// Transforms a pose and its covariance by the alignment with the truth.
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -74,7 +74,7 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// Converts a pose of frame A to a pose of the body. An attitude error phi displaces the body's position by phi x
+/// Converts a pose of frame A to a pose of the body B. An attitude error phi displaces the body's position by phi x
 /// (lever arm in W).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
@@ -88,11 +88,11 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
   return out;
 }
 
-/// BodyAt interpolates the body's pose.
+/// BodyAt interpolates the body's pose at a given time.
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// Returns false unless there are poses both before and after `time_ns`.
+  /// Interpolates the pose; returns false unless there are poses both before and after `time_ns`.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
@@ -112,8 +112,8 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// Returns the points of one sweep, transformed to W with the poses of the track. `hit_W_m` contains the true hit of
-/// each point, or is empty.
+/// Transforms the points of one sweep to W with the interpolated poses of the track. The list `hit_W_m` contains the
+/// true hit of each point, or is empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;
@@ -128,7 +128,8 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   return cloud;
 }
 
-/// Adds clouds of the first lidar, one per sweep. Each cloud is created on demand from `sensors`, `points` and `truth`.
+/// Adds the point clouds of the first lidar, one per sweep. Each cloud is computed on demand from `sensors`, `points`
+/// and `truth`.
 void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
                 BagTrack& track) {
   if (sensors.lidars.empty()) return;
@@ -146,7 +147,7 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
   };
 }
 
-/// Throws BadInput unless the estimate in `path` was computed from the sensor data with digest `own`.
+/// Throws BadInput unless the estimate in `path` was computed from sensor data with the digest `own`.
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;

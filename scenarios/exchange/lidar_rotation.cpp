@@ -22,20 +22,21 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// kAgrees is the largest accepted error relative to the median rotation. If the error is larger, lidar and gyro do not
-/// measure the same motion. The relative error of the lidar's rotation is about 0.1.
+/// kAgrees is the largest accepted rotation error between lidar and gyro, relative to the median rotation. A larger
+/// error indicates that lidar and gyro do not measure the same motion. The relative error of the lidar's rotation is
+/// about 0.1.
 constexpr double kAgrees = 0.3;
-/// A correction of the gyro is only reported if the remaining error is below this fraction of the original error.
-/// kConclusive applies to units and axes, and kDelayConclusive applies to a delay.
+/// A correction of the gyro is reported only if it reduces the error below this fraction. kConclusive applies to units
+/// and axes, and kDelayConclusive applies to a delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
-/// kInverted is the largest relative difference of an attitude from the inverse of the stated attitude, about 10
-/// degrees.
+/// kInverted is the largest relative difference at which an attitude counts as the inverse of the given attitude, about
+/// 10 degrees.
 constexpr double kInverted = 0.2;
 
-/// Returns the sweeps `first` to `last` - 1 as a recording with only this lidar.
+/// Returns a recording that contains only this lidar, with the sweeps `first` to `last` - 1.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -68,8 +69,8 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Integral integrates the gyro per axis. Between two sweeps, the rotation is a few hundredths of a radian, so the
-/// integral per axis is accurate.
+/// Integral integrates the angular rate of each gyro axis over time. Between two sweeps, the rotation is a few
+/// hundredths of a radian, so integrating each axis alone is accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -80,7 +81,7 @@ class Integral {
     }
   }
 
-  /// Returns the integral from `from_ns` to `to_ns`, or nothing if the interval exceeds the readings or contains a gap.
+  /// Returns the integral from `from_ns` to `to_ns`, or nothing if readings are missing in this interval.
   std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const auto first = sample_at(from_ns), last = sample_at(to_ns);
     if (!first || !last) return std::nullopt;
@@ -106,12 +107,12 @@ class Integral {
   std::vector<Eigen::Vector3d> sum_;
 };
 
-/// Pairs contains rotations from lidar and gyro over equal time intervals, both in IMU axes.
+/// Pairs contains the rotations that lidar and gyro measured over the same time intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
   double rotation_rad = 0.0;  // median of the lidar's rotations
 
-  /// Returns the median of error(k), divided by the median rotation.
+  /// Returns the median over all pairs k of error(k), divided by the median rotation.
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
@@ -138,8 +139,8 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// Returns the orthogonal matrix with the given determinant, 1 or -1, that best maps gyro rotations to lidar rotations
-/// (Wahba 1965, by singular values).
+/// Computes the orthogonal matrix with the given determinant, 1 or -1, that best maps the gyro's rotations to the
+/// lidar's rotations (Wahba 1965, by singular values).
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
@@ -149,7 +150,8 @@ Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Searches for the unit and delay with the smallest error of rotation angles, independent of mounting and axes.
+/// Searches for the gyro unit and delay with the smallest error of rotation angles, which is independent of mounting
+/// and axes.
 void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
   RotationAgreement at;
   at.pairs = pairs.seen.size();
@@ -285,7 +287,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
-  // If tracking fails in a tumble, rotation angles alone may agree by chance.
+  // If lidar tracking fails in a tumble, the rotation angles alone may agree by chance.
   if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
   return out;
 }
@@ -297,8 +299,8 @@ std::string agreement_text(const std::string& where, const RotationAgreement& fo
 
 namespace {
 
-/// Returns the attitude of the lidar on the body that makes lidar and gyro agree. Returns nothing if lidar and gyro
-/// agree with the stated attitude, or if no rotation makes them agree.
+/// Computes the attitude of the lidar on the body at which lidar and gyro agree. Returns nothing if lidar and gyro
+/// agree with the calibrated attitude, or if no attitude makes them agree.
 std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                const RotationAgreement& found) {
   const bool agrees = found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error;
@@ -306,7 +308,7 @@ std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const 
   const bool by_axes =
       found.axes_error <= kAgrees && axes.determinant() > 0.0 && kConclusive * found.next_error > found.axes_error;
   if (agrees || found.unit != 1.0 || (!by_axes && found.turned_error > kAgrees)) return std::nullopt;
-  // The lidar's rotation in the axes of I is M times the gyro's rotation, so the true attitude is M^T R_IL.
+  // In IMU axes, the lidar's rotation is M times the gyro's rotation, so the true attitude is M^T R_IL.
   const Eigen::Matrix3d M = by_axes ? axes : found.turned.toRotationMatrix();
   return imu.T_BI.linear() * M.transpose() * bridge::T_IL(imu, lidar).linear();
 }
@@ -315,8 +317,8 @@ bool is_inverse(const Eigen::Matrix3d& R, const Eigen::Matrix3d& other) {
   return R.transpose().isApprox(other, kInverted);
 }
 
-/// Returns the pose of the lidar with a better attitude. If the better attitude is the inverse of the stated attitude,
-/// the whole stated pose is inverted.
+/// Returns the corrected pose of the lidar: the calibrated pose with the attitude `R_BL`. If the attitude `R_BL` is the
+/// inverse of the calibrated attitude, the function inverts the whole calibrated pose.
 Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix3d& R_BL) {
   if (is_inverse(lidar.T_BL.linear(), R_BL)) return lidar.T_BL.inverse();
   Eigen::Isometry3d out = lidar.T_BL;
@@ -324,7 +326,7 @@ Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix
   return out;
 }
 
-/// Returns the option that sets the better pose, and whether the stated pose is inverted.
+/// Returns the program option that sets the corrected lidar pose; a remark follows if the calibrated pose is inverted.
 std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
   const Eigen::Quaterniond q(better_BL.linear());
   const Eigen::Vector3d p = better_BL.translation();

@@ -13,8 +13,8 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// Checks unit, signs, axes, mounting and clock of a gyro against the lidar's rotation between sweeps. For hand-held or
-/// driven bodies with little tilt, gravity does not reveal wrong axes or units, but the lidar does.
+/// The functions in lidar_rotation.hpp compare a gyro's unit, signs, axes, mounting and clock with the lidar's rotation
+/// between sweeps. If the body tilts little, gravity does not reveal wrong axes or units, but the lidar does.
 namespace tumble::scenarios {
 
 /// SeenRotation is the rotation of a lidar between two instants.
@@ -23,11 +23,11 @@ struct SeenRotation {
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// Returns the rotations between the ends of consecutive sweeps, as `slam/constant_velocity` estimates them from the
-/// lidar alone. The function processes at most ten parts of a dozen sweeps, spread over the recording, each with its
-/// own map. The function keeps only pairs of registered sweeps with rates of 0.1 to 2 rad/s. Slower rotations are
-/// noise, and faster rotations distort the sweeps. The points are in `lidar`, or in `aside` if `aside` is not null. The
-/// cost is about 10 ms per sweep.
+/// Estimates the rotations between the ends of consecutive sweeps from the lidar alone, by the method
+/// `slam/constant_velocity`. The function processes at most ten parts of a dozen sweeps, spread over the recording,
+/// each with a separate map. Only pairs of registered sweeps with rates of 0.1 to 2 rad/s are kept. Slower rotations
+/// are mostly noise, and faster rotations distort the sweeps. The points are in `lidar`, or on disk in `aside` if
+/// `aside` is not null. The cost is about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// SignedAxes is a signed permutation of axes: true axis i is `sign[i]` times axis `axis[i]` of the readings.
@@ -39,8 +39,8 @@ struct SignedAxes {
   std::string text() const;  ///< "(-x, y, z)"
 };
 
-/// RotationAgreement states how well a gyro agrees with a lidar. The errors are medians over the sweep pairs, relative
-/// to the median rotation.
+/// RotationAgreement describes how well the rotations of a gyro agree with the rotations of a lidar. Each error is the
+/// median over the pairs of sweeps, relative to the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
   double unit = 1.0;        ///< 1, 57.3 or 1/57.3: factor from the gyro's integral to the lidar's rotation
@@ -54,25 +54,27 @@ struct RotationAgreement {
   double turned_error = 1.0;
 };
 
-/// Compares the gyro's rotations with the lidar's rotations `seen`. Returns nothing for fewer than a dozen sweep pairs
-/// within the time of the gyro's readings. Returns nothing if no unit, axes or mounting rotation make gyro and lidar
-/// agree within 30 %. The comparison uses the mountings of `imu` and `lidar`. O(pairs).
+/// Compares the gyro's rotations with the lidar's rotations `seen`. Returns nothing if the gyro readings cover fewer
+/// than a dozen pairs of sweeps. Returns nothing if no unit, axes or mounting rotation makes gyro and lidar agree
+/// within 30 %. The comparison uses the mountings of `imu` and `lidar`. The cost is proportional to the number of
+/// pairs.
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note that gyro and lidar agree, a warning with a better interpretation of the gyro, or "" if undetermined.
-/// Throws BadInput if the rates are in deg/s instead of rad/s or vice versa. The message starts with `where`.
+/// Describes the result: gyro and lidar agree, a warning with a better interpretation of the gyro, or "" if the result
+/// is undetermined. Throws BadInput if the rates are in deg/s instead of rad/s or vice versa. The message of BadInput
+/// starts with `where`.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// LidarRotationCheck is the result of comparing all IMUs with the first lidar.
+/// LidarRotationCheck is the result of comparing all IMUs of a recording with the first lidar.
 struct LidarRotationCheck {
   std::vector<std::string> notes;              ///< at most one for each IMU
   std::optional<RotationAgreement> primary;    ///< of the primary IMU; empty if undetermined
   std::optional<Eigen::Isometry3d> better_BL;  ///< pose of the first lidar that makes lidar and primary IMU agree
 };
 
-/// Compares each IMU of a recording with the first lidar. The returned check is empty unless the recording has a lidar
-/// and an IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
+/// Compares each IMU of a recording with the first lidar. The result is empty unless the recording has a lidar and an
+/// IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the path of the recording.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

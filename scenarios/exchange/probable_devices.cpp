@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
 constexpr double kRingOff_rad = 0.5 * kDegree_rad;
-/// Nearer points may belong to the robot, or the beam may start at the mirror rather than at the origin.
+/// Points closer than kNear_m may belong to the robot, or their beam may start at the mirror instead of the origin.
 constexpr float kNear_m = 0.5f;
 constexpr std::size_t kSweepsUsed = 10, kLeastPointsOfRing = 20;
 
@@ -52,7 +52,7 @@ std::vector<double> elevations(const DataSheet& sheet) {
   return out;
 }
 
-/// Returns the median elevation of each ring, in rising order; empty if a ring has too few points.
+/// Returns the median elevation of each ring of the lidar, in rising order; empty if a ring has too few points.
 std::vector<double> seen_elevations(const sim::LidarRecord& lidar) {
   const std::size_t sweeps = std::min(kSweepsUsed, lidar.sweep_start_ns.size());
   if (sweeps == 0 || lidar.ring.size() != lidar.position_L_m.size()) return {};
@@ -74,7 +74,7 @@ bool is_kind(const DataSheet& sheet, const char* ending) {
   return sheet.sensor_kind.ends_with(ending);
 }
 
-/// Returns the data sheet with the longest name that the sensor's name contains.
+/// Returns the data sheet with the longest device name that the sensor's name contains.
 std::optional<ProbableDevice> by_name(const std::string& name, std::span<const DataSheet> sheets, const char* kind) {
   std::optional<ProbableDevice> out;
   for (const DataSheet& sheet : sheets) {
@@ -84,7 +84,7 @@ std::optional<ProbableDevice> by_name(const std::string& name, std::span<const D
   return out;
 }
 
-/// Returns true if the readings fit the ranges of the data sheet.
+/// Returns whether the readings of the IMU fit the ranges of the data sheet.
 bool fits(const DataSheet& sheet, const sim::ImuRecord& imu) {
   sim::ImuRecord stated = imu;
   apply_sheet(sheet, stated);

@@ -30,8 +30,8 @@ constexpr double kCorrelationTolerance = 1e-3;  // tolerance for covariances wri
 constexpr std::size_t kStampsToJudge = 10;  // minimum; fewer stamps could span a short time by chance
 constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
 
-/// Returns "; the values seem to be in UNIT" if the stamps seem to be in another unit than `unit`; empty if no unit
-/// fits. The stamps cover `times` the duration of the recording.
+/// Returns "; the values seem to be in UNIT" if another unit than `unit` fits the time stamps; empty if none fits. The
+/// parameter `times` is the duration of the time stamps, relative to the duration of the recording.
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
       {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};
@@ -112,7 +112,7 @@ std::uintmax_t AnswerBounds::map_bytes() const {
 
 void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
   const std::string name = file.filename().string();
-  // Rejects symbolic links, which could lead to files that the method did not write.
+  // Symbolic links are rejected, because they could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
     throw BadInput(fmt::format("{}: this path is not a regular file; the method must write a regular file", name));
   std::error_code error;

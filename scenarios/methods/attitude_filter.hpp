@@ -8,11 +8,11 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// attitude_filter.hpp runs an attitude filter of the estimator library sample by sample on the primary IMU. All
-/// attitude methods use this function.
+/// The function run_attitude_filter runs an attitude filter sample by sample on the primary IMU. All attitude methods
+/// use run_attitude_filter.
 namespace tumble::scenarios {
 
-/// NoCovariance is the covariance type for filters that report no covariance.
+/// NoCovariance marks a filter that reports no covariance.
 struct NoCovariance {
   template <typename State>
   Eigen::Matrix3d operator()(const State&) const {
@@ -20,9 +20,10 @@ struct NoCovariance {
   }
 };
 
-/// Runs a filter over the primary IMU and returns one attitude per sample, in the IMU's frame. The type `Filter` needs
-/// the types Params and State (with q_WI) and the function step(sample, state). `covariance(state)` returns the
-/// covariance for AttitudeState. The first error ends the run; earlier attitudes are kept.
+/// Runs an attitude filter over the primary IMU and stores one attitude per sample, in the IMU's frame. The type
+/// `Filter` must have the types Params and State (with q_WI) and the function step(sample, state). The function
+/// `covariance(state)` returns the covariance for AttitudeState. The first error of the filter ends the run; the
+/// estimate keeps the earlier attitudes.
 template <typename Filter, typename CovarianceOf = NoCovariance>
 Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params,
                              const CovarianceOf& covariance = {}) {

@@ -22,7 +22,8 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// Merges all IMUs of the sphere in body axes. The rolling motion determines the velocity of the sphere.
+/// Estimates the attitude of a sphere from all IMUs, merged in body axes. The rolling motion supplies the velocity of
+/// the sphere.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -51,7 +52,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   return estimate;
 }
 
-/// Estimates the attitude from the primary IMU, in the axes of this IMU.
+/// Estimates the attitude of the rig from the primary IMU, in the axes of this IMU.
 Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;

@@ -16,12 +16,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Above the probability kCarried of hand-held motion in clipped segments, the hand-held smoother processes the clipped
-/// readings. The motion limits of the hand-held smoother then give better results than the recovered rates.
+/// The hand-held smoother replaces the rate smoother if the probability of hand-held motion in clipped intervals
+/// exceeds kCarried. During hand-held motion, the motion limits of the hand-held smoother give better rates than the
+/// rate smoother.
 constexpr double kCarried = 0.5;
 
-/// Smooths the attitude with the recovered rates as readings, for a body that was not hand-held while its gyro clipped.
-/// `rates` is the output of the rate smoother.
+/// Smooths the attitude with the recovered rates as gyro readings, for a body that was not hand-held while its gyro
+/// clipped. The vector `rates` is the output of the rate smoother.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
   const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;
@@ -38,8 +39,8 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// Checks the rates that the attitude smoother receives against gravity at the rests. The check needs the smoother's
-/// input, because the smoother's output always aligns gravity at the rests.
+/// Compares the recovered rates with the direction of gravity at the standstills of the body. The check uses the input
+/// of the attitude smoother, because the smoother's output always agrees with gravity at standstills.
 void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, const RecoveredRates& recovered,
                     Estimate& estimate) {
   std::vector<RateState> read(recovered.sources.size());

@@ -19,7 +19,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// Maps the clip bits of sim to the estimator's flags explicitly, so that a change in either library causes an error.
+// The table maps each clip bit of sim to the estimator's flag, so that a change in either library causes an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -31,8 +31,9 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// kPeriodsMax is the largest accepted ratio between the median time step and the stated period. Time stamps in a wrong
-// unit differ at least 1000-fold. The ratio of a device that is read slowly stays below kPeriodsMax.
+// kPeriodsMax is the largest accepted ratio between the median time step and the sample period in the IMU record. With
+// a wrong unit of the time stamps, the ratio differs at least 1000-fold from 1. A device that is read slowly stays
+// below kPeriodsMax.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -59,8 +60,8 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Marks usable readings: finite, within the values of any sensor, and with stamps in order. If too many readings are
-// faulty, all readings are marked, so that the recording is refused.
+// Marks usable readings: finite, within the range of any sensor, and with increasing time stamps. If too many readings
+// are faulty, the function marks all readings, so that a later check rejects the recording.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;
@@ -81,8 +82,8 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Removes faulty readings, and single readings beyond the values that the device can measure. If readings beyond the
-// limit are frequent or lasting, the function keeps the readings, so that a later check rejects the recording.
+// Removes faulty readings, and single readings that exceed the range of the device. The function keeps frequent or
+// lasting readings beyond the range, so that a later check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;
@@ -94,8 +95,8 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
   keep_rows(kept, samples);
 }
 
-// Checks the assumptions of every method: readings are finite and within the device's range, stamps increase at the
-// stated period, and there are no gaps longer than `gap_max_s`.
+// Checks that readings are finite and within the device's range, and that time stamps increase at the given period,
+// without gaps longer than `gap_max_s`.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples, double gap_max_s) {
   if (samples.empty()) return {ErrorCode::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, gap_max_s); !status.ok()) return status;
@@ -203,7 +204,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // A lidar without sweeps may lack the final index of sweep_first.
+  // In a lidar record without sweeps, the final index of sweep_first may be missing.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);

@@ -13,27 +13,28 @@
 #include "tumble/attitude/clipped_readings.hpp"
 #include "tumble/attitude/hand_held_smoother.hpp"
 
-/// carried.hpp runs the hand-held smoother on the primary IMU after saturation detection. All hand-held methods use
-/// this function.
+/// The functions in carried.hpp run the hand-held smoother on the primary IMU after saturation detection. All methods
+/// for hand-held motion use the functions in carried.hpp.
 namespace tumble::scenarios {
 
-/// Returns the parameters of a hand-held method with the library's defaults.
+/// Returns the settings of the hand-held methods, with the library's defaults.
 const Settings<HandHeldSmoother::Params>& carried_settings();
 
-/// Returns which sensing elements are saturated at each sample, according to the stated ranges and the readings. Adds
-/// the detected saturation limits to `health` (report_rails.hpp).
+/// Finds the saturated sensing elements of each sample from the measurement ranges of the IMU and the readings. The
+/// detected saturation limits are added to `health` (report_rails.hpp).
 ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health);
 
-/// Returns the smoother's parameters. `parameters` override the values of the recording.
+/// Returns the parameters of the hand-held smoother for a recording. The values in `parameters` override the values of
+/// the recording.
 HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Runs the smoother over the primary IMU. Returns an error of the record or of the smoother; the outputs are then
-/// empty.
+/// Runs the hand-held smoother over the primary IMU. Returns an error of the IMU record or of the smoother; the outputs
+/// are then empty.
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
 
-/// Adds the smoother's report to `health`.
+/// Adds the report of the hand-held smoother to `health`.
 void report_carried(const HandHeldSmoother::Report& report, std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

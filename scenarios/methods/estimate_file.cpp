@@ -48,7 +48,7 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Reads a quaternion x y z w. Throws BadInput if the norm differs from 1. Accepts NaN, which a diverged method writes.
+// Reads a quaternion x y z w; throws BadInput if the norm differs from 1. A diverged method may write NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -234,7 +234,7 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   }
 }
 
-/// Reads a TUM file. `all_finite` rejects numbers that are not finite, like the command `import`.
+/// Reads the poses of a TUM file. If `all_finite` is true, NaN and infinity are errors.
 void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, bool all_finite = false) {
   const Table table = Table::read(path, ' ', "", 8);
   for (const Table::Row& row : table.rows) {
@@ -307,7 +307,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.error_code = JsonMembers(path, status).named("trouble", ErrorCode::diverged);
-  // A Status refers to a static string, so it cannot name the actual field. The file estimate.json names the field.
+  // A Status refers to a static string, so the actual name of the field remains in estimate.json.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
@@ -327,7 +327,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
-  // Files of an earlier estimate are removed, because they would be read as part of this estimate.
+  // Files of an earlier estimate are removed, because a reader would take them for a part of this estimate.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);
@@ -358,7 +358,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
-  // estimate.json is written last and marks a complete folder.
+  // The file estimate.json is written last and thus marks a complete folder.
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest).dump(2) + '\n');
 }
 

@@ -10,12 +10,12 @@
 
 namespace tumble::scenarios {
 
-/// kExternalTimeLimit_s is the wall time limit of an external method whose description states no limit. An external
-/// method in a Python file has no description.
+/// kExternalTimeLimit_s is the time limit (wall time) of an external method whose description contains no limit. An
+/// external method in a Python file has no description.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
-/// ExternalDescription describes an external method: a command described in a file NAME.yaml, or a Python function in
-/// NAME.py. EXTERNAL.md describes the keys and placeholders.
+/// ExternalDescription describes an external method: a command in a file NAME.yaml, or a Python function in NAME.py.
+/// EXTERNAL.md describes the keys and placeholders.
 struct ExternalDescription {
   enum class Output { rates, tum, estimate };
 
@@ -36,7 +36,7 @@ struct ExternalDescription {
   std::string digest;  ///< digest of this file and of the files that the command names by {folder}
 };
 
-/// Returns the names of the placeholders that a command may use in braces: "recording", "csv", "output".
+/// Returns the names of the placeholders that a command may contain in braces: "recording", "csv", "output".
 std::vector<std::string> external_placeholders();
 
 /// Returns the placeholders in one argument of a command, in order. Throws BadInput for an unknown placeholder; the
@@ -46,10 +46,10 @@ std::vector<std::string> placeholders_in(const std::string& word);
 /// Returns the argument with every placeholder replaced by its value.
 std::string filled(const std::string& word, const std::map<std::string, std::string>& values);
 
-/// Reads NAME.yaml, or NAME.py with exactly one function called `rate`, `attitude`, `position` or `slam`. The
-/// function's name sets the kind of the method. Throws BadInput with file, line and reason for an unknown or missing
-/// key, or for an unknown kind, frame or placeholder. Throws BadInput also for a command that never names its output, a
-/// limit out of range, or a Python file without exactly one method function.
+/// Reads the description NAME.yaml, or a file NAME.py with exactly one function called `rate`, `attitude`, `position`
+/// or `slam`. The function's name sets the kind of the method. Throws BadInput with file, line and reason for an
+/// unknown or missing key, or for an unknown kind, frame or placeholder. Throws BadInput for a command without the
+/// placeholder of its output, a limit out of range, or a Python file without exactly one method function.
 ExternalDescription read_external(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -26,7 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Provision is the sensor data in one format. The sensor data are written only if the command names the format.
+/// Provision is one format in which an external command can receive the sensor data. The sensor data are written in a
+/// format only if the command contains its placeholder.
 struct Provision {
   const char* placeholder;
   const char* name;  ///< file or folder in the scratch folder
@@ -65,7 +66,7 @@ std::set<std::string> named_in(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Returns the path in the scratch folder that replaces each placeholder.
+/// Returns for each placeholder the path in the scratch folder that replaces it.
 std::map<std::string, std::string> places(const ExternalDescription& description, const fs::path& scratch) {
   const bool folder = description.output == ExternalDescription::Output::estimate;
   const bool rates = description.output == ExternalDescription::Output::rates;
@@ -90,7 +91,7 @@ Command command_of(const ExternalDescription& description, const std::vector<std
   return command;
 }
 
-/// Writes the sensor data that the command names, then runs the command until it ends.
+/// Writes the sensor data in the formats that the command requests, then runs the command until it ends.
 CommandEnd provide_and_run(const ExternalDescription& description, const sim::Sensors& sensors,
                            const std::map<std::string, std::string>& values, const fs::path& scratch) {
   const std::set<std::string> wanted = named_in(description.command);
@@ -128,7 +129,8 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// Returns the version: the output of the version command, the file of the function, and the digest of the description.
+/// Returns the version of an external method, from the output of its version command, the Python file, and the digest
+/// of its description.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;

@@ -14,8 +14,8 @@
 
 namespace tumble::scenarios {
 
-/// NoAnswer is the error if an external program gave no result. The program crashed, could not be started or timed out,
-/// or the machine lacked memory or disk space. The message contains the program's output so far.
+/// NoAnswer is the exception if an external program gave no result. Possible reasons are a crash, a failed start, a
+/// time-out, or a lack of memory or disk space. The message of NoAnswer contains the program's output so far.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, timed_out, machine };
@@ -29,8 +29,8 @@ class NoAnswer : public std::runtime_error {
   std::string transcript_;
 };
 
-/// RefusedAnswer is the error if the result of an external program is invalid. The message contains the program's
-/// output.
+/// RefusedAnswer is the exception if the result of an external program is invalid. The message of RefusedAnswer
+/// contains the program's output.
 class RefusedAnswer : public BadInput {
  public:
   RefusedAnswer(const std::string& what, std::string transcript) : BadInput(what), transcript_(std::move(transcript)) {}
@@ -40,20 +40,22 @@ class RefusedAnswer : public BadInput {
   std::string transcript_;
 };
 
-/// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). A command receives the sensor data in a separate
-/// folder in the requested formats. The command runs in a separate process with its limits and writes its result to a
-/// file. A Python function exchanges the sensor data and the result through shared memory. The external program never
-/// receives the truth.
+/// Creates the method that a file NAME.yaml or NAME.py describes (EXTERNAL.md). A command receives the sensor data in a
+/// separate folder in the requested formats. The command runs in a separate process with limits of time and memory, and
+/// writes its result to a file. A Python function exchanges the sensor data and the result through shared memory. The
+/// external program of a method never receives the true motion.
 ///
-/// The time limit is that of the description, but at most `time_limit_s`. Throws BadInput if the description is invalid
-/// or if the version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is invalid.
+/// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
+/// invalid or if the version command fails. Running the method throws NoAnswer if there is no result, and RefusedAnswer
+/// if the result is invalid.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
-/// Returns true if `name` has the form NAME.yaml or NAME.py, which describes an external method.
+/// Returns whether `name` has the form NAME.yaml or NAME.py, which describes an external method.
 bool is_method_file(const std::string& name);
 
-/// Calls find_methods (method.hpp) for a list. The time limit of external methods is at most `time_limit_s`.
+/// Finds the methods in a list of names, like find_methods (method.hpp). The time limit of external methods is at most
+/// `time_limit_s`.
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

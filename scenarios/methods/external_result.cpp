@@ -45,7 +45,7 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
   return out;
 }
 
-/// Reads one rate per sample of the first IMU, in order.
+/// Reads one rate per sample of the first IMU, in the order of the samples.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
@@ -74,8 +74,8 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// Returns the first number of each line of a TUM file. The function stops at the first invalid line, which the TUM
-/// reader reports.
+/// Returns the first number of each line of a TUM file: the time stamps. The function stops at the first invalid line,
+/// which the TUM reader reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -88,13 +88,13 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // The time stamps are bag stamps in seconds.
+  // Large time stamps are bag stamps in seconds, which are converted to the time of the recording.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
 }
 
-/// Reads poses from a TUM file; the description states their frame.
+/// Reads poses from a TUM file; the description of the method contains their frame.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw BadInput(fmt::format("{}: the command did not write this file", file.filename().string()));
@@ -130,7 +130,8 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Returns a function that locates row k in the file. The file is scanned only when an error message needs the line.
+/// Returns a function that returns the location of row k in the file. The function reads the file only when an error
+/// message needs the line number.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -155,7 +156,7 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
-/// Reads any PLY file with x, y and z. Normals and standard deviations of the points are optional.
+/// Reads the map points of any PLY file with x, y and z. Normals and standard deviations of the points are optional.
 std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const Cloud cloud = read_cloud(file);
   const auto column = [&](const char* name) { return cloud.find(name); };
@@ -189,8 +190,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit of the stamps is checked before parsing. Stamps in a wrong unit may overflow the time type, and the
-      // message about the overflow would be unhelpful.
+      // The unit of the time stamps is checked before parsing. Otherwise, time stamps in a wrong unit may overflow the
+      // time type, which would give an unhelpful error message.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

@@ -19,7 +19,7 @@ namespace {
 
 using About = HealthFinding::Kind;
 
-/// Returns the key of the start of a finding [s], for example "imu_2_gyro_z_frozen_since_s".
+/// Returns the key of the start time of a finding [s], for example "imu_2_gyro_z_frozen_since_s".
 std::string since_key(const HealthFinding& finding, const char* suffix) {
   const std::string axis = finding.axis;
   return finding.sensor + (axis.empty() ? "" : "_" + axis) + suffix;
@@ -38,7 +38,7 @@ bool is_about_place(const HealthFinding& finding) {
   return kind == About::tracking_lost || kind == About::lidar_scale || kind == About::lidar_calibration;
 }
 
-/// Adds the health entry for one kind of finding.
+/// Adds the health entry of a finding; the key of the entry depends on the kind of the finding.
 void add_row(const HealthFinding& finding, std::map<std::string, double>& health) {
   const double since_s = seconds(finding.since_ns.value_or(0));
   switch (finding.kind) {
@@ -89,7 +89,7 @@ bool any_of(const Estimate& estimate, bool (*about)(const HealthFinding&)) {
   return std::any_of(all.begin(), all.end(), about);
 }
 
-/// Returns a string with static lifetime, because a finding stores only a pointer.
+/// Returns a copy of the text with static lifetime, because a finding contains only a pointer.
 const char* kept(const std::string& text) {
   static std::mutex lock;
   static std::set<std::string> all;

@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// JsonMembers reads members of a JSON object. Each error is a BadInput with the file, the member and the value found.
-/// JsonMembers keeps references to both constructor arguments.
+/// JsonMembers reads the members of a JSON object. Each error is a BadInput with the file, the member and the value in
+/// the file. Both constructor arguments must outlive the JsonMembers object.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

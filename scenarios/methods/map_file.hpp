@@ -16,8 +16,8 @@ void write_map(const std::filesystem::path& path, std::span<const MapPoint> map)
 /// fails.
 void write_map_pcd(const std::filesystem::path& path, std::span<const MapPoint> map);
 
-/// Reads a PLY map that write_map wrote. Throws BadInput with path and reason if the file is missing or truncated, or
-/// has another layout.
+/// Reads a map from a PLY file that write_map wrote. Throws BadInput with path and reason if the file is missing or
+/// truncated, or has another layout.
 std::vector<MapPoint> read_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -20,7 +20,7 @@ baselines::SlipObserver::Params observer_params(const sim::Sensors& sensors, con
   baselines::SlipObserver::Params params;
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  // The calibration refers to the centre of mass, a few millimetres from the geometric centre.
+  // The lever arm refers to the centre of mass, a few millimetres from the geometric centre.
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   position_observer_settings().apply(parameters, params);
   return params;

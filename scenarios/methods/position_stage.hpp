@@ -6,12 +6,12 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 
-/// Uses a position method as the first stage of a sphere's slam method; the slam method has all parameters of the
-/// position method under equal names.
+/// The functions in position_stage.hpp use a position method as the first stage of a sphere's slam method. The slam
+/// method has all parameters of the position method under equal names.
 namespace tumble::scenarios {
 
-/// Returns the settings of the slam method, followed by the settings of `position`. The two groups of settings have no
-/// common name.
+/// Returns the settings `own` of the slam method, followed by the settings of `position`. The settings of the slam
+/// method and of `position` have different names.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 
 /// Returns the values in `parameters` that belong to the position method.

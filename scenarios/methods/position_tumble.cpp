@@ -27,14 +27,14 @@ Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<st
   RollingOdometry::Params params;
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
-  // replaced by parameters of RollingOdometry
+  // Other parameters of RollingOdometry determine the following parameters.
   fixed.insert(fixed.end(),
                {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
                 "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2",
                 "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2",
-                          // the prior parameters below depend on whether the device is known
+                          // The prior parameters below depend on whether the device has a data sheet.
                           "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s", "rolling_accel_bias_sigma_m_s2",
                           "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma", "rolling_gyro_scale_sigma",
                           "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},
@@ -56,8 +56,8 @@ const Settings<RollingOdometry::Params>& live_settings() {
   return all;
 }
 
-/// Returns whether the sphere rotates faster than it travels. A hop during which the sphere rotates too fast belongs to
-/// a slip.
+/// Returns whether the sphere rotates faster than it travels. A short flight during which the sphere rotates too fast
+/// belongs to a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.v_WA_m_s.norm();
@@ -83,7 +83,7 @@ void report_whole(const MergedFindings& whole, std::span<const std::string> name
   }
 }
 
-/// Adds the readings of all units in order of time and collects the poses.
+/// Passes the readings of all IMUs to the odometry in order of time, and collects the poses.
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
               std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
@@ -105,7 +105,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
     }
     if (!first) break;
     const Status status = odometry.add_imu(*first, recordings[*first].samples[next[*first]++]);
-    // the first sample after a gap is rejected, and the second sample confirms its time stamp
+    // The estimator rejects the first sample after a gap, and the second sample confirms the time stamp of the first.
     if (!status.ok() && status.error_code != ErrorCode::gap) return status;
     collect();
   }

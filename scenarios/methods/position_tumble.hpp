@@ -5,10 +5,11 @@
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 
-/// position_tumble.hpp contains functions that the position methods of tumble and their oracles share.
+/// The functions in position_tumble.hpp are shared by the position methods of tumble and the methods that use the
+/// truth.
 namespace tumble::scenarios {
 
-/// Returns the parameters of RollingOdometry that the recording states. IMUs without a data sheet get wider priors.
+/// Returns the parameters of RollingOdometry that the recording determines. IMUs without a data sheet get wider priors.
 RollingOdometry::Params stated_params(const sim::Sensors& sensors, const SphereImus& units,
                                       RollingOdometry::Params params);
 

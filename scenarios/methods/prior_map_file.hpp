@@ -9,15 +9,15 @@
 
 namespace tumble::scenarios {
 
-/// kPriorMapName is the file in the folder of an estimate with the map for later runs (save_map).
+/// kPriorMapName is the name of the map file for later runs in the folder of an estimate (save_map).
 inline constexpr const char* kPriorMapName = "map.tumblemap";
 
-/// Writes a map for later runs. Throws BadInput if writing fails.
+/// Writes map points to a file that later runs can use as prior map. Throws BadInput if writing fails.
 void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points);
 
-/// Reads a map: a file of write_prior_map, or the points of a PCD or PLY file. Normals are those of the file (columns
-/// nx ny nz, or normal_x normal_y normal_z), or are fitted to the points. A column `sigma` is the standard deviation of
-/// a point. Throws BadInput with path and reason.
+/// Reads a map from a file of write_prior_map, or from the points of a PCD or PLY file. The normals are those of the
+/// file (columns nx ny nz, or normal_x normal_y normal_z), or are fitted to the points. The column `sigma` of the file
+/// is the standard deviation of a point. Throws BadInput with path and reason if reading fails.
 std::vector<MapPoint> read_prior_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -11,10 +11,11 @@
 
 namespace tumble::scenarios {
 
-/// Returns the settings of the published chain (PublishedChain) for the rig.
+/// Returns the settings of the published mapping chain (PublishedChain) for the rig.
 const Settings<baselines::PublishedChain::Params>& published_settings();
 
-/// Runs the published chain after a rate method. `estimate.rates` must have one entry per sample.
+/// Runs the published mapping chain with the rates in the estimate. The vector `estimate.rates` must have one entry per
+/// sample.
 void run_published_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                          Estimate& estimate);
 

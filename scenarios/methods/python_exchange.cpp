@@ -31,7 +31,8 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Arrays collects arrays that are written one after the other. The arrays must outlive this object.
+/// Arrays collects arrays that are written to shared memory one after another. The data of the arrays must outlive the
+/// Arrays object.
 class Arrays {
  public:
   template <typename Value>
@@ -142,7 +143,7 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// Answer reads a result in memory: the JSON text, and the arrays that it describes.
+/// Answer reads a result from shared memory: the JSON text, and the arrays that the text describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
@@ -167,8 +168,8 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Returns an array with `columns` values per row. `rows` is the required number of rows; if it is empty, any number
-  /// is accepted.
+  /// Returns the array with the given name, which must have `columns` values per row. The array must have `rows` rows;
+  /// if `rows` is empty, any number is accepted.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -222,7 +223,8 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Reads the poses of the kinds position, slam and attitude. Poses of kind attitude have no positions.
+/// Reads the poses of a method of kind position, slam or attitude. A method of kind attitude returns poses without
+/// positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());

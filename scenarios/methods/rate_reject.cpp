@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// rate/reject fixes the parameters that only other kinds of ClippedBaseline use.
+// The method rate/reject fixes the parameters that only other models of ClippedBaseline use.
 const Settings<baselines::ClippedBaseline::Params>& rate_reject_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::reject},

@@ -51,8 +51,8 @@ Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> sampl
   return Saave(params).estimate(samples, out);
 }
 
-// The following command reproduces the figures: tests/bench/rate_statistics hill 4201 4225 --method raw --method saave
-// --exact-mounting
+// The figures come from the command tests/bench/rate_statistics hill 4201 4225 --method raw --method saave
+// --exact-mounting.
 Method rate_saave() {
   MethodInfo info;
   info.name = "saave";

@@ -11,15 +11,17 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// Estimates rates by the published method of Saave. The rate method and the slam chains of Saave use rate_saave.hpp.
+/// The functions in rate_saave.hpp estimate rates by the published method Saave. The rate method and the slam methods
+/// of Saave use the functions in rate_saave.hpp.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();
-/// Returns the settings of Saave's method for use next to another stage. If the other stage has a parameter with an
-/// equal name, the name gets the prefix `rate_`.
+/// Returns the settings of Saave's method for a method that has another stage with settings. If the other stage has a
+/// parameter with the same name, the name gets the prefix `rate_`.
 Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
-/// Computes one RateState per sample. On error, `out` is empty.
+/// Estimates the angular rate of each sample by Saave's method, and writes one RateState per sample to `out`. On error,
+/// `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                    const Settings<Saave::Params>& settings, const sim::Values& parameters, std::vector<RateState>& out);
 

@@ -18,8 +18,8 @@
 
 namespace tumble::scenarios {
 
-// A range or density of 0 means that the data sheet states no value. The smoother then assumes no range, or the
-// library's default density.
+// A range or noise density of 0 means that the data sheet lacks the value. The smoother then assumes an unlimited
+// range, or the library's default density.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
@@ -70,8 +70,8 @@ const CalibratedRig* RigCalibrationUse::found() const {
 
 namespace {
 
-/// Compares a stored calibration with a calibration from a run that did not use the stored calibration. Returns false
-/// and adds a failed health check if the two calibrations belong to different rigs.
+/// Compares a stored calibration with the calibration from a run that did not use the stored calibration. If the two
+/// calibrations belong to different rigs, the function returns false and adds a failed health check.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // see calibration_distance
   if (!fresh || fresh->only_rails) return true;

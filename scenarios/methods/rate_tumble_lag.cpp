@@ -24,7 +24,8 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
-    // RegimeStream uses these parameters of its RateStream. The hand-held stream makes one iteration per node.
+    // RegimeStream sets the following parameters of its RateStream. The hand-held stream makes one iteration per node
+    // of its trajectory.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -78,7 +79,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   estimate.status = align(recordings, samples, bridge::kGapMaxS, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  // Auxiliary IMUs determine the rate even if the body is hand-held, but the hand-held smoother does not use auxiliary
+  // Auxiliary IMUs determine the rate even during hand-held motion, but the hand-held smoother does not use auxiliary
   // IMUs.
   if (!auxiliary_imus.empty() && !parameters.has("hand_held_probability_min")) params.hand_held_probability_min = 1.0;
   RegimeStream joined(params);
@@ -125,7 +126,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    // the method only reports the findings, because the rates are already final
+    // The method only reports the findings, because the rates are already final.
     const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
     report_findings(findings, sensors, estimate);
     report_stamps(sensors, estimate);

@@ -9,8 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// Replaces gyro readings of a rig by the rates of rate/tumble (recover_rates). Reports the saturation limits and the
-/// number of replaced samples. Auxiliary IMUs are not used if the record of one is invalid.
+/// Replaces the gyro readings of a rig by the rates that rate/tumble recovers (recover_rates). The health of the
+/// estimate receives the saturation limits and the number of replaced samples. If the data of one auxiliary IMU are
+/// invalid, no auxiliary IMU is used.
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   ReplacedReadings replaced, Estimate& estimate);
 

@@ -68,7 +68,7 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// The registry rejects an external method with the name of a built-in method, which would be ambiguous in the results.
+/// The registry rejects an external method with the name of a built-in method, because the results would be ambiguous.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
@@ -118,7 +118,7 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // The capture owns `parameters`, to which `info` refers.
+  // The lambda stores `parameters`, because `info` refers to them.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {

@@ -13,17 +13,17 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 
-/// registry.hpp registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a
-/// declaration in this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
+/// The header registry.hpp declares all methods of this build. A new method needs a file KIND_NAME.cpp that defines
+/// `Method KIND_NAME()`, a declaration in this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
 namespace tumble::scenarios {
 
-/// Computes the estimate of a method. `parameters` is complete and within limits. `oracle.truth` is set if the method
-/// needs the truth.
+/// RunCore is the function that computes the estimate of a method. The values in `parameters` are complete and within
+/// their limits. The pointer `oracle.truth` is set if the method needs the truth.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Creates a method from `run`. The function collects `info.parameters` from the settings of the stages, resolves
-/// parameter values, and passes the truth only to oracles. Running the method throws BadInput for an unknown parameter,
-/// a value out of range, or a missing truth.
+/// Creates a method from its description and its function `run`. When the method runs, missing parameters get their
+/// defaults, and `run` receives the truth only if the method needs the truth. Running the method throws BadInput for an
+/// unknown parameter, a value out of range, or a missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
@@ -65,15 +65,15 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// The rate methods and the slam chains share the following rate stages. Each rate stage returns one RateState per
-/// sample. On error, `out` is empty.
+/// The rate methods and the slam methods share the following rate stages. Each rate stage estimates one RateState per
+/// sample. On error, a rate stage returns an empty `out`.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
-/// Counts the rates in `health` by their source, for example measured or estimated.
+/// Counts the rates by their source, for example measured or estimated, and adds the counts to `health`.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// KnownMotion is the motion that an odometer measures in addition to the IMU.
+/// KnownMotion is the motion of the IMU that an odometer measures.
 struct KnownMotion {
   /// Returns the motion of the IMU between two times, or nothing unless the odometer covers both times.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> between;
@@ -81,20 +81,22 @@ struct KnownMotion {
   double correction_max_rad = 1.0;
 };
 
-/// SlamChain contains the options of the lidar-inertial chain.
+/// SlamChain contains the options of the lidar-inertial mapping chain.
 struct SlamChain {
-  /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. With calibration, the chain processes
-  /// the recording twice. The second pass over the recording starts from the calibration of the first pass.
+  /// If `calibration` is true, the mapping chain estimates lidar mounting, lidar clock offset and gravity. A mapping
+  /// chain with calibration processes the recording twice. The second pass over the recording starts with the
+  /// calibration from the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
-  /// OracleInput::on_sweep
+  /// The function `on_sweep` is OracleInput::on_sweep, which displays progress.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
 struct SlamStage;
 
-/// Runs the lidar-inertial chain of all registration methods: deskewing with the rates in the estimate, registration,
-/// mapping. slam_settings.hpp describes the parameters. Returns whether the run ends with a known pose in its map.
+/// Runs the lidar-inertial mapping chain of all registration methods: deskewing with the rates in the estimate,
+/// registration, mapping. The header slam_settings.hpp describes the parameters. Returns whether the run ends with a
+/// known pose in its map.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

@@ -9,12 +9,12 @@
 
 namespace tumble::scenarios {
 
-/// Reports the known saturation limits of the primary gyro in `health` (ESTIMATE.md, "Rails"). The report contains the
+/// Adds the known saturation limits of the primary gyro to `health` (ESTIMATE.md, "Rails"). The health receives the
 /// level of each axis with an observed limit, and the plane parameters of a tilted limit. Levels that were copied from
 /// another axis or from a data sheet are omitted.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 
-/// Reports the saturation levels that the smoother found in a run.
+/// Adds the saturation levels that the rate smoother found to `health`.
 void report_rails(const RateReport& report, std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

@@ -9,10 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// Adds the report of the rate estimation to the health and the failed checks of `result`.
+/// Adds the report of the rate estimation to the health of `result`, and its failed checks to the findings.
 void report_rates(const RegimeSmoother::Report& report, Estimate& result);
 
-/// Returns the fraction of hand-held samples, or nothing if it was not estimated.
+/// Returns the fraction of hand-held samples, or nothing if the fraction was not estimated.
 std::optional<double> carried_share(const RegimeSmoother::Report& report);
 
 /// Adds the number of gaps in the samples (kGapMaxS) to the health, if there is a gap.

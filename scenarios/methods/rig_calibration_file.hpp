@@ -7,16 +7,16 @@
 
 namespace tumble::scenarios {
 
-/// Writes a calibration as a short JSON file. The file contains lever arm, biases, inertia and gyro sensing elements
-/// with their covariance (by rows), and saturation levels and planes of gyro and accelerometer. The file also contains
-/// the errors of the device in the order of SensorErrors, with covariance. Reading restores all numbers bit-exactly.
-/// Throws BadInput if writing fails; no partial file remains.
+/// Writes the calibration of a rig as a short JSON file. The file contains lever arm, biases, inertia and gyro sensing
+/// elements with their covariance (by rows), and saturation levels and planes of gyro and accelerometer. The file also
+/// contains the device errors in the order of SensorErrors, with their covariance. Reading restores all numbers
+/// bit-exactly. Throws BadInput if writing fails; no partial file remains.
 void write_rig_calibration(const std::filesystem::path& path, const CalibratedRig& rig);
 
-/// Reads a calibration file. Files of earlier versions may lack the gyro sensing elements with their six covariance
-/// rows, accelerometer planes, or device errors. Defaults replace missing values. Throws BadInput with path and key for
-/// a missing, misspelt or extra key, an invalid number, or a wrong count. Throws BadInput also if a covariance is not
-/// symmetric positive definite.
+/// Reads the calibration of a rig from a JSON file. Files of earlier versions may lack the gyro sensing elements with
+/// their six covariance rows, the accelerometer planes, or the device errors. Default values replace missing values.
+/// Throws BadInput with path and key for a missing, misspelt or extra key, an invalid number, or a wrong count. Throws
+/// BadInput if a covariance is not symmetric positive definite.
 CalibratedRig read_rig_calibration(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -19,8 +19,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRestMaxS = 1.0;
-/// The start of a run is at rest from the first reading until the first motion. The rest thresholds are those of the
-/// mapper (`mapper_rest`), without the gravity test.
+/// At the start of a run, the rig is at rest from the first reading until the first motion. The thresholds for rest are
+/// those of the mapper (`mapper_rest`), without the gravity test.
 constexpr RestDetector::Params kStart = {.rate_spread_rad_s = 0.05, .force_spread_m_s2 = 0.5, .rest_s = 0.0};
 constexpr double kVelocitySigmaMS = 1e-4;  // registration of a rigid sweep does not measure velocity
 

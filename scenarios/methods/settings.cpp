@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the suffix that a unit adds to a name: "_m_s2" for "m/s^2".
+/// Returns the suffix of a parameter name for a unit: "_m_s2" for "m/s^2".
 std::string suffix_of(std::string_view unit) {
   std::string out = "_";
   for (const char c : unit) {

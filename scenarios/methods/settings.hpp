@@ -17,8 +17,8 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// settings.hpp converts the `Params` struct of a library class to the parameters of a method. Tables, parsing and
-/// tests use only the descriptions of the struct's fields (common/parameters.hpp).
+/// The templates in settings.hpp convert the `Params` struct of a library class to the parameters of a method. Tables,
+/// parsing and tests use only the descriptions of the struct's fields (common/parameters.hpp).
 namespace tumble::scenarios {
 
 namespace detail {
@@ -42,43 +42,46 @@ void visit_numbers(Params& params, Each each) {
 
 }  // namespace detail
 
-/// SettingsOptions names the fields of a `Params` struct that a method treats specially.
+/// SettingsOptions lists the fields of a `Params` struct that a method treats specially.
 struct SettingsOptions {
-  /// Names of fields whose values the recording states, unless the user sets them; a name may end in `*`.
+  /// The list `stated` names the fields whose values the recording contains, unless the user sets them; a name may end
+  /// in `*`.
   std::vector<std::string> stated = {};
-  /// Names of fields that follow from other parameters and cannot be set; a name may end in `*`.
+  /// The list `fixed` names the fields that follow from other parameters, so users cannot set them; a name may end in
+  /// `*`.
   std::vector<std::string> fixed = {};
-  /// Names of fields that are listed first for users of this method.
+  /// The list `first` names the fields that appear first in the list of parameters.
   std::vector<std::string> first = {};
-  /// Parameters of another stage. A field with the name of one of these parameters gets `prefix` before its name.
+  /// The list `beside` contains the parameters of another stage of the method. A field with the same name as a
+  /// parameter of the other stage gets `prefix` before its name.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };
 
-/// SettingsTable contains names, table rows and values of parameters. SettingsTable is the base class of all Settings
-/// and does not depend on the `Params` type.
+/// SettingsTable contains the names, descriptions and values of a method's parameters. SettingsTable is the base class
+/// of all Settings and does not depend on the `Params` type.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;
   SettingsTable(const SettingsTable&) = delete;
   SettingsTable& operator=(const SettingsTable&) = delete;
 
-  /// Returns the table rows of the parameters, frequently used parameters first.
+  /// Returns the descriptions of the parameters, frequently used parameters first.
   std::span<const sim::Parameter> rows() const { return rows_; }
   std::size_t first_rows() const { return first_rows_; }
-  /// Returns true for integer parameters: counts, switches and choices.
+  /// Returns whether a parameter must be an integer: a count, a switch or a choice.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Returns whether the recording states the parameter's value. Only a value that the user sets overrides the
-  /// recording.
+  /// Returns whether the recording contains the value of the parameter. Only a value from the user overrides the value
+  /// in the recording.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
-  /// Returns every number of the `Params` struct, taken from `values`, by the library's names.
+  /// Returns every number of the `Params` struct after applying `values`, by the names of the library.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
 
  protected:
   explicit SettingsTable(SettingsOptions options);
   void add(const std::string& field_name, double value, const Field& field, bool whole);
   void sort_rows();
-  /// Returns whether `values` sets the field, and writes the parameter's name to `name`.
+  /// Returns whether `values` contains the field, and writes the parameter's name to `name`.
   bool applies(const std::string& field_name, const sim::Values& values, std::string& name) const;
 
  private:
@@ -91,22 +94,22 @@ class SettingsTable {
   std::deque<std::string> texts_;  ///< owns the texts that the other members refer to
 };
 
-/// Resolves values for all parameters of the stages, like sim::resolve. Parameters that the recording states and the
-/// user did not set are omitted. Throws InvalidSituation like sim::resolve, and also for a fraction where an integer is
-/// required.
+/// Determines the values of all parameters of a method's stages, as sim::resolve does. Parameters whose values are in
+/// the recording and not set by the user are omitted. Throws InvalidSituation like sim::resolve, and also for a
+/// fraction where an integer is required.
 sim::Values resolve_settings(const std::string& place, const sim::Values& given,
                              std::span<const SettingsTable* const> stages);
 
-/// Returns the parameter rows of several stages with distinct names, frequently used rows first. `first` receives the
-/// number of frequently used rows.
+/// Returns the parameter descriptions of several stages, which must have distinct names, with frequently used
+/// parameters first. The argument `first` receives the number of frequently used parameters.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
-/// Settings contains the parameters of one stage of a method. A Settings object must be static, because methods keep
-/// references to its table rows.
+/// Settings contains the parameters of one stage of a method. A Settings object must be static, because methods refer
+/// to its parameter descriptions.
 template <class Params>
 class Settings : public SettingsTable {
  public:
-  /// `defaults` are the library's default values, or values that the method states instead.
+  /// The parameter `defaults` contains the library's default values, or other defaults of the method.
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
     detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
@@ -115,7 +118,8 @@ class Settings : public SettingsTable {
   }
   const Params& defaults() const { return defaults_; }
 
-  /// Copies the values to `params`. A field that the recording states and the user did not set is unchanged.
+  /// Copies the values to the fields of `params`. A field keeps its value if the recording determines the field and the
+  /// user did not set it.
   void apply(const sim::Values& values, Params& params) const {
     detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // largest motion over one sweep at rest
 
-/// Reports the median and the 90th percentile of the Mahalanobis distance between predicted and registered poses.
+/// Adds the median and the 90th percentile of the Mahalanobis distance between predicted and registered poses to the
+/// health.
 void report_innovations(Estimate& estimate) {
   std::vector<double> all;
   for (const auto& sweep : estimate.sweeps) {
@@ -26,15 +27,15 @@ void report_innovations(Estimate& estimate) {
   estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
-/// Returns true if the rig is stationary during the sweep. At rest, a lidar only sees rings; the degeneracy of the
-/// rings is harmless.
+/// Returns whether the rig is stationary during the sweep. At rest, the lidar measures the same rings repeatedly; the
+/// unconstrained directions are then harmless.
 bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
   return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
 }
 
-/// Returns the fraction of the moving sweeps whose surfaces constrain all directions.
+/// Returns the fraction of the sweeps during motion whose surfaces constrain all directions.
 double well_constrained_share(std::span<const SweepReport> sweeps) {
   std::size_t constrained = 0, moving = 0;
   for (const SweepReport& sweep : sweeps) {
@@ -45,7 +46,8 @@ double well_constrained_share(std::span<const SweepReport> sweeps) {
   return moving > 0 ? static_cast<double>(constrained) / static_cast<double>(moving) : 1.0;
 }
 
-/// Reports the uncertainty of the final pose, which reveals surroundings that constrain the pose poorly.
+/// Adds the uncertainty of the final pose to the health; a large value reveals surroundings that constrain the pose
+/// poorly.
 void report_end(const Localisation& localisation, Estimate& estimate) {
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());

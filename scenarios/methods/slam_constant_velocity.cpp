@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IMU
 
-// The prior is very weak, so that the registration alone determines the pose, as in published methods with constant
+// The prior is very weak, so that registration alone determines the pose, as in published methods with constant
 // velocity.
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// ConstantVelocity predicts that the last change of pose repeats, in translation and rotation. ConstantVelocity uses
-/// the IMU only for the times of the poses and the initial vertical, which the scores need. Without an IMU,
+/// ConstantVelocity predicts that the pose change over the last sweep repeats, in translation and rotation.
+/// ConstantVelocity takes only the times of the poses and the initial vertical from the IMU. Without an IMU,
 /// ConstantVelocity assumes that the body is upright at the start.
 class ConstantVelocity : public TrajectoryModel {
  public:
@@ -51,7 +51,7 @@ class ConstantVelocity : public TrajectoryModel {
   TimeNs from_ns_ = 0;
 };
 
-/// Returns evenly spaced pose times within the sweeps of a recording without IMU.
+/// Returns evenly spaced times for the poses within each sweep, for a recording without IMU.
 std::vector<ImuSample> instants(const sim::LidarRecord& lidar) {
   std::vector<ImuSample> out;
   const std::size_t sweeps = bridge::sweep_count(lidar);

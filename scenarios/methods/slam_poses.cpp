@@ -5,8 +5,8 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// slam_poses.cpp builds maps of the rolling sphere from the poses of a position method, without registration, as
-/// published.
+/// The methods in slam_poses.cpp build maps of the rolling sphere from the poses of a position method, without
+/// registration, as published.
 namespace tumble::scenarios {
 
 namespace {
@@ -42,7 +42,7 @@ const Method& tumble() {
   return method;
 }
 
-/// Track interpolates poses of the body at query times that must increase.
+/// Track interpolates poses of the body at times that must increase from call to call.
 class Track {
  public:
   Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
@@ -50,7 +50,7 @@ class Track {
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
-  /// Cost: O(1) for times close to the previous query.
+  /// The cost is O(1) for times close to the time of the previous call.
   Eigen::Isometry3d at(std::int64_t time_ns) {
     while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
@@ -66,8 +66,8 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// The lidar's mounting refers to the centre of mass, which is a few millimetres from the sphere's centre. For methods
-// that do not estimate the offset between the two centres, the offset is zero.
+// The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre. For methods that do
+// not estimate the offset of the centre of mass, the offset is zero.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();
@@ -122,7 +122,7 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses(tumble(), sensors, parameters);
 }
 
-/// Returns a slam method that builds the map from the poses of `position`.
+/// Returns a slam method that builds its map from the poses of the method `position`.
 Method posed(MethodInfo info, const Method& position, RunCore run) {
   info.kind = Kind::slam;
   info.settings = stages_after({&map_settings()}, position);

@@ -13,7 +13,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/prior_map.hpp"
 
-/// slam_registry.hpp declares slam methods in addition to registry.hpp, and functions that these methods share.
+/// The header slam_registry.hpp declares further slam methods, and functions that these methods share.
 namespace tumble::scenarios {
 
 Method slam_published();
@@ -22,9 +22,9 @@ Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises itself in a prior map (TumblingOdometry::
-/// use_map), or nothing for another method. The health counter `prior_map_sweep` is the number of sweeps until the run
-/// was localised, or 0. Poses of earlier sweeps are in a local frame.
+/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry:: use_map);
+/// returns nothing for another method. The health counter `prior_map_sweep` is the number of the sweep at which the run
+/// was localised, or 0. The poses of earlier sweeps are in a local frame.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
 /// RigSlam contains the options that distinguish the slam methods of the rig.
@@ -38,8 +38,8 @@ struct RigSlam {
 };
 Method rig_slam(RigSlam what, RunCore run);
 
-/// Starts an estimate with the rates that `rates` computes from the `samples` of the primary IMU, or with the error of
-/// `rates`.
+/// Creates an estimate with the rates that the function `rates` computes from the `samples` of the primary IMU, or with
+/// its error.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
 

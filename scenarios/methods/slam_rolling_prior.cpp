@@ -11,14 +11,14 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// slam_rolling_prior.cpp builds maps of a rolling sphere with the rig's registration and with rolling as an odometer
-/// (add_reading).
+/// The method in slam_rolling_prior.cpp maps with a rolling sphere: registration as on the rig, and rolling as an
+/// odometer (add_reading).
 namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the parameters of the chain. The odometer sets the limits of a correction, and the position method sets
-/// gravity.
+/// Returns the settings of the lidar-inertial mapping chain for the sphere. The odometer limits the corrections, and
+/// the position method determines gravity.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = slam_settings({}, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   return all;
@@ -76,7 +76,7 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Returns the position method whose poses the rolling odometer uses.
+/// Returns the position method whose poses serve as rolling odometer.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
@@ -86,8 +86,8 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// Estimates the radius at which the rolled distance equals the distance of the registered sweeps, over segments with
-/// continuous contact. Returns nothing if there are too few segments of continuous contact.
+/// Estimates the sphere's radius at which the rolled distance equals the distance of the registered sweeps, over
+/// intervals of continuous contact. Returns nothing if there are too few intervals of continuous contact.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
@@ -128,7 +128,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
 
 constexpr const char* kRadius = "radius_m";
 
-/// Estimates poses of a rolling sphere of `radius_m` without the lidar.
+/// Estimates the poses of a rolling sphere with radius `radius_m`, without the lidar.
 Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double radius_m) {
   sim::Sensors own;
   own.robot = sensors.robot;
@@ -140,8 +140,8 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// RolledMotion uses rolling as an odometer of the primary IMU. `loosely` increases the uncertainty to allow for an
-/// uncertain radius.
+/// RolledMotion supplies the rolled motion as an odometer of the primary IMU. The option `loosely` increases the
+/// uncertainty of the odometer, because the radius is uncertain.
 class RolledMotion {
  public:
   RolledMotion(const Estimate& rolled, const sim::Sensors& sensors, const AlongParams& params, bool loosely)
@@ -202,7 +202,7 @@ class RolledMotion {
   bool loosely_;
 };
 
-/// Returns the largest correction of the position that the registration may make.
+/// Returns the largest correction of the position that a registration may make.
 double correction_max_m(const Estimate& rolled, const AlongParams& params, bool loosely) {
   double variance_m2 = 0.0;
   for (const PoseState& pose : rolled.poses)
@@ -211,7 +211,7 @@ double correction_max_m(const Estimate& rolled, const AlongParams& params, bool 
   return params.correction_m + (loosely ? params.loose_correction_m : 0.0) + lost_m;
 }
 
-/// Registers sweeps with `rolled` as an odometer between the ends of two sweeps.
+/// Registers all sweeps, with the motion in `rolled` as an odometer between the ends of consecutive sweeps.
 Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> samples,
                         const sim::Values& parameters, bool loosely) {
   Estimate estimate;
@@ -229,8 +229,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Runs the method twice: with a loose odometer to estimate the radius, then with a tight odometer and the estimated
-/// radius.
+/// Runs the method twice: first with an uncertain odometer to estimate the radius, then with the estimated radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

@@ -7,11 +7,10 @@
 #include "scenarios/methods/settings.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Declares the parameters of the lidar-inertial chain (run_slam_chain).
+/// The header slam_settings.hpp declares the parameters of the lidar-inertial mapping chain (run_slam_chain).
 namespace tumble::scenarios {
 
-/// SlamParams contains the library's parameters for the rig, and options that select how the chain uses the
-/// calibration.
+/// SlamParams contains the library's parameters for the rig, and options for the use of the calibration.
 struct SlamParams {
   LidarInertialOdometry::Params odometry = on_the_rig();
   bool flight_arc = false;  ///< odometry.body is taken from the robot's calibration
@@ -29,18 +28,18 @@ struct SlamParams {
   }
 };
 
-/// Returns `params` with the calibration uncertainties of a hand-assembled rig.
+/// Returns `params` with the typical calibration uncertainties of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params);
-/// Returns `params` so that registrations with few matches are accepted if the registered pose agrees with the prior.
-/// Baselines reject registrations with few matches, because a clipped gyro makes the prior wrong (`hill` seed 8: 272 m
-/// of error).
+/// Returns `params` that accept a registration with few matches if the registered pose agrees with the predicted pose.
+/// Baseline methods reject registrations with few matches, because a clipped gyro makes the prediction wrong (`hill`
+/// seed 8: 272 m of error).
 SlamParams with_few_matches(SlamParams params);
-/// Returns the parameters of a method that uses the chain. Users cannot set the values that the recording states or the
-/// parameters in `fixed`.
+/// Returns the settings of a method that uses the lidar-inertial mapping chain. Users cannot set the values that the
+/// recording determines or the parameters in `fixed`.
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
 
-/// SlamStage contains the parameters of the chain as part of the parameters of a method. The referenced objects must
-/// outlive the run.
+/// SlamStage contains the parameters of the mapping chain, as a part of a method's parameters. The objects that
+/// SlamStage refers to must outlive the run.
 struct SlamStage {
   const Settings<SlamParams>& settings;
   const sim::Values& parameters;

@@ -29,7 +29,7 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
   TumblingOdometry::Params params;
   params.lever_arm_I_m.setZero();  // The recording states the lever arm.
   params.lag_s = lag_s;
-  // TumblingOdometry has separate parameters for these quantities.
+  // TumblingOdometry has separate parameters for the following quantities.
   fixed.insert(fixed.end(),
                {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                 "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
@@ -42,7 +42,7 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
 }
 
 const Settings<TumblingOdometry::Params>& whole_settings() {
-  // parameters of streams and of the second pass
+  // The following parameters apply only to streaming and to the second pass.
   static const auto all =
       odometry_settings(TumblingOdometry::kWholeRecording,
                         {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma",
@@ -67,7 +67,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   return params;
 }
 
-/// Output selects which output of TumblingOdometry becomes the estimate.
+/// Output selects the poses of TumblingOdometry that the estimate contains.
 enum class Output {
   live,   ///< pose at each IMU sample, as soon as the sample is processed
   lag,    ///< final trajectory of each sweep
@@ -76,7 +76,7 @@ enum class Output {
 
 using SweepProgress = TumblingOdometry::SweepProgress;
 
-/// Collector collects the output of TumblingOdometry in an estimate.
+/// Collector stores the output of TumblingOdometry in an estimate.
 class Collector {
  public:
   Collector(Output output, const TumblingOdometry::Params& params, std::string imu, Estimate& estimate)
@@ -90,7 +90,7 @@ class Collector {
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (output_ != Output::live || !odometry.newest(pose).ok()) return;
-    // While TumblingOdometry delays a sample, its newest pose belongs to the previous sample.
+    // While TumblingOdometry holds a sample back, its newest pose belongs to the previous sample.
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -126,7 +126,7 @@ class Collector {
   }
 
   /// Replaces the trajectory of each sweep by its live poses. Sweeps before the first live pose (at rest about 0.3 s
-  /// after the start) are unchanged.
+  /// after the start) keep their trajectory.
   void replace_by_live() {
     auto next = live_.begin();
     for (SweepReport& sweep : estimate_.sweeps) {
@@ -149,9 +149,9 @@ class Collector {
   std::vector<PoseState> live_;
 };
 
-/// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
-/// its last point. With the whole recording, sweeps that end after the last sample are also used. Otherwise, such
-/// sweeps are only counted.
+/// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its averaging window, each
+/// sweep after its last point. If `whole` is true, sweeps that end after the last sample are also used. If `whole` is
+/// false, sweeps that end after the last sample are only counted.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -165,14 +165,14 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   for (const ImuSample& sample : samples) {
     const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
     last_ns = sample.time_ns;
-    // in real time, sweeps also arrive during a gap of the IMU, without IMU data for most of them
+    // In real time, sweeps also arrive during a gap of the IMU; most of these sweeps have no IMU data.
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;
       if (!add_sweep(*present).ok()) estimate.health["sweeps_without_imu"] += 1.0;
       present.reset();
     }
-    // the first sample after a gap is rejected, and the second sample confirms its time stamp
+    // The estimator rejects the first sample after a gap, and the second sample confirms the time stamp of the first.
     if (Status status = odometry.add_imu(sample); !status.ok() && status.error_code != ErrorCode::gap) return status;
     while (present || next < sweeps) {
       if (!present) present = bridge::sweep(lidar, next++);
@@ -194,7 +194,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   return status;
 }
 
-/// Adds the contents of RecordingEstimate, except the sweeps, to the estimate.
+/// Adds the contents of RecordingEstimate to the estimate, except the sweeps.
 void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
   estimate.rates = whole.rates;
   estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;

@@ -10,17 +10,18 @@
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Computes the attitude for position methods of the sphere that do not estimate attitude.
+/// The functions in sphere_attitude.hpp compute the attitude for position methods of the sphere that do not estimate
+/// the attitude.
 namespace tumble::scenarios {
 
-/// SphereAttitude contains the samples of the primary IMU without the gyro bias at rest, and the attitude at the end of
-/// each sample's window.
+/// SphereAttitude contains the samples of the primary IMU after removal of the gyro bias, and the attitude at the end
+/// of each sample's averaging window.
 struct SphereAttitude {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`; yaw starts at 0
 };
 
-/// RestParams contains the assumed duration of the rest at the start.
+/// RestParams contains the duration for which a method assumes rest at the start.
 struct RestParams {
   double rest_s = 1.0;
 
@@ -33,20 +34,21 @@ struct RestParams {
 };
 const Settings<RestParams>& rest_settings();
 
-/// Averages bias and tilt over the first `rest_s`, then integrates the gyro. Returns an error of the samples or of the
-/// initial levelling. Throws BadInput, naming `method`, if the recording is not from a sphere. O(N).
+/// Estimates gyro bias and tilt from the first `rest_s` seconds, then integrates the gyro to one attitude per sample.
+/// Returns an error of the samples or of the initial attitude. Throws BadInput, with the name `method`, if the
+/// recording is not from a sphere. The cost is O(N).
 Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out);
 
 /// Returns the pose of the sphere's centre in body axes, computed from the attitude of the IMU.
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
-/// Returns the label of a moving contact point: `slide` if the centre moves faster than the rotation, `slip` if the
-/// rotation is faster.
+/// Classifies a moving contact point: `slide` if the centre moves faster than the sphere rolls, `slip` if the sphere
+/// rotates faster.
 sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
                                 const Eigen::Vector3d& v_WG_m_s);
 
-/// Throws BadInput, naming `method`, unless the sensors belong to a sphere.
+/// Throws BadInput, with the name `method`, unless the sensors belong to a sphere.
 void require_sphere(const char* method, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

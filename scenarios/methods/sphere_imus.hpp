@@ -8,7 +8,7 @@
 #include "sim/recording.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
-/// sphere_imus.hpp prepares all IMUs of a sphere for the estimator.
+/// The functions in sphere_imus.hpp convert the readings of all IMUs of a sphere for the estimator.
 namespace tumble::scenarios {
 
 /// SphereImus contains the usable readings of the IMUs of a sphere.
@@ -18,21 +18,22 @@ struct SphereImus {
   int beyond_range = 0;  ///< dropped readings beyond the range of the device
 };
 
-/// Converts all IMUs except `imu_reference`, at most ImuMerge::kImus. The function drops readings that are not finite,
-/// out of order or beyond the device's range. Returns the error of the primary IMU if no IMU is valid.
+/// Converts the readings of all IMUs except `imu_reference`, for at most ImuMerge::kImus IMUs. Readings that are not
+/// finite, out of order or beyond the device's range are dropped. Returns the error of the primary IMU if no IMU has
+/// valid readings.
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 
-/// MergedImus contains the IMUs of a sphere, merged with knowledge of the whole recording.
+/// MergedImus contains the merged readings of a sphere's IMUs, computed from the whole recording.
 struct MergedImus {
   MergedRecordings merged;
   std::vector<std::string> names;  ///< names of the units
   int beyond_range = 0;            ///< see SphereImus
 };
 
-/// Reports the number of dropped readings beyond the range of the device.
+/// Adds the number of dropped readings beyond the range of the device to the estimate's health.
 void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate);
 
-/// Merges all IMUs by merge_recordings().
+/// Merges the readings of all IMUs of a sphere by merge_recordings().
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);
 
 }  // namespace tumble::scenarios

@@ -7,7 +7,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// sweep_log.hpp contains counts, reports and results per sweep, which all slam chains share.
+/// The functions in sweep_log.hpp store the result of each sweep in an estimate, for all slam methods.
 namespace tumble::scenarios {
 
 using SweepReport = LidarInertialOdometry::SweepReport;
@@ -16,31 +16,31 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 void count_trouble(const Status& status, Estimate& estimate);
 
 /// Counts the error and verdict of the sweep that ends at `end_ns`, and appends the sweep to the estimate. Returns
-/// false only if the sweep has no pose; the estimate's status is then the error. A sweep without returns is not an
-/// error.
+/// false only if the sweep has no pose; its error then becomes the status of the estimate. A sweep without returns is
+/// not an error.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
-/// Appends the poses that are later than the estimate's last pose. Consecutive sweeps share the IMU sample at their
-/// boundary; the earlier sweep supplies the pose of this sample.
+/// Appends the poses of the trajectory that are later than the last pose of the estimate. Consecutive sweeps share the
+/// IMU sample at their boundary; the pose of this sample comes from the earlier sweep.
 void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 
-/// Counts a sweep that extends beyond the IMU readings and is dropped.
+/// Counts a sweep that is dropped because it ends after the IMU readings.
 void leave_out_unfinished(Estimate& estimate);
 
-/// Counts the error of a sweep without a pose, which came before the IMU readings or had too few points to start the
+/// Counts the error of a sweep without a pose: a sweep before the IMU readings, or with too few points to start the
 /// map. Returns false for any other sweep.
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
 
-/// SweepMapper is the interface of a mapper for the loop over sweeps.
+/// SweepMapper contains the two functions of a mapper that run_over_sweeps calls.
 struct SweepMapper {
-  /// `covers` returns whether the IMU covers the sweep. `add` adds the sweep; an error becomes the estimate's status
-  /// and ends the run.
+  /// The function `covers` returns whether the IMU readings cover the sweep. The function `add` adds the sweep to the
+  /// map; an error becomes the status of the estimate and ends the run.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// Processes all sweeps in order and collects their poses. The status is `too_few` if no sweep was registered. Returns
-/// false if an error ended the run early.
+/// Passes all sweeps to the mapper in order and collects their poses. The status is `too_few` if no sweep was
+/// registered. Returns false if an error ended the run early.
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
 }  // namespace tumble::scenarios

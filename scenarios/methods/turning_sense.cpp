@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// kTurnsOnceCorrected is the largest accepted rotation difference after the correction of a delay, equal to the limit
-/// in reference_check.cpp.
+/// kTurnsOnceCorrected is the largest accepted rotation difference after the correction of a delay; reference_check.cpp
+/// has the same limit.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -26,8 +26,8 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   return out;
 }
 
-/// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns nothing if the recording has no
-/// sensor with the frame.
+/// Returns the rotation from IMU axes to the axes of the frame. Returns nothing if the recording has no sensor with
+/// this frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();
@@ -50,8 +50,8 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frames that the attitudes may describe; empty without an IMU or without the stated sensor. The stated
-/// frame comes first, so that it is chosen if two frames have equal mountings.
+/// Returns the frames to which the attitudes may belong; empty without an IMU, or without a sensor for the frame of the
+/// estimate. The frame of the estimate comes first, so that it is chosen if two frames have equal mountings.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

@@ -27,8 +27,8 @@ void limit(int resource, double value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Executes the command in the child process. Returns only if the program cannot be started, and stores the reason in
-/// `problem`.
+/// Replaces the child process by the command. The function returns only if the program cannot be started, and stores
+/// the reason in `problem`.
 void become(const Command& command, std::string& problem) {
   signal(SIGINT, SIG_DFL);
   signal(SIGHUP, SIG_DFL);
@@ -48,8 +48,8 @@ void become(const Command& command, std::string& problem) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // The memory limit is set last. The child, a copy of this program, may already exceed the limit, and its allocations
-  // would then fail.
+  // The memory limit is set last. The child process, a copy of this program, may already exceed the limit, so later
+  // allocations would fail.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
@@ -71,7 +71,7 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// Returns the start and the end of a long transcript. The start of a transcript usually contains the cause of an
+/// Returns the start and the end of a long program output. The start of the output usually contains the cause of an
 /// error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;

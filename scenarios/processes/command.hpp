@@ -29,8 +29,9 @@ struct CommandEnd {
   double cpu_s = 0.0;       ///< of the command without its children
 };
 
-/// Runs the command in a separate process group. At the time limit, the whole process group is killed. The process
-/// group is also killed when this process ends. Throws std::system_error if no process can be started.
+/// Runs the command in a separate process group and waits for its end. At the time limit, the function kills the whole
+/// process group. The process group is also killed when this process ends. Throws std::system_error if no process can
+/// be started.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -19,17 +19,18 @@ class Process {
     double cpu_s = 0;              ///< used by the child without its children
     double peak_mib = 0;           ///< largest resident size
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
-    /// Returns true if the process was ended from outside: SIGKILL (out of memory, an operator), SIGTERM, or a time
+    /// Returns whether the process was ended from outside: by SIGKILL (out of memory, an operator), SIGTERM, or a time
     /// quota.
     bool killed() const;
   };
 
-  /// Forks and runs `work(write_end)` in the child, in a separate process group if `own_group`. If `work` throws, the
-  /// child ends with exit status 1. Throws std::system_error if no process can be started.
+  /// Forks this process and runs `work(write_end)` in the child, in a separate process group if `own_group` is true. If
+  /// `work` throws, the child process ends with exit status 1. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  /// Forks and runs `work(read_end, write_end)` in the child. The child can read the text that `write_text` writes.
+  /// Forks this process and runs `work(read_end, write_end)` in the child. The child process can read the text that
+  /// `write_text` writes.
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
-  /// Kills the process (or its process group) and waits for its end.
+  /// Kills the child process (or its process group) and waits for its end.
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
@@ -39,8 +40,8 @@ class Process {
   bool write_text(const std::string& text);
   /// Appends the available content of the pipe to `buffer`. Returns false at the end of the pipe.
   bool read_available(std::string& buffer);
-  /// Waits until the child process has ended. Returns false at the deadline, which is a time of now_s(). The caller
-  /// obtains the exit status with wait().
+  /// Waits until the child process has ended. Returns false if the process still runs at the deadline, which is a time
+  /// of now_s(). The function wait() then returns the exit status.
   bool ends_before(double deadline_s);
   void kill();
   End wait();
@@ -56,14 +57,14 @@ class Process {
 
 inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes
 
-/// Limits the data memory (RLIMIT_DATA) of this process and of each future child, within the inherited limit. Beyond
-/// the memory limit, allocations fail with std::bad_alloc, and new processes cannot be started.
+/// Limits the data memory (RLIMIT_DATA) of this process and of each future child, within the inherited limit.
+/// Allocations beyond the memory limit fail with std::bad_alloc, and new processes cannot be started.
 void limit_memory(double mib);
 
-/// Writes all of `text`; returns false if the reader has closed the pipe.
+/// Writes all of `text` to a file descriptor; returns false if the reader has closed the pipe.
 bool write_all(int fd, const std::string& text);
 
-/// Returns monotonic time [s].
+/// Returns the time of a monotonic clock [s].
 double now_s();
 
 }  // namespace tumble::scenarios

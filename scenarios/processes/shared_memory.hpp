@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// SharedMemory is anonymous shared memory that a program inherits as a file descriptor (Command::descriptors). The
+/// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor (Command::descriptors). The
 /// memory is freed when the last process that uses it ends. SharedMemory works on Linux only. The constructor throws
 /// std::system_error if there is not enough memory.
 class SharedMemory {
@@ -23,7 +23,7 @@ class SharedMemory {
   /// Makes the shared memory immutable for all processes.
   void seal();
   std::size_t size() const;
-  /// Returns the whole content.
+  /// Returns the whole content of the shared memory.
   std::string contents() const;
 
  private:

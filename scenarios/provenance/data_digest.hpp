@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns a digest of all files that determine simulated runs: models, catalogue and named cases. Outcomes with
-/// different data digests are not stored in one database.
+/// Returns a digest of all files that determine simulated runs: models, scenarios and named cases. One database
+/// contains only outcomes with equal data digests.
 std::string data_digest(const DataRoot& data);
 
 }  // namespace tumble::scenarios

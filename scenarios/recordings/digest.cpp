@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// FieldHasher is an archive that hashes every field: its name, length and bytes.
+/// FieldHasher visits every field of a recording and adds its name, length and bytes to the hash.
 class FieldHasher : public Hasher {
  public:
   void value(const char* name, const std::string& value) {

@@ -82,7 +82,7 @@ Notes write_sweeps(const path& recording, const path& out, const ExportChoices&)
   return export_names(sensors).lidars.notes;
 }
 
-/// sorted by name
+/// The formats are sorted by name.
 const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_kitti},

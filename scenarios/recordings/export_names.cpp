@@ -10,19 +10,19 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The bags (bag.hpp) and the truth of a CSV export use these names.
+/// Bags (bag.hpp) and the truth of a CSV export use the names in own_names.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Frames that readers, including the readers of this project, do not treat as sensors.
+/// Readers of bags, including those of this project, do not treat the frames in frames_of_no_sensor as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;
 }
 
-/// Claim is the preferred name of a sensor.
+/// Claim is the name that a sensor should have in an export.
 struct Claim {
   std::string sensor, name;
   bool own;  ///< the recording's own name, not a number that replaces an invalid name
@@ -48,7 +48,7 @@ std::string why_another(const Claim& claim) {
       claim.sensor, claim.given);
 }
 
-/// Assigns names to sensors or to the sensors of a truth.
+/// Assigns unique names to sensors, or to the sensors of a truth.
 template <class Recorded>
 ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;

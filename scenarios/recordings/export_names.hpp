@@ -9,22 +9,22 @@
 
 namespace tumble::scenarios {
 
-/// GivenNames contains the exported names of the sensors of one kind, in order.
+/// GivenNames contains the exported names of all sensors of one kind, in order.
 struct GivenNames {
   std::vector<std::string> names;
   std::vector<std::string> notes;  ///< which sensors were renamed because of a conflict
 };
 
-/// ExportNames contains the names of a recording's sensors in all export formats: topics, frames, file stems.
+/// ExportNames contains the names of a recording's sensors in all export formats, for topics, frames and files.
 struct ExportNames {
   GivenNames imus, lidars, series;
   std::set<std::string> taken;  ///< these names, and the export's own topics and frames
 };
 
-/// Returns unique names of letters, digits, - and _, which are safe as file names. The names differ from the export's
-/// own topics and frames (truth, body, world, tf …) and from frames that readers reserve (map, odom, base_link). A
-/// sensor keeps its name if no earlier sensor has an equal name. If the name is taken, a number is appended to it. For
-/// a truth, the function returns the names of the sensors in the truth.
+/// Returns unique names for the sensors, of letters, digits, - and _, which are safe as file names. The names differ
+/// from the topics and frames of the export (truth, body, world, tf …) and from frames that readers reserve (map, odom,
+/// base_link). A sensor keeps its name if no earlier sensor has the same name. If an earlier sensor has the same name,
+/// a number is appended. For a truth, the function returns the names of the sensors in the truth.
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 

@@ -10,10 +10,11 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// kLongestText is far above any valid text; without a limit, a corrupted length could request all memory.
+/// kLongestText is far above the length of any valid text; without a limit, a corrupted length could request all
+/// memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
-/// Returns the type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.
+/// Returns the HDF5 type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.
 Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
@@ -37,7 +38,7 @@ void Group::write_attribute(const std::string& name, const std::string& value) c
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
-  // c_str ends in a zero byte, which HDF5 needs as the single byte of an empty text
+  // c_str ends in a zero byte, which HDF5 needs as the single byte of an empty text.
   if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0)
     fail(name, "cannot be written" + last_error());
 }
@@ -105,7 +106,7 @@ std::int64_t Group::int_attribute(const std::string& name) const {
   std::int64_t value = 0;
   if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0)
     fail(name, fmt::format("the attribute cannot be read{}", last_error()));
-  // HDF5 limits values that exceed the range of the type
+  // HDF5 limits values that exceed the range of the type.
   if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max())
     fail(name, "the attribute is too large for a signed 64-bit integer");
   return value;

@@ -32,8 +32,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// At close, the callback takes ownership of the HDF5 driver's memory, instead of freeing it. The superblock is
-/// complete only at close, because H5Fget_file_image of HDF5 1.10 leaves a stale checksum.
+/// When the file closes, the callback keeps the memory of the HDF5 driver instead of freeing it. The superblock is
+/// complete only after closing, because H5Fget_file_image of HDF5 1.10 leaves an old checksum.
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -57,17 +57,17 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Returns the length stated in the superblock (format specification, superblock version 3: byte 28), because the
-/// memory of the driver is longer.
+/// Returns the file length in the superblock (format specification, superblock version 3: byte 28), because the memory
+/// of the driver is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
   return length;
 }
 
-/// Creates a file under `label` with the driver in `access`.
+/// Creates an HDF5 file called `label` with the driver in `access`; error messages contain `name`.
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // File format 1.10 has a checksum on all metadata, so that HDF5 detects flipped bits.
+  // The file format of HDF5 1.10 has checksums on all metadata, so that HDF5 detects flipped bits.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -86,7 +86,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   }
-  // The name must differ from those of existing files, because HDF5 would first read such a file into memory.
+  // The label must differ from all existing files, because HDF5 would first read an existing file into memory.
   return create_file(name, name + " in memory", access);
 }
 
@@ -95,7 +95,7 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
   if (H5Pset_fapl_sec2(access.get()) < 0)
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   Handle file = create_file(name, path.string(), access);
-  // Disk space is reserved after the creation, because the creation truncates the file.
+  // Disk space is reserved after the file is created, because creating truncates the file.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -137,8 +137,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After some damaged files, the exit cleanup of HDF5 fails and prints messages. The handles of this project close all
-  // files, so the cleanup is unnecessary.
+  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. The cleanup of HDF5 is
+  // unnecessary, because the handles of this project close all files.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
@@ -218,7 +218,7 @@ void DiskFile::close() {
     throw BadInput(fmt::format("{}: the file cannot be assembled in memory", name_));
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
-  // A close that failed midway reports no error; superblock and file length agree only in a complete file.
+  // If closing fails midway, HDF5 reports no error, but the length in the superblock then differs from the file length.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
     throw BadInput(fmt::format("{}: the file cannot be assembled in memory{}", name_, last_error()));
 }

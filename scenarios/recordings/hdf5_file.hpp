@@ -10,14 +10,14 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// hdf5_file.hpp opens and writes HDF5 files. Every error is a BadInput with the message "FILE: PLACE: what". Used only
-/// within scenarios/recordings.
+/// The classes in hdf5_file.hpp open and write HDF5 files. Every error is a BadInput with the message "FILE: PLACE:
+/// what".
 namespace tumble::scenarios::hdf5 {
 
-/// InputFile is an HDF5 file opened for reading.
+/// InputFile is an HDF5 file that is open for reading.
 class InputFile {
  public:
-  /// Throws BadInput if the file is missing, truncated, or not HDF5.
+  /// Throws BadInput if the file is missing, truncated, or not an HDF5 file.
   explicit InputFile(const std::filesystem::path& path);
   const Group& root() const { return root_; }
 
@@ -27,19 +27,19 @@ class InputFile {
   Group root_;
 };
 
-/// MemoryFile is an HDF5 file composed in memory. The HDF5 library cannot recover from a failed close, so it must never
-/// write to a full disk.
+/// MemoryFile is an HDF5 file that is created in memory. The HDF5 library must never write to a full disk, because it
+/// cannot recover from a failed close.
 class MemoryFile {
  public:
-  /// Error messages start with `name`.
+  /// Creates an HDF5 file in memory; error messages start with `name`.
   explicit MemoryFile(const std::string& name);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all HDF5 objects and returns the file's bytes. The bytes are valid during the lifetime of
-  /// this object.
+  /// Closes the file and all HDF5 objects, and returns the bytes of the file. The bytes are valid during the lifetime
+  /// of the MemoryFile.
   std::span<const std::byte> close();
 
  private:
@@ -50,18 +50,19 @@ class MemoryFile {
   Group root_;
 };
 
-/// DiskFile is an HDF5 file that is written directly to disk and replaces an empty file. The maximum disk space is
-/// reserved first, so that the HDF5 library never writes to a full disk.
+/// DiskFile is an HDF5 file that is written directly to disk, in place of an empty file. DiskFile reserves the maximum
+/// disk space first, so that the HDF5 library never writes to a full disk.
 class DiskFile {
  public:
-  /// Error messages start with `name`. Throws BadInput if there is not enough space.
+  /// Creates an HDF5 file at `path` and reserves `most_bytes` bytes; error messages start with `name`. Throws BadInput
+  /// if the disk space is not sufficient.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all HDF5 objects and releases unused disk space.
+  /// Closes the file and all HDF5 objects, and releases the unused disk space.
   void close();
 
  private:

@@ -11,12 +11,11 @@
 #include <string>
 #include <utility>
 
-/// hdf5_layout.hpp contains RAII handles of the HDF5 C library, and the memory layout of rows. Used only within
-/// scenarios/recordings.
+/// The header hdf5_layout.hpp contains RAII handles of the HDF5 C library, and the memory layout of rows.
 namespace tumble::scenarios::hdf5 {
 
-/// Handle is an identifier of the HDF5 library. The destructor of Handle closes the identifier with the matching
-/// function.
+/// Handle owns an identifier of the HDF5 library. The destructor of Handle closes the identifier with the function for
+/// its type.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -48,7 +47,7 @@ class Silence {
 
 enum class Scalar : std::uint8_t { float64, float32, int64, int32, uint64, uint32, uint16, uint8 };
 
-/// RowLayout is the memory layout of a row of a std::vector: `columns` scalars without padding.
+/// RowLayout describes the memory of a row of a std::vector: `columns` scalars without padding.
 template <class Row>
 struct RowLayout;
 template <Scalar kScalarOfRow, std::size_t kColumns>
@@ -88,7 +87,7 @@ constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
 }
 
-/// Returns the HDF5 type of a scalar in memory.
+/// Returns the HDF5 type for a scalar type in memory.
 hid_t memory_type(Scalar scalar);
 
 /// Returns " (reason)" for the last error of the HDF5 library, or an empty text if the reason is unknown.

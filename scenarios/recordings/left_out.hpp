@@ -10,31 +10,33 @@
 
 #include "scenarios/errors.hpp"
 
-/// left_out.hpp leaves out single faulty items of a sensor: IMU readings or clouds. Used only within scenarios.
+/// The functions in left_out.hpp skip single faulty items of a sensor: IMU readings or point clouds.
 namespace tumble::scenarios {
 
-/// kLeftOutShareMax is the largest fraction of the readings or clouds of one sensor that is left out as faulty. Single
-/// faults of drivers, buses and files affect a smaller fraction of the items. A wrong clock, unit or layout affects
-/// most items, so the recording is refused.
+/// kLeftOutShareMax is the largest fraction of a sensor's readings or clouds that may be skipped as faulty. Occasional
+/// faults of drivers, buses and files affect a smaller fraction. A wrong clock, unit or layout affects a larger
+/// fraction, so the reader rejects the recording.
 inline constexpr double kLeftOutShareMax = 0.05;
-/// A sensor with at least kLeftOutOneOf items may lose one item, even if one item exceeds kLeftOutShareMax.
+/// One item may be skipped if the sensor has at least kLeftOutOneOf items, even if this exceeds the fraction
+/// kLeftOutShareMax.
 inline constexpr std::size_t kLeftOutOneOf = 5;
 
-/// Returns true if `count` of `all` items may be left out.
+/// Returns whether `count` of `all` items may be skipped as faulty.
 bool may_leave_out(std::size_t count, std::size_t all);
 
-/// LeftOut counts the items of one sensor that a reader leaves out, by cause. LeftOut stores the location of the first
-/// item of each cause.
+/// LeftOut counts the items of one sensor that a reader skips, by cause. LeftOut stores the location of the first item
+/// of each cause.
 class LeftOut {
  public:
-  /// `items` is the plural name of the items, for messages.
+  /// The text `items` is the plural name of the items in messages.
   explicit LeftOut(std::string items) : items_(std::move(items)) {}
 
-  /// Counts an item as faulty. `cause` completes the note "1 of 150 readings is left out: 1 with ...". `error` is the
-  /// message with the location of the item. If too many items are faulty, require_few() throws `error`.
+  /// Counts an item as faulty. The text `cause` completes the note "1 of 150 readings is left out: 1 with ...". The
+  /// text `error` is the message with the location of the item. If too many items are faulty, require_few() throws
+  /// `error`.
   void add(const std::string& cause, const std::string& error);
-  /// Counts an item of a kind whose number is unlimited. An example is the empty reading that a driver publishes for a
-  /// lost reading.
+  /// Counts a skipped item with a cause that may affect any number of items. An example is the empty reading that a
+  /// driver publishes in place of a lost reading.
   void add_unlimited(const std::string& cause, const std::string& error);
   /// Calls `read`, and counts an item with faulty values if `read` throws BadInput.
   template <class Read>
@@ -47,10 +49,10 @@ class LeftOut {
   }
 
   std::size_t count() const { return faulty_ + unlimited_; }
-  /// Throws BadInput with the first error if more items are faulty than may be left out. `kept` is the number of items
-  /// that remain.
+  /// Throws BadInput, with the message of the first faulty item, if too many items are faulty. The parameter `kept` is
+  /// the number of remaining items.
   void require_few(std::size_t kept) const;
-  /// Returns a note for the user, or "" if no item was left out.
+  /// Returns a note for the user about the skipped items, or "" if no item was skipped.
   std::string note(std::size_t kept) const;
 
  private:
@@ -65,15 +67,16 @@ class LeftOut {
   std::size_t faulty_ = 0, unlimited_ = 0;
 };
 
-/// Returns for each stamp whether to keep it, so that the kept stamps increase. The function drops as few stamps as
-/// possible (longest increasing subsequence); of several choices, it keeps early stamps. If there are at least ten
-/// stamps, a first or last stamp may also be dropped. The first or last stamp is dropped if its distance from the
-/// remaining stamps exceeds their duration. A few stamps at either end are dropped if the gap also exceeds a day.
-/// Stamps from before a clock was set cause gaps of more than a day. O(N log N), or O(N) for stamps that increase.
+/// Returns for each time stamp whether to keep it, so that the kept time stamps increase. The function drops as few
+/// time stamps as possible (longest increasing subsequence); of several choices, it keeps early time stamps. If there
+/// are at least ten time stamps, the first or last may also be dropped. The first or last time stamp is dropped if its
+/// distance from the others exceeds the duration of the others. A few time stamps at either end are dropped if the gap
+/// to the others also exceeds a day. Gaps of more than a day occur when a clock is set. The cost is O(N log N), or O(N)
+/// if all time stamps increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
-/// Removes the elements of `rows` for which `kept` is false. A list of another length, for data that the sensor lacks,
-/// stays unchanged.
+/// Removes the elements of `rows` for which `kept` is false. A list of another length is unchanged, because it contains
+/// data that the sensor lacks.
 template <class Row>
 void keep_rows(const std::vector<bool>& kept, std::vector<Row>& rows) {
   if (rows.size() != kept.size()) return;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Removes blanks around a number and a plus sign in front of it.
+/// Removes the blanks around a number and the plus sign in front of the number.
 std::string_view bare_number(std::string_view text) {
   while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
   while (text.ends_with(' ') || text.ends_with('\t') || text.ends_with('\r')) text.remove_suffix(1);
@@ -24,8 +24,8 @@ bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Splits "1.5e3" into the digits "15" and the power of ten of the last digit, 2. Returns false if the text is no
-/// decimal number.
+/// Splits a decimal number such as "1.5e3" into the digits "15" and the power of ten of the last digit, 2. Returns
+/// false if the text is not a decimal number.
 bool split_decimal(std::string_view text, std::string& digits, int& power) {
   constexpr int kPowerMax = 400;
   power = 0;
@@ -42,7 +42,7 @@ bool split_decimal(std::string_view text, std::string& digits, int& power) {
   return all_digits(digits);
 }
 
-/// Parses "2011-09-26 13:02:25.964389445", with a blank or T between date and time.
+/// Parses a date such as "2011-09-26 13:02:25.964389445", with a blank or T between date and time.
 std::optional<std::int64_t> date_ns(std::string_view text) {
   constexpr std::size_t kSecond = 17;
   constexpr int kHours = 24, kMinutes = 60;

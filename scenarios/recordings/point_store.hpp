@@ -10,15 +10,15 @@
 
 namespace tumble::scenarios {
 
-/// PointStore contains the points of one lidar on disk. Each column of a sim::LidarRecord is one file. The record
-/// itself then has no points.
+/// PointStore contains the points of one lidar on disk. Each column of the sim::LidarRecord is one file. The lidar
+/// record in memory then has no points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)
       : position_L_m(folder), range_m(folder), intensity(folder), offset_ns(folder), ring(folder) {}
 
   std::size_t size() const { return position_L_m.size(); }
-  /// Moves the points of `record` to the end of the files. Throws BadInput like ScratchFile.
+  /// Moves the points of `record` from memory to the end of the files. Throws BadInput like ScratchFile.
   void take(sim::LidarRecord& record);
 
   ColumnFile<Eigen::Vector3f> position_L_m;
@@ -27,8 +27,8 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a record with a single sweep of the lidar. The points come from `lidar`, or from `aside` if `aside` is not
-/// null.
+/// Returns a lidar record that contains only the sweep with number `sweep`. The points come from `lidar`, or from disk
+/// (`aside`) if `aside` is not null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

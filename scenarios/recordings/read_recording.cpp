@@ -13,10 +13,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// RecordingReader is an archive that reads every field from an HDF5 group.
+/// RecordingReader visits every field of a recording and reads it from an HDF5 group.
 class RecordingReader {
  public:
-  /// `scratch` is the folder for columns that are not kept in memory.
+  /// The folder `scratch` receives the columns that are stored on disk.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -85,7 +85,7 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// files of other programs lack the digest
+  /// Files of other programs may lack the digest.
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:
@@ -93,7 +93,7 @@ class RecordingReader {
   std::filesystem::path scratch_;
 };
 
-/// `Columns` is ContactColumns or StoredContacts.
+/// The type `Columns` is ContactColumns or StoredContacts.
 template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),

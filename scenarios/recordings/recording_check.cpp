@@ -17,7 +17,7 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// The tolerance accepts rotations and quaternions written with few digits, but not a wrong component order.
+/// The tolerance accepts rotations and quaternions with few digits, but rejects a wrong order of components.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -25,7 +25,7 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// Returns a description of the problem unless all lengths equal the first.
+/// Describes the problem if an array has another length than the first array; otherwise returns an empty text.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
@@ -58,13 +58,13 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
-/// Checks rows that a sensor may lack.
+/// Checks the length of an array that may be empty if the sensor lacks the data.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
   return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
 }
 
-/// Names must be UTF-8 without control characters, because tables show them.
+/// Names must be UTF-8 text without control characters, because tables show the names.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -77,8 +77,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : fmt::format("{} must be UTF-8 text without control characters", name);
 }
 
-/// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and their
-/// differences may overflow.
+/// Checks that the times count from the start of the recording. Times beyond three years belong to another clock, and
+/// their differences may overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -120,7 +120,7 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   return "";
 }
 
-/// Returns the first problem that `judge(row, index)` reports.
+/// Returns the first problem that `judge(row, index)` finds in the rows, or an empty text.
 template <class Row, class Judge>
 std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;
@@ -155,7 +155,7 @@ std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& of
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
-/// `points` is the record itself, or the record's points on disk.
+/// The argument `points` is the lidar record if its points are in memory, or the PointStore with its points on disk.
 template <class Points>
 std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
@@ -176,7 +176,7 @@ std::string column_problem(const std::string& name) {
   return "the name must consist of letters, digits and _, and must not be empty";
 }
 
-/// Checks the unique names of a sensor's quantities or constants.
+/// Checks that a sensor's quantities or constants have unique, valid names.
 template <class Record>
 std::string names_problem(const std::string& list, const std::vector<Record>& records) {
   std::set<std::string> names;
@@ -189,7 +189,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   return problem;
 }
 
-/// Checks readings or the truth of readings.
+/// Checks the quantities of a sensor's readings, or of their truth.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
   std::string problem = names_problem("quantities", quantities);
@@ -221,7 +221,7 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
       {text_problem("name", series.name), pose_problem("T_BX", series.T_BX), quantities_problem(series.quantities)});
 }
 
-/// Returns how the structure of a sensor's readings differs from the structure of their truth.
+/// Describes how the columns of a sensor's readings differ from the columns of their truth.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
   if (truth.quantities.empty()) return "";  // a reference has no quantities
   if (truth.quantities.size() != series.quantities.size())
@@ -234,12 +234,12 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions also accept both types.
+/// The argument `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions also accept both types.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
-       // a reference may contain only poses, or also rates
+       // A reference may contain only poses, or poses and rates.
        optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
        length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
                        {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
@@ -254,7 +254,7 @@ std::string imu_truth_problem(const Imu& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  // id -1 means unknown, and -2 means the robot's own cage
+  // The surface id -1 means unknown, and -2 means the robot's cage.
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }
@@ -382,7 +382,7 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    // find_problem ensured that the last entry of sweep_first is the number of points
+    // The function find_problem ensured that the last entry of sweep_first is the number of points.
     const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),

@@ -11,19 +11,20 @@
 
 namespace tumble::scenarios {
 
-/// Returns a description of an inconsistency, for example "sensors/imus/0: gyro has 5 rows, time_ns 6". Returns an
+/// Describes an inconsistency of a recording, for example "sensors/imus/0: gyro has 5 rows, time_ns 6". Returns an
 /// empty text if the recording is consistent. The function checks lengths, periods, calibrations (rotations), sweep
-/// order, labels and surface ids. The readings are not checked, because the estimator reports NaN, gaps and time order.
-/// `points` has one store per lidar if the points are on disk, else `points` is empty.
+/// order, labels and surface ids. The function does not check the readings, because the estimator reports NaN, gaps and
+/// wrong time order. The list `points` has one PointStore per lidar if the points are on disk; otherwise the list is
+/// empty.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 std::string find_problem(const StoredTruth& truth);
 
-/// Returns whether a file states a digest of its sensor data, which allows the reader to detect damage. Files of other
+/// Returns whether a file contains a digest of its sensor data, with which the reader detects damage. Files of other
 /// programs may lack the digest. Throws BadInput like the readers of recording_file.hpp.
 bool states_digest(const std::filesystem::path& path);
 
-/// Returns how the structure of the truth differs from the sensors, or an empty text if the truth matches.
+/// Describes how the structure of the truth differs from the sensors; returns an empty text if the truth matches.
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

@@ -9,23 +9,24 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// recording_fields.hpp lists all fields of a recording except the truth (truth_fields.hpp), with the names, units and
-/// columns of FORMAT.md. Writer, reader and digest are archives that visit this list, so no archive can omit a field.
-/// Used only within scenarios/recordings.
+/// The header recording_fields.hpp lists all fields of a recording except the truth (truth_fields.hpp), with the names,
+/// units and columns of FORMAT.md. Writer, reader and digest visit the same list of fields, so none of them can omit a
+/// field.
 ///
-/// An archive has the members value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
-/// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
-/// record, fields). The members optional_rows, optional_point, optional_list and point_times are for later additions to
-/// the format. An addition that is empty, zero or has the default value "measured" is neither stored nor hashed, so
-/// that older files keep their digests. The rows of a field are a std::vector, or a ColumnFile if points are on disk.
+/// A visitor of the fields (an archive) has the members value(name, text | double | int64), pose(name, isometry),
+/// point(name, vector, unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records,
+/// fields) and group(name, record, fields). The members optional_rows, optional_point, optional_list and point_times
+/// visit fields that later versions of the format added. An added field is neither stored nor hashed if it is empty,
+/// zero or "measured", so that older files keep their digests. The rows of a field are a std::vector, or a ColumnFile
+/// if the points are on disk.
 namespace tumble::scenarios {
 
-/// Storage selects how rows are stored in the file. Rows are deflated if measurements showed a smaller file. The
-/// noise-like floats of a lidar are plain (FORMAT.md).
+/// Storage selects how rows are stored in the file. Rows are compressed by deflate if measurements showed a smaller
+/// file. The noise-like floats of a lidar are not compressed (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// StoredLidar is a lidar with its points on disk, for the lists of fields. A StoredLidarView contains const
-/// references.
+/// StoredLidar is a lidar record with its points on disk, as the lists of fields need it. A StoredLidarView contains
+/// const references.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;
@@ -34,12 +35,12 @@ struct StoredLidarView {
   const sim::LidarRecord& sweeps;
   const PointStore& points;
 };
-/// Pairs each lidar of `sensors` with its points on disk, in order.
+/// Pairs each lidar record of `sensors` with its points on disk, in order.
 std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
 
 inline constexpr const char* kXyz = "x y z";
 
-/// kPointTimes contains the values of the attribute `point_times`, in the order of the enumeration.
+/// kPointTimes contains the possible values of the attribute `point_times`, in the order of the enumeration.
 inline constexpr std::array<const char*, 3> kPointTimes = {"measured", "not_skewed", "unknown"};
 
 template <class Archive, class Imu>
@@ -80,7 +81,8 @@ void point_fields(Archive& archive, Points& points) {
   archive.rows("ring", points.ring, "1", "", Storage::deflated);
 }
 
-/// Visits the sweeps and points of a lidar. The points are in the record or on disk (`lidar.sweeps`, `lidar.points`).
+/// Visits the fields of a lidar's sweeps and points. The points are in the lidar record or on disk (`lidar.sweeps`,
+/// `lidar.points`).
 template <class Archive, class Lidar>
 void lidar_fields(Archive& archive, Lidar& lidar) {
   if constexpr (requires { lidar.sweeps; }) {
@@ -112,7 +114,8 @@ void series_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Visits the fields of all sensors. `lidars` is either sensors.lidars or views of these lidars.
+/// Visits the fields of all sensors. The argument `lidars` is either sensors.lidars or a list of views with points on
+/// disk.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);

@@ -8,10 +8,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kHead_bytes is the overhead of an object or attribute without its text; kFile_bytes is that of the file.
+/// kHead_bytes is the size of an object or attribute without its content; kFile_bytes is the size of an empty file.
 constexpr std::uint64_t kHead_bytes = 4096, kFile_bytes = std::uint64_t{1} << 20;
 
-/// SizeBound is an archive that sums the maximum size of each field.
+/// SizeBound visits every field of a recording and sums the maximum sizes.
 class SizeBound {
  public:
   std::uint64_t bytes = kFile_bytes;

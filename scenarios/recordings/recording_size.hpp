@@ -6,10 +6,10 @@
 
 #include "scenarios/recordings/recording_file.hpp"
 
-/// Used only within scenarios/recordings.
+/// The function size_bound computes how much disk space a recording needs.
 namespace tumble::scenarios {
 
-/// Returns an upper bound of a recording's file size [bytes]. The size bound assumes uncompressed numbers, full chunks
+/// Returns an upper bound of the file size of a recording [bytes]. The bound assumes uncompressed numbers, full chunks
 /// and large headers.
 std::uint64_t size_bound(const RecordingInfo& info, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                          const sim::Truth* truth);

@@ -14,8 +14,8 @@ struct ImportOption {
   std::string name, value;
 };
 
-/// RepairableInput is the error for a recording that can be read with another value of one option. The error message
-/// also names this option.
+/// RepairableInput is the exception for a recording that can be read with another value of one import option. The error
+/// message also names this option.
 class RepairableInput : public BadInput {
  public:
   RepairableInput(const std::string& message, ImportOption repair) : BadInput(message), repair_(std::move(repair)) {}

@@ -37,7 +37,7 @@ constexpr int kLinksMax = 40;  // the system's limit
   fail(path, std::generic_category().message(error));
 }
 
-/// RAII file descriptor.
+/// Descriptor owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -59,7 +59,7 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Resolves symbolic links, including dangling links.
+/// Returns the path after following all symbolic links, including links to missing files.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -80,7 +80,7 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// Throws BadInput if the output is within an input folder, at any depth, because inputs must not be modified.
+/// Throws BadInput if the output is within an input folder, at any depth, because the program must not modify inputs.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);
@@ -95,15 +95,15 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   }
 }
 
-/// Returns the part of a temporary file's name that identifies the writing process: ".tumble-HOST-PID.".
+/// Returns the part of a temporary file's name that identifies the process that writes it: ".tumble-HOST-PID.".
 std::string process_mark(const std::string& pid) {
   std::array<char, 17> host{};  // longer names are cut
   if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes the temporary files of processes on this computer that no longer exist, as after SIGKILL. The function looks
-/// into each folder once per process.
+/// Removes the temporary files of processes on this computer that were killed by SIGKILL. The function examines each
+/// folder once per process.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;
@@ -162,7 +162,7 @@ void OutputFile::move_into_place() {
   Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(given_, errno);
   if (const std::optional<struct stat> old = status_of(place_)) {
-    // the target may have changed in the meantime
+    // The target of the rename may have changed since the first check.
     require_replaceable(given_, place_);
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
@@ -172,7 +172,7 @@ void OutputFile::move_into_place() {
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
-  // the file system may report a full disk only here
+  // Some file systems report a full disk only when a file is flushed or closed.
   if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
   if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
   moved_ = true;

@@ -9,15 +9,15 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// replace_file.hpp writes output atomically: to a temporary file next to the final path, which is then renamed. Only
-/// regular files are replaced.
+/// The classes in replace_file.hpp write output atomically: to a temporary file next to the final path, which is then
+/// renamed. The rename replaces only regular files.
 namespace tumble::scenarios {
 
-/// OutputFile is a file under construction next to its final path. OutputFile is removed unless it is moved to its
-/// final path, even if a signal ends the program (unfinished.hpp). After SIGKILL, a temporary file remains; the next
-/// process that writes to the folder removes it. OutputFile follows symbolic links. An existing target must be a
-/// writable regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason (missing
-/// folder, no permission, disk full, a device, a pipe).
+/// OutputFile is an unfinished output file next to its final path. The temporary file is removed unless it is moved to
+/// the final path, even if a signal ends the program (unfinished.hpp). After SIGKILL, the temporary file remains until
+/// the next process writes to the folder. OutputFile follows symbolic links. An existing target must be a writable
+/// regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no
+/// permission, disk full, a device, a pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -25,7 +25,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Returns the temporary path, for libraries that write to a named file.
+  /// Returns the path of the temporary file, for libraries that write to a named file.
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
   /// Flushes the file to disk and renames it, so that the final path always has the complete old or new file.
@@ -37,10 +37,10 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// OutputFolder is the folder for the files of one output. The output folder must be missing or empty, so that old
-/// files are not mistaken for new files. Throws BadInput if the output folder is not empty. Unless kept, the content of
-/// the folder is removed, even if a signal ends the program. If OutputFolder created the folder, the folder is also
-/// removed.
+/// OutputFolder is a folder for all files of one output. The folder must be missing or empty, so that users do not
+/// mistake old files for new files. Throws BadInput if the folder is not empty. Unless the output is complete, the
+/// content of the folder is removed, even if a signal ends the program. If OutputFolder created the folder, the folder
+/// is also removed.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);
@@ -59,7 +59,7 @@ class OutputFolder {
   bool made_ = false, kept_ = false;
 };
 
-/// Writes `bytes` with an OutputFile.
+/// Writes `bytes` to a file atomically, with an OutputFile.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-/// scratch_file.hpp stores data temporarily on disk if they exceed the memory.
+/// The classes in scratch_file.hpp store data temporarily on disk if the data would exceed the memory.
 namespace tumble::scenarios {
 
-/// Returns the nearest existing folder of an output path, so that temporary data are on the disk of the output.
+/// Returns the nearest existing folder of an output path, so that temporary data are on the same disk as the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// ScratchFile is an unnamed file that grows at its end and disappears with the object or the process. Throws BadInput
-/// with the folder and the system's reason (missing folder, no permission, disk full).
+/// ScratchFile is an unnamed temporary file that grows at its end and disappears with the object or the process. Throws
+/// BadInput with the folder and the system's reason (missing folder, no permission, disk full).
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -43,8 +43,8 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// A ColumnFile is a column of a recording in a ScratchFile, read and written in segments like a std::vector<Row>. The
-/// column stays empty if there is no folder.
+/// ColumnFile is a column of a recording in a ScratchFile, which is read and written in parts. Without a folder, the
+/// column must remain empty.
 template <class Row>
 class ColumnFile {
  public:
@@ -56,13 +56,13 @@ class ColumnFile {
   void read(std::size_t first, std::span<Row> rows) const {
     if (!rows.empty()) file_->read(first * sizeof(Row), std::as_writable_bytes(rows));
   }
-  /// Returns the rows from `first` to `last` - 1.
+  /// Reads the rows from `first` to `last` - 1.
   std::vector<Row> rows(std::size_t first, std::size_t last) const {
     std::vector<Row> out(last - first);
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for segments of `length` rows. The final segment may be shorter.
+  /// Calls `take(first, rows)` for consecutive parts of `length` rows. The last part may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;
@@ -72,7 +72,7 @@ class ColumnFile {
       take(first, std::span<const Row>(rows));
     }
   }
-  /// Calls `change(row)` for each row and stores the result.
+  /// Calls `change(row)` for each row and stores the changed rows.
   template <class Change>
   void change(Change&& change) {
     constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);

@@ -13,7 +13,7 @@
 
 namespace tumble::scenarios {
 
-/// Contacts by column.
+/// StoredContacts contains the true contacts as columns on disk.
 struct StoredContacts {
   ColumnFile<std::int64_t> time_ns;
   ColumnFile<Eigen::Vector3d> point_W_m, normal_W, slip_velocity_W_m_s;
@@ -42,10 +42,10 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// StoredTruth is a sim::Truth on disk. The lists of rows are columns of scratch files. All other members are those of
-/// sim::Truth.
+/// StoredTruth is a sim::Truth whose rows are in scratch files. Each list of rows is a ColumnFile. The other members
+/// are those of sim::Truth.
 struct StoredTruth {
-  /// Returns the body states from row `first` to row `last` - 1. The returned truth contains the mountings and
+  /// Returns the true body states from row `first` to row `last` - 1. The returned truth contains the mountings and
   /// `p_BG_m`, but neither sensors nor contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }

@@ -33,18 +33,18 @@ std::vector<std::string> split(const std::string& line, char separator) {
   while (begin <= line.size()) {
     std::size_t end = line.find(separator, begin);
     if (end == std::string::npos) end = line.size();
-    // consecutive blanks act as one separator
+    // Several consecutive blanks act as one separator.
     if (separator != ' ' || end > begin) cells.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
   return cells;
 }
 
-/// kLineMax is the longest line; a pose with covariance has less than a thousand bytes. The limit protects the memory
-/// from files without line ends and from endless devices.
+/// kLineMax is the longest accepted line; a pose with covariance has less than a thousand bytes. The limit protects the
+/// memory from files without line ends and from endless devices.
 constexpr std::size_t kLineMax = 1 << 20;
 
-/// Reads a line like std::getline. Throws BadInput for a line longer than kLineMax.
+/// Reads a line of a file, like std::getline. Throws BadInput for a line longer than kLineMax.
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
   line.clear();
   auto& bytes = *file.rdbuf();
@@ -153,7 +153,7 @@ std::int64_t Table::integer(const Row& row, std::size_t column) const {
 }
 
 std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
-  // seconds since 1970 with nine decimals exceed the precision of a double
+  // Seconds since 1970 with nine decimals exceed the precision of a double.
   const std::optional<std::int64_t> time_ns = parse_time_ns(row.cells[column], 9);
   if (!time_ns) fail(row, column, "a time in seconds");
   return *time_ns;

@@ -12,11 +12,12 @@
 namespace tumble::scenarios {
 
 /// TableWriter writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header
-/// line). Doubles are restored exactly when read. Time stamps are integers or seconds with nine decimals.
+/// line). Doubles are restored exactly when read. Time stamps are written as integers, or as seconds with nine
+/// decimals.
 class TableWriter {
  public:
-  /// An empty `header` is not written. Throws BadInput if the file cannot be opened. The function `close` replaces an
-  /// existing file. A table that is not closed is discarded.
+  /// Opens a table file; an empty `header` is not written. Throws BadInput if the file cannot be opened. The function
+  /// `close` replaces an existing file with the table. A table that is not closed is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);

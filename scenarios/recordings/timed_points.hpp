@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns whether each point has its own measured time. If points have no measured times, their times are derived from
-/// the sweep.
+/// Returns whether the points of a lidar have individually measured times. If point times are not measured, they are
+/// derived from the sweep.
 inline bool has_timed_points(const sim::LidarRecord& lidar) {
   return lidar.point_times == sim::PointTimes::measured;
 }

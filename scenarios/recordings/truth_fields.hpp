@@ -8,8 +8,7 @@
 #include "scenarios/recordings/recording_fields.hpp"
 #include "sim/recording.hpp"
 
-/// truth_fields.hpp lists all truth fields of a recording, for the archives of recording_fields.hpp. Used only within
-/// scenarios/recordings.
+/// The header truth_fields.hpp lists all truth fields of a recording, for the visitors in recording_fields.hpp.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -17,7 +16,7 @@ template <>
 struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
 }  // namespace hdf5
 
-/// Contacts by column.
+/// ContactColumns contains the true contacts as columns.
 struct ContactColumns {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> point_W_m, normal_W, slip_velocity_W_m_s;
@@ -71,7 +70,8 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Visits the fields of the truth. `contacts` contains truth.contacts by column; truth.contacts itself is not visited.
+/// Calls the archive with all fields of the truth. The argument `contacts` contains the contacts of the truth as
+/// columns; truth.contacts is not visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// Entry is the path of an incomplete output. The field `owner` is written last and cleared first.
+/// Entry is the path of an incomplete output, in static storage. The field `owner` is written last and cleared first.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};
@@ -29,14 +29,15 @@ struct Entry {
   std::array<char, kPathBytes> path{};
 };
 
-// signal handlers may use only static storage
+// A signal handler may use only static storage.
 std::array<Entry, kPlaces> entries;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal handler must not wait for a lock");
 
 std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and the signal received meanwhile
 
-/// Listed is a directory record of getdents64; readdir allocates memory, which is not allowed in a signal handler.
+/// Listed is a directory record of the system call getdents64, because readdir allocates memory, which a signal handler
+/// must not do.
 struct Listed {
   std::uint64_t inode;
   std::int64_t next;
@@ -45,7 +46,7 @@ struct Listed {
   char name[1];
 };
 
-/// Empties a folder, and continues after errors.
+/// Removes the content of a folder, and continues after errors.
 void remove_contents(int folder, int depth) {
   alignas(Listed) std::array<char, 2048> listed;
   for (long got = 1; got > 0;) {
@@ -86,7 +87,7 @@ extern "C" void remove_and_end(int number) {
     if (entry.owner.load() == getpid()) remove_entry(entry);
   }
   errno = error;
-  // the default effect of the signal applies after this handler returns and the signal is unblocked
+  // The default effect of the signal occurs after this handler returns and the signal is unblocked.
   struct sigaction usual = {};
   usual.sa_handler = SIG_DFL;
   sigaction(number, &usual, nullptr);
@@ -97,7 +98,7 @@ extern "C" void remove_and_end(int number) {
 
 Unfinished::Unfinished(const std::filesystem::path& path, Kind kind) {
   std::error_code ignored;
-  // the absolute path is independent of later changes of the working folder
+  // An absolute path is independent of later changes of the working folder.
   const std::string absolute = std::filesystem::absolute(path, ignored).string();
   if (ignored || absolute.size() >= kPathBytes) return;
   for (int place = 0; place < kPlaces; ++place) {

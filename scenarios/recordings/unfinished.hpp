@@ -3,30 +3,30 @@
 
 #include <filesystem>
 
-/// unfinished.hpp removes incomplete outputs when a signal ends the process.
+/// The classes in unfinished.hpp remove incomplete outputs when a signal ends the process.
 namespace tumble::scenarios {
 
-/// Unfinished is an incomplete file or folder. During the object's lifetime, a signal of `remove_unfinished_on_signals`
-/// removes the file, or the folder with its content. Only the process that created the object removes the path, not its
-/// child processes.
+/// Unfinished registers an incomplete file or folder for removal. If a signal of `remove_unfinished_on_signals` arrives
+/// during the object's lifetime, the file, or the folder with its content, is removed. Only the process that created
+/// the object removes the path, and not its child processes.
 class Unfinished {
  public:
   enum class Kind { file, folder, contents };  ///< contents: an existing folder that itself remains
   Unfinished() = default;
-  /// Signals do not remove paths longer than 4095 bytes, and remove at most 64 paths.
+  /// Registers a path; signals remove at most 64 paths, with at most 4095 bytes each.
   Unfinished(const std::filesystem::path& path, Kind kind);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
-  /// Keeps the path from now on.
+  /// Ends the registration, so that signals no longer remove the path.
   void keep();
 
  private:
   int place_ = -1;
 };
 
-/// SignalsWait blocks the signals of `remove_unfinished_on_signals` during the object's lifetime. SignalsWait protects
-/// a new path that has no Unfinished object yet.
+/// SignalsWait delays the signals of `remove_unfinished_on_signals` during the object's lifetime. SignalsWait protects
+/// a new path that is not yet registered with Unfinished.
 class SignalsWait {
  public:
   SignalsWait();
@@ -35,8 +35,9 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// Installs the signal handlers. SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have
-/// their usual effect. The handlers are async-signal-safe: they only make system calls on static storage.
+/// Installs handlers for the signals SIGINT, SIGTERM and SIGHUP, unless they are ignored. The handlers remove
+/// incomplete outputs; the signals then have their usual effect. The handlers are async-signal-safe: they only make
+/// system calls on static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-/// whole_seconds.hpp splits time stamps into whole seconds and nanoseconds.
+/// The header whole_seconds.hpp splits time stamps into whole seconds and nanoseconds.
 namespace tumble::scenarios {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Writer is an archive that writes every field to an HDF5 group.
+/// Writer visits every field of a recording and writes it to an HDF5 group.
 class Writer {
  public:
   explicit Writer(hdf5::Group group) : group_(std::move(group)) {}

@@ -6,9 +6,9 @@
 
 namespace tumble::scenarios {
 
-/// BinnedMetric is a metric over the samples whose measure `axis` is in [low, high), with a name such as
-/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Binned metrics are plotted as a curve over
-/// the measure and appear in no table.
+/// BinnedMetric is a metric over the samples whose quantity `axis` is in [low, high), for example
+/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". The limit `high` may be infinite. Reports plot binned metrics as a
+/// curve over the quantity `axis`; tables omit binned metrics.
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
   std::string axis;  ///< "clip_depth_rad_s"; ends in its unit, as metrics do
@@ -16,7 +16,8 @@ struct BinnedMetric {
   std::string name() const;
 };
 
-/// Parses the name of a binned metric. Returns nothing if the text is no binned metric.
+/// Parses the name of a binned metric, such as "rate_error_median_rad_s@clip_depth_rad_s:1:2". Returns nothing if the
+/// text is no binned metric.
 std::optional<BinnedMetric> parse_binned(const std::string& metric);
 
 }  // namespace tumble::scenarios

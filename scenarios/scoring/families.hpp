@@ -5,9 +5,9 @@
 
 #include "scenarios/scoring/score.hpp"
 
-/// families.hpp declares the metrics. Each group of metrics has one source file. A new metric needs a function in the
-/// source file of its group and an entry in the list of that file. A new group of metrics is declared in families.hpp
-/// and added in score.cpp.
+/// The header families.hpp declares all groups of metrics. Each group of metrics has one source file. A new metric
+/// needs a function in the source file of its group and an entry in the list of that file. A new group of metrics is
+/// declared in families.hpp and added in score.cpp.
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
@@ -23,8 +23,7 @@ std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
 std::vector<Metric> health_metrics();       ///< for all kinds: how well the health detects wrong estimates
 
-/// These functions return quantities that are no metrics: costs, motion values, and the quantities from which binned
-/// metrics are computed.
+/// Returns quantities other than metrics: costs, motion values, or the quantities for binned metrics.
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// health_scores.cpp measures whether an estimate is wrong, and whether the health of the estimate reports the error.
+// The metrics in health_scores.cpp measure whether an estimate is wrong, and whether its health reports the error.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -16,12 +16,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kWrongDeviations = 5.0;
-// An estimate is wrong for any covariance if the errors of half of the moving samples exceed a limit. The limits are a
-// rate error of kWrongRateShare times the true rate, and a tilt error of kWrongTilt_rad.
+// An estimate is wrong, independent of its covariance, if more than half of the samples during motion have an error
+// above a limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of
+// kWrongTilt_rad.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr double kMoves_rad_s = 1.0;  // smallest true rate of a sample that counts
 
-/// Errors of the moving samples: in standard deviations, and relative to a limit that applies for any covariance.
+/// Errors contains the errors during motion, in standard deviations, and relative to a limit that is independent of the
+/// covariance.
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -39,8 +41,8 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// The function uses the covariances from before the findings increased them. With increased covariances, a reported
-/// error would not count as wrong.
+/// The function uses the covariances without the increase due to findings (suspected faults). With the increase, an
+/// error that the health reports would not count as wrong.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);
@@ -68,13 +70,14 @@ Errors attitude_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-/// Returns whether a tenth of the errors exceed five standard deviations, or half exceed the limit for any covariance.
+/// Returns whether a tenth of the errors exceed five standard deviations, or half of the errors exceed the limit that
+/// is independent of the covariance.
 bool are_wrong(const Errors& errors, double gross_limit) {
   return quantile(errors.deviations, 0.9) > kWrongDeviations || quantile(errors.gross, 0.5) > gross_limit;
 }
 
-/// Returns whether the error of the last pose exceeds five standard deviations. The function tests the normalised error
-/// of the pose if the metric `pose_nees` applies, and otherwise the position error. Returns an empty result for an
+/// Returns whether the error of the last pose exceeds five standard deviations. The error is the normalised error of
+/// the pose if the metric `pose_nees` applies, and otherwise the position error. Returns an empty result for an
 /// estimate without covariances.
 std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;

@@ -22,7 +22,7 @@ constexpr double kSeenRangeM = 100.0;    // hits farther from the start are not 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "an error at the limit must exceed both tolerances");
 
-// Returns the map points in W after alignment of position and yaw at the start.
+// Returns the map points in W, after alignment of position and yaw at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -34,7 +34,8 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// Returns the true hits of all sweeps on the static world. Hits on the robot's own cage have no surface id.
+// Returns the true points at which the rays of all sweeps hit the static world. Hits on the robot's cage are omitted,
+// because they have no surface id.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -45,8 +46,8 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-// Returns the distances of the finite map points to the true surface, each limited to kErrorLimitM. The true surface
-// must be available.
+// Returns the distance of each finite map point to the true surface, limited to kErrorLimitM. The true surface must be
+// available.
 std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
   for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
@@ -90,7 +91,8 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Returns the fraction of the seen surface that the map covers. Returns nothing without a map or without the true hits.
+// Returns the fraction of the surface seen by the lidar that the map covers. Returns nothing without a map or without
+// the true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
@@ -107,8 +109,8 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// Computes 1 for a failed map, otherwise 0. A method without a map counts as failed. A trajectory without sweeps comes
-// from an external program that builds no map.
+// Computes the metric: 1 for a failed map, otherwise 0. A method without a map counts as failed. A trajectory without
+// sweeps comes from an external program without a map.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

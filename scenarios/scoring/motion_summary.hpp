@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// MotionSummary contains statistics of a simulated motion, for comparing a scenario with a published campaign. The
+/// MotionSummary contains statistics of a simulated motion, to compare a scenario with a published experiment. The
 /// statistics are computed only from the truth.
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last instant above 0.1 m/s or 0.3 rad/s
@@ -28,7 +28,8 @@ struct MotionSummary {
   std::size_t accel_clipped_samples = 0;  ///< samples with a clipped accelerometer axis
 };
 
-/// Summarises a motion in O(N). Throws BadInput if sensors and truth do not belong together or if there is no IMU.
+/// Computes the statistics of a motion in O(N). Throws BadInput if sensors and truth belong to different recordings, or
+/// if there is no IMU.
 MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

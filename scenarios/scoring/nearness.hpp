@@ -12,8 +12,8 @@
 namespace tumble::scenarios {
 
 /// Nearness tests whether any point of a set is within a fixed distance of a query point. The distance test is exact.
-/// Nearness uses a hash of cells as wide as the distance and checks 27 cells per query. Nearness ignores non-finite
-/// points.
+/// The points are stored in cells as wide as the distance, so each query checks 27 cells. Points that are not finite
+/// are ignored.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);

@@ -21,9 +21,9 @@ bool end_error(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Divides the end error by the path length of the body's centre: the centre of a sphere's shell, otherwise the centre
-/// of mass. The path of a sensor that turns around the centre is longer. Relative errors in different frames would
-/// therefore not be comparable.
+/// Divides the end error by the path length of the body's centre: the centre of a sphere, otherwise the centre of mass.
+/// A sensor that turns around the centre has a longer path. Relative errors in different frames are therefore not
+/// comparable.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
@@ -67,8 +67,8 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Returns squared position errors divided by their reported variances, from the start of the motion on. Errors are in
-/// the axes of the covariance, which are the axes of the estimate's world.
+/// Returns squared position errors divided by their reported variances, from the start of the motion on. The errors are
+/// in the axes of the covariance, which are the axes of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

@@ -20,7 +20,7 @@ double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
   return (estimate - reference).norm();
 }
 
-/// Returns the error of the rate's norm, which is independent of frame rotations.
+/// Returns the error of the rate's norm, which is independent of the axes.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -32,8 +32,8 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// Computes a percentile of the estimate's error at clipped samples. For a single axis, only samples with this axis
-/// clipped count.
+/// Computes a percentile of the estimate's rate error at clipped samples. The metric of a single axis uses only samples
+/// in which this axis is clipped.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -45,7 +45,7 @@ bool clipped_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Computes a percentile of the difference between reference and gyro where no axis clips and the body rotates.
+/// Computes a percentile of the difference between reference and gyro, at samples without clipping during rotation.
 template <ErrorOf kError, int kPercent>
 bool reference_error(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
@@ -62,8 +62,9 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variances of the reference rate per axis. The variances follow from the interquartile range of the
-/// difference between reference and unclipped gyro. The difference is assumed normal.
+/// Returns the variance of the reference rate for each axis. The variance follows from the interquartile range of the
+/// difference between reference and unclipped gyro. The difference between reference and gyro is assumed to be normally
+/// distributed.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -79,7 +80,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// Computes the coverage with the error of the reference included, unlike rate_coverage_3sigma.
+/// Computes the coverage with the error of the reference added to the covariance, unlike rate_coverage_3sigma.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -139,7 +140,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics about the reference describe the reference instead of a method, and are not ranked.
+/// Metrics about the reference describe the reference and no method, so they are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -28,9 +28,9 @@ namespace {
 
 // kHoleMaxShare is the longest accepted gap of an estimate, as a fraction of the recording.
 constexpr double kHoleMaxShare = 0.2;
-// kAnsweredMin is the minimum fraction of gyro samples with an estimated rate.
+// kAnsweredMin is the smallest accepted fraction of gyro samples with an estimated rate.
 constexpr double kAnsweredMin = 0.9;
-// An end error below kEndErrorFloorM is never a divergence, even for a short path.
+// An end error below kEndErrorFloorM never counts as a divergence, even for a short path.
 constexpr double kEndErrorFloorM = 1.0;
 
 std::vector<Metric> all_metrics() {
@@ -54,7 +54,7 @@ std::int64_t sensors_start_ns(const sim::Sensors& sensors, Kind kind) {
   return start_ns;
 }
 
-// Returns true if the states cover the recording from `start_ns` on without a long gap.
+// Returns whether the states cover the recording from `start_ns` on without a long gap.
 template <typename State>
 bool reaches(const std::vector<State>& states, std::int64_t start_ns, std::int64_t end_ns) {
   const double hole_max = kHoleMaxShare * static_cast<double>(end_ns);
@@ -84,8 +84,8 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().attitudes, sensors_start_ns(scored.sensors(), Kind::attitude), truth.last_ns());
 }
 
-/// kFarthest_m is the largest plausible distance from the origin. No rolling or tumbling robot travels this far, so a
-/// farther pose is wrong.
+/// kFarthest_m is the largest plausible distance from the origin. A farther pose is wrong, because no rolling or
+/// tumbling robot travels this far.
 constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {
@@ -105,8 +105,8 @@ bool poses_reach_and_hold(Kind kind, const ScoredEstimate& scored) {
          poses_hold(scored);
 }
 
-// Returns false if a run that is long enough for the end error has too few registered sweeps. The function returns true
-// for an external trajectory without sweeps, which is judged by its poses.
+// Returns false if too few sweeps are registered in a run that is long enough for the end error. For an external
+// trajectory without sweeps, the function returns true.
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {

@@ -10,19 +10,19 @@
 
 namespace tumble::scenarios {
 
-/// ScoringInput contains the parts of a recording that scoring needs. `surface` may be null; map scores are then
-/// omitted.
+/// ScoringInput contains the parts of a recording that scoring needs. The pointer `surface` may be null; map scores are
+/// then omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
   const sim::Surface* surface = nullptr;
 };
 
-/// ScoredEstimate is an estimate paired with its recording, with a cache of results that several metrics share, such as
-/// paired poses and map distances. ScoredEstimate keeps references to its inputs. ScoredEstimate is not thread-safe.
+/// ScoredEstimate contains an estimate and its recording, with a cache of results that several metrics share, such as
+/// paired poses and map distances. ScoredEstimate stores references to its inputs. ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
-  /// Throws BadInput if sensors or truth are missing.
+  /// Throws BadInput if the sensors or the truth are missing.
   ScoredEstimate(const Estimate& estimate, const ScoringInput& input);
 
   const Estimate& estimate() const { return *estimate_; }
@@ -30,8 +30,8 @@ class ScoredEstimate {
   const sim::Truth& truth() const { return *input_.truth; }
   const sim::Surface* surface() const { return input_.surface; }
 
-  /// Returns `make(*this)`, which is computed at the first call and then cached. `make` must depend only on this object
-  /// and may call once(). If `make` throws, nothing is cached.
+  /// Computes `make(*this)` at the first call, and returns the cached result at later calls. The function `make` must
+  /// depend only on this ScoredEstimate and may call once(). If `make` throws, nothing is cached.
   template <typename Made>
   const Made& once(Made (*make)(const ScoredEstimate&)) const {
     const auto key = reinterpret_cast<void (*)()>(make);  // used as a key, never called

@@ -10,20 +10,21 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// slip_scores.cpp compares the slip and slide events of a position method's contact modes with those of the truth.
+/// The metrics in slip_scores.cpp compare the slip and slide events that a position method detects with the true
+/// events.
 ///
-/// A slip event is an interval of the labels slip and slide. A slip event includes gaps of up to kBridge_ns of grip,
-/// and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event counts if it lasts
-/// at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower events cannot be
-/// distinguished from grip and cause no position error. The scores do not distinguish slip and slide.
+/// A slip event is a time interval with the contact labels slip and slide. The interval may contain up to kBridge_ns of
+/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event is scored if
+/// it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower true events are
+/// indistinguishable from grip and cause no position error. The scores do not distinguish slip and slide.
 ///
-/// An estimated slip event is correct if at least half of it overlaps true events. The overlap test also includes weak
-/// and short true events, and widens each true event by kMargin_ns. A true slip event is detected if correct estimated
-/// events cover at least half of it.
+/// An estimated slip event is correct if true events cover at least half of it. To test whether an estimated event is
+/// correct, the scores also use weak and short true events, and widen each true event by kMargin_ns. A true slip event
+/// is detected if correct estimated events cover at least half of it.
 ///
-/// The position is lost in a true slip event if the horizontal error grows by more than kLost_m from its start to its
-/// end. A true slip event is flagged if the reported horizontal sigma grows by more than kFlagged_m. For position loss
-/// and flag, the slip event is widened by kMargin_ns on either side.
+/// The position is lost in a true slip event if the horizontal error grows by more than kLost_m during the event. The
+/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m. To test for the loss
+/// and its report, the event is widened by kMargin_ns on either side.
 namespace tumble::scenarios {
 
 namespace {
@@ -44,7 +45,7 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-/// Events joins intervals of slip and slide to slip events. The contact labels must be in time order.
+/// Events joins time intervals with slip or slide to slip events. The contact labels must be in time order.
 class Events {
  public:
   void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
@@ -85,7 +86,8 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// Returns the slip intervals of the estimate. A contact label applies from its own time to the time of the next label.
+/// Returns the time intervals in which the estimate detects slip. A contact label applies from its time to the time of
+/// the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
@@ -123,7 +125,7 @@ struct MatchedEvents {
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // The truth of a reference contains only poses, without contact labels.
+  // The truth of a reference instrument contains only poses, without contact labels.
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -170,13 +172,13 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Passed contains position loss and flag of one true slip event.
+/// Passed states for one true slip event whether the position was lost and whether the estimate reported the loss.
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// Returns the true slip events that count and for which the estimate has poses. Returns no events if the estimate has
-/// no covariance.
+/// Returns the scored true slip events during which the estimate has poses. Returns no event if the estimate has no
+/// covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// OffsetFit is a least-squares fit of `behind = offset * change`. The inputs are errors of the estimate and rates of
-/// change of the truth.
+/// OffsetFit fits a time offset by least squares to `behind = offset * change`. The vector `behind` is the error of the
+/// estimate, and `change` is the rate of change of the truth.
 class OffsetFit {
  public:
   /// Adds a pair of values to the fit, unless a value is unknown.
@@ -31,7 +31,7 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Computes the time offset from unclipped samples only. In unclipped samples the gyro measures the rate, so the
+// Computes the time offset from unclipped samples only. At unclipped samples the gyro measures the rate, so the
 // remaining error is a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);

@@ -12,36 +12,36 @@ namespace tumble::scenarios {
 
 /// TruthTrack is the true motion of one frame of the robot at any time of the recording.
 ///
-/// Position is interpolated linearly, and attitude by slerp, between physics samples (0.5 ms apart). At 400 m/s^2 and
-/// 25 rad/s, the interpolation error is below 13 um and 1 urad. The frame has its true mounting, so calibration errors
-/// of the estimator count as errors.
+/// Between physics samples (0.5 ms apart), position is interpolated linearly and attitude by slerp. At 400 m/s^2 and 25
+/// rad/s, the interpolation error is below 13 um and 1 urad. The frame has its true mounting, so an error in the
+/// calibration counts as an error of the estimate.
 class TruthTrack {
  public:
-  /// The body is at rest if its speed and rate are below their limits within kRestWindowS around the time. If no
-  /// position is known, only the rate counts.
+  /// The body is at rest if its speed and rate are below their limits at all times within kRestWindowS. If no position
+  /// is known, only the rate counts.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
 
-  /// Throws BadInput if the truth's arrays differ in length or are empty, or if the truth lacks the frame's sensor.
-  /// Cost: O(number of physics samples).
+  /// Throws BadInput if the arrays of the truth differ in length or are empty, or if the truth lacks the sensor of the
+  /// frame. The cost is proportional to the number of physics samples.
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
-  /// Returns true if the pose is known at this time. The poses of a reference can have gaps.
+  /// Returns whether the pose is known at this time. The poses of a reference can have gaps.
   bool covers(std::int64_t time_ns) const;
-  /// Returns true if the attitude is known at this time. The position may be unknown although the attitude is known.
+  /// Returns whether the attitude is known at this time. The attitude may be known although the position is unknown.
   bool covers_attitude(std::int64_t time_ns) const;
 
   /// Returns the pose of the frame in W and the velocity of its origin, with NaN where the position is unknown. The
-  /// attitude must be known at `time_ns`. Cost: O(1).
+  /// attitude must be known at `time_ns`. The cost is O(1).
   PoseState pose(std::int64_t time_ns) const;
-  /// Returns the angular rate of the frame in its own axes [rad/s], with NaN where the rate is unknown. `time_ns` must
-  /// be covered. Cost: O(1).
+  /// Returns the angular rate of the frame, in axes of the frame [rad/s], with NaN where the rate is unknown. The
+  /// attitude must be known at `time_ns`. The cost is O(1).
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
-  /// Returns the path length of the frame's origin since time 0 [m]. `time_ns` must be covered.
+  /// Returns the path length of the frame's origin since time 0 [m]. The pose must be known at `time_ns`.
   double path_m(std::int64_t time_ns) const;
-  /// Returns true if the body is stationary around the instant. `time_ns` must be covered.
+  /// Returns whether the body is at rest around the time `time_ns`. The pose must be known at `time_ns`.
   bool at_rest(std::int64_t time_ns) const;
 
  private:
@@ -79,7 +79,7 @@ struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
 
-  /// Returns the alignment that moves the pose `estimate` to the position and heading of `truth`.
+  /// Computes the alignment that moves the pose `estimate` to the position and heading of `truth`.
   static Alignment at(const PoseState& estimate, const PoseState& truth);
   Eigen::Isometry3d transform() const;
   PoseState apply(const PoseState& pose) const;
@@ -91,11 +91,11 @@ double twist_about_z_rad(const Eigen::Quaterniond& q);
 /// Returns the angle of a rotation in [0, pi], accurate for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
-/// Returns the horizontal part of the attitude error phi in the estimate's world. The attitude error is defined by
-/// q_true = Exp(phi) q, up to heading.
+/// Returns the horizontal part of the attitude error phi, in the estimate's world. The attitude error phi is defined by
+/// q_true = Exp(phi) q, after alignment of the heading.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
-/// PairedTrack contains poses of an estimate paired with the truth, aligned at the first pose for which the truth is
+/// PairedTrack contains the poses of an estimate with the true poses, aligned at the first pose for which the truth is
 /// known. The list of pairs is empty if the truth is unknown at all poses.
 struct PairedTrack {
   Alignment alignment;

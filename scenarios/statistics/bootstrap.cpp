@@ -22,26 +22,26 @@ namespace {
 
 constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs six values: 2 / 2^5 > 5 %
 
-// Double precision is sufficient for ranks and three times as fast as long double.
+// Double precision is sufficient for the ranks, and three times as fast as long double.
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 double middle_of(double below, double above) {
   return below == above ? below : 0.5 * (below + above);
 }
 
-/// Returns the median of a sorted sample.
+/// Returns the median of a sorted list of values.
 double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Returns the acceleration from the jackknife, statistics.md (S3). The acceleration is zero for an even sample size,
-/// because removing a value leaves two possible medians equally often.
+/// Computes the acceleration of the BCa interval by the jackknife, equation (S3) of statistics.md. For an even number
+/// of values, the acceleration is zero, because removing one value leaves two possible medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // The list contains the medians that remain after one value is removed, with their counts. The removed value is above
-  // the median, below the median, or the median itself.
+  // The list contains the medians after one value is removed, each with its count. The removed value is above the
+  // median, below the median, or the median itself.
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};
@@ -61,8 +61,8 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
-  // Equation statistics.md (S1) gives the lower middle of n uniform numbers. Equation (S1) also gives the next
-  // larger number, conditional on the lower middle.
+  // Equation (S1) of statistics.md gives the lower middle of n uniform random numbers. Equation (S1) also gives the
+  // next larger number, given the lower middle.
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;
@@ -98,7 +98,7 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   const auto [first, last] = std::equal_range(medians.begin(), medians.end(), median);
   const auto count = static_cast<double>(medians.size());
   const double below = static_cast<double>(first - medians.begin()) + 0.5 * static_cast<double>(last - first);
-  // Bias correction and interval ends follow statistics.md (S2) and (S4).
+  // Equations (S2) and (S4) of statistics.md give the bias correction and the ends of the interval.
   const boost::math::normal normal;
   const double z0 = quantile(normal, std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const double a = acceleration(sorted);

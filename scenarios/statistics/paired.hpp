@@ -4,31 +4,31 @@
 #include <cstdint>
 #include <span>
 
-/// paired.hpp tests paired results of two methods on the same simulated runs. Each p-value is the probability of a
-/// result at least as extreme as the observed result if the methods do not differ. Differences that are NaN or zero are
-/// ignored. Infinite differences (one method failed) rank highest.
+/// The functions in paired.hpp test the paired results of two methods on the same simulated runs. The p-value is the
+/// probability of a result at least as extreme as the observed result, if the methods do not differ. Differences that
+/// are NaN or zero are ignored. Infinite differences (one method failed) get the highest ranks.
 namespace tumble::scenarios {
 
 /// Above kExactPairsMax differences, the signed-rank test uses the normal approximation.
 inline constexpr std::size_t kExactPairsMax = 100;
 
 /// Returns the one-sided p-value of the signed-rank test (Wilcoxon, Biometrics Bulletin 1, 1945), equation (S5) of
-/// statistics.md. The p-value is small if the differences tend to be positive. Equal magnitudes get their mean rank. Up
-/// to `kExactPairsMax` differences, the distribution is exact, also with equal magnitudes, in O(n^3) time and O(n^2)
-/// memory. Above `kExactPairsMax` differences, the distribution is normal with corrections for ties and continuity,
+/// statistics.md. The p-value is small if the differences tend to be positive. Differences of equal magnitude get the
+/// mean of their ranks. For up to `kExactPairsMax` differences, the p-value is exact, in O(n^3) time and O(n^2) memory.
+/// For more differences, the normal distribution with corrections for ties and continuity approximates the p-value,
 /// equation (S6). Returns 1 if there are no differences.
 double signed_rank_chance(std::span<const double> differences);
 
-/// Returns the two-sided p-value of the signed-rank test: twice the smaller tail, but at most 1.
+/// Returns the two-sided p-value of the signed-rank test: twice the smaller one-sided p-value, but at most 1.
 double signed_rank_test(std::span<const double> differences);
 
-/// Returns the p-value of the exact two-sided sign test (binomial), statistics.md (S7).
+/// Returns the p-value of the exact two-sided sign test (binomial), equation (S7) of statistics.md.
 double sign_test(std::span<const double> differences);
 
 /// Returns the p-value of the exact two-sided test of paired failures (McNemar, Psychometrika 12, 1947, in its binomial
-/// form), statistics.md (S7). `only_first` is the number of simulated runs on which only the first method
-/// failed. `only_second` is the number of runs on which only the second method failed. Throws BadInput for a negative
-/// count.
+/// form), equation (S7) of statistics.md. The count `only_first` is the number of simulated runs on which only the
+/// first method failed. The count `only_second` is the number of runs on which only the second method failed. Throws
+/// BadInput for a negative count.
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second);
 
 }  // namespace tumble::scenarios

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-/// sample_size.hpp computes how many pairs a test needs in total if the true effect equals the observed effect. The
-/// observed effect of a test is uncertain. If the observed difference is due to chance, the computed number of pairs is
-/// too small.
+/// The functions in sample_size.hpp compute how many pairs a test needs to detect an effect that is as large as the
+/// observed effect. The observed effect is uncertain. If the observed effect is due to chance, the computed number of
+/// pairs is too small.
 namespace tumble::scenarios {
 
 struct Plan {
@@ -15,9 +15,9 @@ struct Plan {
 };
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
-/// (S11) of statistics.md. The formula assumes that the fraction of zero differences stays as observed. The returned
-/// number of pairs is at least the minimum that can be significant. The number of pairs is infinite if the differences
-/// have no tendency. Cost: O(n log n). Throws BadInput for an invalid plan.
+/// (S11) of statistics.md. The formula assumes that the fraction of zero differences does not change. The returned
+/// number of pairs is at least the minimum that can be significant. The number of pairs is infinite if positive and
+/// negative differences are balanced. The cost is O(n log n). Throws BadInput for an invalid plan.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of

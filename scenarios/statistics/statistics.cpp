@@ -25,7 +25,7 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// RankPlace is the position of a quantile in a sorted sample: between two neighbouring values, or at one value.
+/// RankPlace is the position of a quantile in a sorted list: between two neighbouring values, or at one value.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -34,7 +34,7 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // Infinities are not interpolated: a position above minus infinity, or exactly at a value, returns the value.
+    // An infinite value is returned without interpolation.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -105,7 +105,7 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // The function sorts only four ranks to avoid a full sort.
+  // The function sorts only four ranks, to avoid the cost of a full sort.
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());
@@ -134,7 +134,7 @@ Interval share_interval(std::int64_t count, std::int64_t total) {
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);
-  // The Clopper-Pearson interval is statistics.md (S24).
+  // Equation (S24) of statistics.md gives the Clopper-Pearson interval.
   return {k / n, count == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, kTail),
           count == total ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, kTail)};
 }

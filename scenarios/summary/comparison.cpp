@@ -42,8 +42,8 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// Returns the simulated runs on which each method has a value or failed. Failed runs are omitted if the metric has no
-/// worst value.
+/// Returns the pairs of values on all simulated runs on which each method has a value or failed. Failed runs are
+/// omitted if the metric has no worst value.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -55,12 +55,12 @@ std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& o
   return pairs;
 }
 
-/// Returns the difference of two values, or 0 if both runs failed.
+/// Returns the difference `own` minus `other`, or 0 if both runs failed.
 double less(double own, double other) {
   return own == other ? 0.0 : own - other;
 }
 
-/// Returns, for each pair, how much worse the method is than the margin allows.
+/// Returns for each pair how much worse the method is, minus the margin.
 std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<ValuePair>& pairs) {
   std::vector<double> out;
   for (const ValuePair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
@@ -138,8 +138,8 @@ class Comparing {
     out_.metrics.push_back(std::move(row));
   }
 
-  /// Compares failures on the simulated runs of both methods. `seeds` contains all seeds, and `failed` the seeds of
-  /// failed runs. The lists `seeds` and `failed` are ascending.
+  /// Compares the failures of two methods on their common simulated runs. The list `seeds` contains all seeds, and the
+  /// list `failed` contains the seeds of failed runs. Both lists are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -185,8 +185,8 @@ class Comparing {
     return found->second;
   }
 
-  /// Returns the sample size plan of one test in a table. The risk is divided by the number of tests (Holm's bound for
-  /// the smallest p-value).
+  /// Returns the risk and power for the sample size of one test in a table. The risk is divided by the number of tests
+  /// (Holm's bound for the smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

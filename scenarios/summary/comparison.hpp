@@ -9,20 +9,20 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// comparison.hpp compares two methods on the same simulated runs: size and significance of the difference
-/// (docs/maths/statistics.md).
+/// The functions in comparison.hpp compare two methods on the same simulated runs: size and significance of the
+/// difference (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Margin is the largest accepted deficit of a method (non-inferiority margin). The margin is in the metric's unit, or
-/// a fraction of the reference method's value on the same simulated run.
+/// Margin is the largest accepted deficit of a method (non-inferiority margin). The margin is in the unit of the
+/// metric, or a fraction of the reference method's value on the same simulated run.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The difference is negative if
-/// `own` is worse by less than the margin. A negative margin requires an improvement. The difference is infinite if
-/// only `own` belongs to a failed run, and 0 if both runs failed.
+/// Returns how much worse the value `own` is than `other` on a simulated run, minus the margin. The result is negative
+/// if `own` is worse by less than the margin. A negative margin requires an improvement. The result is infinite if only
+/// `own` belongs to a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
@@ -44,7 +44,7 @@ struct Contest {
   std::string method, against;
 };
 
-/// Returns true if both comparisons have one scenario, one kind and one reference method.
+/// Returns whether two comparisons have the same scenario, kind and reference method.
 inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
@@ -56,8 +56,8 @@ struct MetricComparison {
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target, the
-  /// differences are between distances from the target (`how_bad`).
+  /// The member `difference` is the median of the paired differences, method minus reference, with its BCa interval.
+  /// For a metric with a target, each difference is between two distances from the target (`how_bad`).
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` corrected by Holm over all metrics of the comparison
@@ -68,8 +68,8 @@ struct MetricComparison {
   double pairs_needed = 0.0;  ///< number of pairs for the risk divided by the number of tests; may be infinite
 };
 
-/// FailureComparison compares the failures of two methods. A simulated run fails if its status is not ok or a verdict
-/// fails. A failed run counts as a failed verdict.
+/// FailureComparison compares the failures of two methods. A simulated run fails if its status is not ok or a pass-fail
+/// metric is 1. A failed run also counts as a failure in each pass-fail metric.
 struct FailureComparison {
   Contest contest;
   std::string what;  ///< "not ok", "map_failed"
@@ -85,9 +85,10 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Compares the methods in the order of the summary's sections. Costs and other unranked metrics are compared only if
-/// the caller names them, and give no finding. Throws BadInput for methods or metrics that the results do not contain;
-/// the message suggests the nearest name. Throws BadInput also for a risk, power or margin out of range.
+/// Compares the methods of a summary with their reference methods, in the order of the summary's sections. Costs and
+/// other unranked metrics are compared only if the caller names them, and give no finding. Throws BadInput for methods
+/// or metrics that the results do not contain; the message suggests the nearest name. Throws BadInput for a risk, power
+/// or margin out of range.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

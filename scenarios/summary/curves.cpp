@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// The measures in kDrawMeasures sort whole simulated runs into bins (scenarios/sweep/motion_values.hpp).
+/// The quantities in kDrawMeasures sort whole simulated runs into bins (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
@@ -35,8 +35,8 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds a score by its metric. The function tries index `place` first, because the method's previous run had the
-  /// score at this index, and updates `place`.
+  /// Finds the score of a metric. The function first tries the index `place`, because the score of the method's
+  /// previous run had this index, and updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -46,10 +46,10 @@ struct Run {
   }
 };
 
-/// Runs contains the runs of one kind and scenario at one setting, by method, sorted by seed.
+/// Runs contains the outcomes of one kind and scenario at one setting, by method, sorted by seed.
 using Runs = std::map<std::string, std::vector<Run>, std::less<>>;
 using RunsBySetting = std::map<std::tuple<std::string, std::string, Kind>, std::map<double, Runs>>;
-/// PickedRuns is a selection of runs, by method.
+/// PickedRuns is a selection of outcomes, by method.
 using PickedRuns = std::map<std::string, std::vector<const Run*>>;
 
 /// Use contains cached properties of a metric.
@@ -111,8 +111,8 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Returns true if any method has a value of the metric on the simulated run `seed`. If no method has a value, failures
-/// on this run are ignored.
+/// Returns whether any method has a value of the metric on the simulated run `seed`. If no method has a value of the
+/// metric, failures on the run are ignored.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -146,7 +146,7 @@ bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const 
   return !ranked.empty() || point.failed > 0;
 }
 
-/// Adds one point to each line of a curve.
+/// Adds one point per method to the lines of a curve.
 void add_place(const PickedRuns& runs, const std::string* metric, const CurvePoint& place, Curve& curve) {
   for (const auto& [method, own] : runs) {
     CurvePoint point = place;
@@ -165,7 +165,8 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the stored copy of a metric name. The function adds the name if no score has it.
+/// Returns the stored copy of a metric's name. If no score has the name, the function adds the name to the stored
+/// names.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -193,12 +194,12 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins contains bins by axis and metric, in ascending order. Each bin has its full metric name.
+/// Bins contains bins by quantity and metric, in ascending order. Each bin has the full name of its metric.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-/// Returns the bins of all measures for which any run has a value. Registered bins without samples are included, so
-/// that a curve shows where samples are missing.
+/// Returns the bins of all quantities for which any run has a value. Bins without samples are included, so that a curve
+/// shows where samples are missing.
 Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {
@@ -237,8 +238,8 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Sorts simulated runs into bins of equal counts by a measure. Each bin contains the median of the measure and
-/// ascending seeds.
+/// Sorts simulated runs into bins of equal counts by a quantity of the run. Each bin contains the median of the
+/// quantity, and its seeds in ascending order.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {
@@ -246,7 +247,7 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // Runs without clipping have no position on a clipping axis.
+      // Runs without clipping have no position on an axis for clipping.
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

@@ -10,11 +10,11 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// curves.hpp computes curves of a metric over a varied number or a measure of the simulated runs.
+/// The functions in curves.hpp compute curves: a metric over a varied number, or over a quantity of the simulated runs.
 namespace tumble::scenarios {
 
-/// CurvePoint is one method at one x value of a curve, summarised over the simulated runs. Failed outcomes rank worst,
-/// so quantiles may be infinite. Quantiles are NaN if no run has a value.
+/// CurvePoint summarises one method at one x value of a curve, over all simulated runs. Failed runs rank worst, so a
+/// quantile may be infinite. Quantiles are NaN if no run has a value.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"; empty for a set number
@@ -30,7 +30,7 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// Source is the meaning of x: a number that the suite varies, a measure of binned samples, or a measure of whole
+  /// Source is the meaning of x: a number that the suite varies, a quantity of binned samples, or a quantity of whole
   /// simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
@@ -39,18 +39,19 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// For binned samples: the labels of all bins of the measure, including empty bins. The point x belongs to bins[x -
+  /// For binned samples, the list `bins` contains the labels of all bins, including empty bins. The point x belongs to
+  /// bins[x -
   /// 1].
   std::vector<std::string> bins = {};
 };
 
-/// Returns every curve in the results. Each scenario and headline metric has a curve for each varied number. Each
-/// measure with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve. Each clipping measure of the
-/// simulated runs has a curve with at least three bins of equal counts. A run counts as failed if its status is not
-/// `ok` or its map failed. Cost: O(number of scores * log).
+/// Computes every curve for which the results contain data. Each scenario and headline metric (first in the report) has
+/// a curve for each varied number. Each quantity with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve.
+/// Each clipping quantity of the simulated runs has a curve with at least three bins of equal counts. In a curve, a run
+/// counts as failed if its status is not `ok` or its map failed. The cost is O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
-/// Returns every curve from the results and the motion values `draws`. The function also computes `summary`, in a
-/// single pass over the results.
+/// Computes every curve from the results and the motion values `draws`. The function also computes `summary` in the
+/// same pass over the results.
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

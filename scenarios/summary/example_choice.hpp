@@ -9,10 +9,10 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// example_choice.hpp chooses which simulated runs of a sweep are shown as examples, from the results only.
+/// The functions in example_choice.hpp choose which simulated runs of a sweep become examples, from the results alone.
 namespace tumble::scenarios {
 
-/// ExampleCandidate is a scenario of the sweep, in the suite's order.
+/// ExampleCandidate is a scenario of the sweep, in the order of the suite.
 struct ExampleCandidate {
   std::string scenario, robot;
 };
@@ -24,17 +24,17 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the simulated run with the median headline score of the scenario's baseline. The headline score is the first
-/// headline metric with a value, of the first kind of method except attitude. Returns false if there is no headline
-/// score.
+/// Finds the simulated run on which the baseline of the scenario has its median headline score. The headline score is
+/// the first headline metric with a value, of the first kind of method except attitude. Returns false if there is no
+/// headline score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
-/// Returns at most `count` typical simulated runs, in the order of the candidates. The first scenario of each robot
-/// comes first, then the second scenario of each robot, and so on.
+/// Returns at most `count` typical simulated runs, in the order of the candidate scenarios. The first scenario of each
+/// robot comes first, then the second scenario of each robot, and so on.
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// FailedOn is a simulated run on which methods failed.
+/// FailedOn is a simulated run on which at least one method failed.
 struct FailedOn {
   ExampleDraw draw;
   std::size_t methods = 0;  ///< failed methods that need no truth
@@ -44,15 +44,16 @@ struct FailedOn {
 /// and seed.
 std::vector<FailedOn> rank_failures(const Summary& summary);
 
-/// Returns the first `count` failed runs among the scenarios of the candidates. Runs on which only oracles failed are
-/// omitted.
+/// Returns the first `count` failed runs among the scenarios of the candidates. Runs on which only methods with true
+/// input failed are omitted.
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
 /// Returns the scored outcomes of a simulated run, without points of curves.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// Returns a digest of the shown outcomes and their build. An example with a different digest belongs to other results.
+/// Returns a digest of the outcomes in an example and of their build. A stored example with another digest belongs to
+/// other results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 
 }  // namespace tumble::scenarios

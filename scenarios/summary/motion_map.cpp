@@ -11,14 +11,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// kMargin is the margin of the grid around the points of the simulated runs, in decades.
+/// The grid extends beyond the points of the simulated runs by kMargin decades.
 constexpr double kMargin = 0.25;
 
 struct Decades {
   double rate, force;
 };
 
-/// GridAxis is one axis of the grid, with numbers in decades.
+/// GridAxis is one axis of the grid, in decades.
 struct GridAxis {
   double low = 0.0, step = 1.0;
   double width = 0.0;  ///< kernel width in cells
@@ -46,8 +46,8 @@ GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) 
   return axis;
 }
 
-/// Returns the weights that distribute the runs of one cell over its grid row. Weight beyond the ends of the grid row
-/// is redistributed.
+/// Returns the weights that distribute the runs of one cell over its grid row. The weight beyond the ends of the row is
+/// distributed over the row.
 std::vector<double> kernel(std::size_t from, double width) {
   std::vector<double> weights(kCells);
   double sum = 0.0;
@@ -78,7 +78,7 @@ std::vector<double> smoothed(const std::vector<double>& counts, const GridAxis& 
   return out;
 }
 
-/// Returns every n-th point, so that at most `kPointsMax` points remain.
+/// Returns every n-th point, with the smallest n that leaves at most `kPointsMax` points.
 std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   const std::size_t stride = (points.size() + MotionMap::kPointsMax - 1) / MotionMap::kPointsMax;
   std::vector<MotionPoint> out;

@@ -8,7 +8,7 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// motion_map.hpp computes the distribution of a sweep's simulated runs over maximum rate and maximum specific force.
+/// The function motion_map computes the distribution of simulated runs over maximum rate and maximum specific force.
 namespace tumble::scenarios {
 
 /// MotionPoint contains the maximum true rate of the body and the maximum unclipped specific force of the primary IMU
@@ -17,14 +17,14 @@ struct MotionPoint {
   double rate_rad_s = 0.0, force_m_s2 = 0.0;
 };
 
-/// MotionCloud contains the simulated runs of one scenario.
+/// MotionCloud contains the points of one scenario's simulated runs.
 struct MotionCloud {
   std::string scenario;
   std::size_t draws = 0;            ///< runs with both numbers above 0
   std::vector<MotionPoint> points;  ///< at most `kPointsMax` of them, evenly spaced in draw order
 };
 
-/// PublishedExtreme contains maxima that a published campaign reports; NaN means not reported.
+/// PublishedExtreme contains the maxima that a publication reports; NaN means that a maximum is not reported.
 struct PublishedExtreme {
   std::string campaign, source;
   double rate_rad_s, force_m_s2;
@@ -41,10 +41,10 @@ struct MotionMap {
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Counts simulated runs in cells, then smooths the counts along both axes by a Gaussian of Scott's width in
-/// logarithms, with a width of at least half a cell. Scott's width is sigma n^(-1/6) (Multivariate Density Estimation,
-/// 1992, section 6.3). The part of a kernel beyond the grid is redistributed. The two maxima of a run need not occur at
-/// the same time. Cost: O(draws + cells^(3/2)).
+/// Computes the density of the runs: counts in cells, smoothed along both axes by a Gaussian of Scott's width in
+/// logarithms (at least half a cell). Scott's width is sigma n^(-1/6) (Multivariate Density Estimation, 1992, section
+/// 6.3). The part of a kernel beyond the grid is distributed over the grid. The maximum rate and the maximum force of a
+/// run may occur at different times. The cost is O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

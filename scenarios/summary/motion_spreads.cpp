@@ -14,12 +14,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Over states which values a quantity is computed from: one value per run, the fraction of runs with a property, or
+/// Over states from which values a quantity is computed: one value per run, the fraction of runs with a property, or
 /// all clipped samples of all runs.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// Quantity is a quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024)
-/// and the project's target. The plot shades the range from `low` to `high`; equal values give a line.
+/// Quantity is a quantity with published values: the experiment with the tumbling rig (32 tumbles down a hill, ICRA
+/// 2024), and the target of this project. The plot shades the range from `low` to `high`; if both are equal, the plot
+/// shows a line.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -50,9 +51,9 @@ constexpr std::array kQuantities = {
              Over::share_of_draws},
 };
 
-/// Returns the mean weighted by the number of clipped samples in each run, with its 95 % interval. The method is the
-/// ratio estimator of a cluster sample (Cochran, Sampling Techniques, 1977, section 9A.2), because samples within a run
-/// are correlated.
+/// Returns the mean of a metric over the runs, weighted by the number of clipped samples, with its 95 % interval. The
+/// method is the ratio estimator of a cluster sample (Cochran, Sampling Techniques, 1977, section 9A.2), because
+/// samples within a run are correlated.
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // number of samples, and fraction with the property
   double samples = 0.0, hits = 0.0, square = 0.0;

@@ -8,17 +8,18 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// motion_spreads.hpp compares simulated motions with the published campaign of the tumbling rig.
+/// The functions in motion_spreads.hpp compare simulated motions with the published experiment with the tumbling rig.
 namespace tumble::scenarios {
 
-/// Spread is one quantity of one scenario over its simulated runs. Simulated runs without a value are omitted.
+/// Spread contains the values of one quantity over the simulated runs of one scenario. A Spread omits simulated runs
+/// without a value.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< text about the published value; empty if none
-  /// Limits of the published range in `unit`; equal limits mean one number, and NaN means no published value.
+  /// The published range in `unit` has two limits; equal limits mean one number, and NaN means no published value.
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< from SI to `unit`
@@ -27,15 +28,15 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// kPublishedMotion is the source of the `published` values. The report shows kPublishedMotion after the words
+/// kPublishedMotion is the source of the `published` values. The report displays kPublishedMotion after the words
 /// "compared with".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
-/// Returns one spread per quantity and scenario, with scenarios in the order of the simulated runs. For a fraction of
-/// runs ("draws that clip the gyro"), the value of each run is 0 or 1. The median is then the fraction of runs, and the
-/// quantiles are the limits of its 95 % interval. For a fraction of all clipped samples, each run is weighted by its
-/// number of clipped samples.
+/// Computes one Spread per quantity and scenario, with the scenarios in the order of the simulated runs. For a fraction
+/// of runs ("draws that clip the gyro"), the value of each run is 0 or 1. The median in the Spread is then the fraction
+/// of runs, and the quantiles are the limits of its 95 % interval. For a fraction of all clipped samples, each run is
+/// weighted by its number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -19,13 +19,13 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in a method's name, for example "rate" for "rate/tumble", or an empty text.
+/// Returns the kind in the name of a method, for example "rate" for "rate/tumble", or an empty text.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
 }
 
-/// Throws BadInput for a metric that cannot rank two methods of this kind.
+/// Throws BadInput if the metric cannot rank two methods of this kind.
 void require_contest(const std::string& metric, const std::string& kind) {
   const MetricInfo& info = metric_info(metric);
   const auto all = metrics();
@@ -44,7 +44,7 @@ void require_contest(const std::string& metric, const std::string& kind) {
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// AnswerPairs contains pairs of values by scenario, then by seed.
+/// AnswerPairs contains the pairs of values by scenario, then by seed.
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
@@ -69,7 +69,7 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Evaluates the interim analyses in order until one of them gives an answer.
+/// Evaluates the interim analyses of one scenario in order, until one of them gives an answer.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));

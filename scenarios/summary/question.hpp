@@ -9,11 +9,11 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// question.hpp stops a sweep over scenarios early. While simulated runs complete, the functions test whether one
-/// method is better than another (docs/maths/statistics.md, "Sequential test").
+/// The functions in question.hpp can stop a sweep (many simulated runs of several scenarios) early. During the sweep,
+/// they test whether one method is better than another (docs/maths/statistics.md, "Sequential test").
 namespace tumble::scenarios {
 
-/// kQuestionNote is the key of the note that stores the question as text, written by `describe`.
+/// kQuestionNote is the key under which the results database stores the question, as text from `describe`.
 inline constexpr const char* kQuestionNote = "until";
 
 /// Question asks whether `method` is better than `against` in `metric` by more than the margin.
@@ -26,10 +26,10 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which the results are analysed, ascending. The last interim analysis is after the sweep's
-  /// last seed.
+  /// Returns the seeds after which an interim analysis tests the results, ascending. The last interim analysis is after
+  /// the last seed of the sweep.
   std::vector<std::uint64_t> look_seeds() const;
-  /// Returns the question as one line of text. Equal questions give equal lines.
+  /// Returns the question as one line of text. Equal questions give the same line.
   std::string describe() const;
 };
 
@@ -43,20 +43,20 @@ struct Answer {
 };
 
 /// Throws BadInput for equal methods, methods of two kinds, methods without a full name, or an unranked metric. Throws
-/// BadInput also for a margin or risk out of range, or if there is no interim analysis.
+/// BadInput for a margin or risk out of range, or if there is no interim analysis.
 void require_sound(const Question& question);
 
-/// Stores the question in the results. Throws BadInput if the results contain a different question or any simulated
-/// runs, because the risk is valid only for a question asked in advance.
+/// Stores the question in the results database, before the first simulated run. Throws BadInput if the database
+/// contains another question or any run, because the risk is valid only for a question asked in advance.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// Returns the answers of the interim analyses up to `last_seed`, in the order of the question's scenarios. All
+/// Computes the answers of the interim analyses up to `last_seed`, in the order of the question's scenarios. All
 /// simulated runs up to `last_seed` must be complete. The answers depend only on the results up to `last_seed`. Failed
 /// runs rank worst.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
-/// Returns the finding in words. For example, "not by the margin" means that the method is not better by more than the
-/// margin.
+/// Describes the finding of an answer in words. For example, "not by the margin" means that the method is not better by
+/// more than the margin.
 const char* finding_text(const Answer& answer, const Question& question);
 
 bool all_answered(const std::vector<Answer>& answers);

@@ -36,7 +36,7 @@ Seeds every_nth(const Seeds& seeds, std::size_t most) {
   return out;
 }
 
-/// Calls `visit` with the indices of the kept seeds.
+/// Calls `visit` with the index of each seed that is also in `kept`.
 template <typename Visit>
 void for_kept(const Seeds& kept, const Seeds& seeds, Visit visit) {
   auto at = kept.begin();
@@ -53,7 +53,7 @@ Seeds of_kept(const Seeds& kept, const Seeds& seeds) {
   return out;
 }
 
-/// Copies only the values and failures of kept seeds, which are usually a small part.
+/// Copies only the values and failures of the seeds in `kept`, which are usually a small part.
 MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
   MethodSummary out{method.method,
                     method.needs_truth,

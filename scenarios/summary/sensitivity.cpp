@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Scored contains the scores of the simulated runs in one table row, as values and as badness.
+/// Scored contains the scores of the simulated runs for one metric, as values and as badness.
 struct Scored {
   std::vector<std::uint64_t> seeds;
   std::vector<double> values, badness;
@@ -24,9 +24,9 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
   if (info.unit == Unit::verdict) out.centre = Centre::share;
   for (const RankedValue& each : ranked_values(metric, worst_value(info))) {
     out.seeds.push_back(each.seed);
-    // For a verdict, a failed run counts as a failed verdict.
+    // In a pass-fail metric, a failed run counts as a failure.
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
-    // Larger values of verdicts and costs count as worse.
+    // Larger values of pass-fail metrics and costs count as worse.
     const bool contested = info.sense != Sense::none;
     out.badness.push_back(contested ? how_bad(info, each.value) : each.value);
   }
@@ -43,7 +43,7 @@ Scored failures(const MethodSummary& method) {
   return out;
 }
 
-/// Computes the median of the score over the quarter of the runs with the lowest numbers, and over the quarter with the
+/// Computes the median score over the quarter of the runs with the lowest numbers, and over the quarter with the
 /// highest numbers.
 void add_quarters(const std::vector<double>& numbers, const std::vector<double>& values, Influence& out) {
   const double low = quantile(numbers, 0.25), high = quantile(numbers, 0.75);
@@ -56,7 +56,7 @@ void add_quarters(const std::vector<double>& numbers, const std::vector<double>&
   out.median_high = quantile(highest, 0.5);
 }
 
-/// Returns the numbers of the runs with these seeds. A missing seed gives NaN.
+/// Returns the random numbers of the runs with the given seeds. A missing seed gives NaN.
 std::vector<double> at_seeds(const std::vector<RankedValue>& numbers, const std::vector<std::uint64_t>& seeds) {
   std::vector<double> column;
   column.reserve(seeds.size());
@@ -77,7 +77,7 @@ std::vector<Influence> influences(const Scored& scored, const NumbersOfDraws& nu
     Influence each{name, rank_correlation(column, ranks), first_order_index(column, ranks)};
     add_quarters(column, scored.values, each);
     each.dependence = partial_dependence(column, scored.values, scored.centre);
-    // Equation statistics.md (S21): each hypothesis has two tests.
+    // Each hypothesis has two tests, equation (S21) of statistics.md.
     chances.push_back(std::min(1.0, 2.0 * std::min(each.correlation.chance, each.first_order.chance)));
     out.push_back(std::move(each));
   }

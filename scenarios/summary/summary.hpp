@@ -19,7 +19,7 @@ inline MetricStyle metric_style(const std::string& metric) {
   return style_of(metric_info(metric).unit);
 }
 
-/// Returns the position of a method in the registry. Unknown methods come last.
+/// Returns the position of a method in the list of registered methods. Unknown methods come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
 /// Wins counts the simulated runs on which one method was better than the baseline, among the runs on which both
@@ -28,9 +28,9 @@ struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// MetricSummary summarises one metric of one method over all simulated runs of a scenario. Only outcomes with status
-/// `ok` have values. Failed outcomes rank worst in median, quantile and pairs, so the median is infinite if half of the
-/// runs fail. Simulated runs for which no method has a value do not count.
+/// MetricSummary summarises one metric of one method over all simulated runs of a scenario. Only outcomes with the
+/// status `ok` have values. Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs
+/// fail. Simulated runs for which no method has a value do not count.
 struct MetricSummary {
   Interval centre{};  ///< median, or share for a verdict; with the 95 % interval
   double quantile_95 = 0.0;
@@ -67,19 +67,19 @@ struct Summary {
   std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
 };
 
-/// RankedValue is the value of one simulated run; a failed run has the worst value.
+/// RankedValue is the value of a metric on one simulated run; a failed run has the worst value.
 struct RankedValue {
   std::uint64_t seed;
   double value;
 };
 
-/// Returns values and failures by ascending seed. If `worst` is NaN, failures are omitted.
+/// Returns the values and failures of a metric, by ascending seed. If `worst` is NaN, failures are omitted.
 std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst);
 
-/// Summarises the results in O(number of scores * log).
+/// Computes statistics of all metrics in the results, in O(number of scores * log).
 Summary summarize(const Results& results);
-/// Summarises the results. The function also passes each unmodified outcome to `beside` while reading, which avoids a
-/// second pass over the results.
+/// Computes statistics of all metrics in the results. The function also calls `beside` with each unmodified outcome,
+/// which avoids a second pass over the results.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

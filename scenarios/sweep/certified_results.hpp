@@ -8,13 +8,13 @@
 
 namespace tumble::scenarios {
 
-/// Returns this build's certificate if `results` or the store contains it, and copies it to `results`. The function
-/// makes no measurement.
+/// Returns the certificate of this build (checks of its simulation) if `results` or the store contains it, and copies
+/// it to `results`. The function makes no measurement, so it may return nothing.
 std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store);
 
-/// Adds this build's certificate to `results` if it is missing. The certificate comes from the store, or is measured
-/// and then saved in the store and in `results`. Returns this build's certificate. If the measurement is interrupted,
-/// the certificate has no entries and is not saved. Throws the exceptions of measure_certificate.
+/// Adds the certificate of this build (checks of its simulation) to `results` if it is missing, and returns it. If the
+/// store lacks the certificate, it is measured and saved in the store. If the measurement is interrupted, the returned
+/// certificate has no entries and is not saved. Throws the exceptions of measure_certificate.
 Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,
                             const CertifyOptions& options);
 

@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Returns the path of the lock file. The path has symbolic links resolved, so that each database has exactly one lock.
+/// Returns the path of the lock file for a database. Symbolic links are followed, so that each database has exactly one
+/// lock file.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);

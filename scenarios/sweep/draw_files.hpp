@@ -11,7 +11,7 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// draw_files.hpp writes the files that the process of a simulated run stores on disk.
+/// The class DrawFiles writes the files of a simulated run that a sweep keeps.
 namespace tumble::scenarios {
 
 /// kDrawCommand is the name of the file with the command that reproduces a kept run.
@@ -27,7 +27,8 @@ struct Keeping {
   bool lidars = false;           ///< any method of the run reads lidars, in this or another task
 };
 
-/// DrawFiles writes the files of a simulated run that is kept. A write error leaves the outcomes of the run unchanged.
+/// DrawFiles writes the recording and the estimates of a simulated run that is kept. A write error does not change the
+/// outcomes of the run.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
@@ -35,12 +36,12 @@ class DrawFiles {
   /// Returns the folder in which a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
   /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written, the
-  /// function removes all files instead. Stored estimates of other methods remain if they were computed from equal
+  /// function instead removes all files. Stored estimates of other methods remain if they were computed from equal
   /// sensor data.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
-  /// Returns the error in one line, or an empty text if there is none.
+  /// Describes the error in one line, or returns an empty text without an error.
   const std::string& error_code() const { return trouble_; }
 
  private:

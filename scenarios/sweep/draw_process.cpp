@@ -45,8 +45,8 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// Writes an estimate to the folder of a run. A write failure leaves the outcome unchanged; KeptDraws::holds detects
-/// the missing file. Returns the error in one line, or an empty text if there is no error.
+/// Writes the estimate of a method to the folder of a simulated run. A write error does not change the outcome;
+/// KeptDraws::holds detects the missing file. Returns the error in one line, or an empty text if there is no error.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -66,7 +66,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // For an external command, the system counts memory from the fork on.
+  // Peak memory is recorded only for built-in methods, because the operating system counts the memory of an external
+  // command from the fork on.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -75,7 +76,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe, and returns false at the deadline.
+// Reads until the process closes its pipe; returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -86,14 +87,14 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Returns true if the method reads lidars. Among built-in methods, only slam methods read lidars. External methods may
-/// read all data that methods of their kind receive.
+/// Returns whether the method reads lidars. Among built-in methods, only slam methods read lidars. An external method
+/// may read all data that methods of its kind receive.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Returns whether the task simulates lidars. Methods of kind `rate` never read a lidar. Kept recordings contain lidars
-/// if any method of the run reads lidars.
+/// Returns whether the simulation of a task needs its lidars. Methods of kind `rate` never read a lidar. A kept
+/// recording contains lidars if any method of the run reads lidars.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -104,7 +105,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// Given is a simulated run with sensor data that a setting modified; empty if there is no setting.
+/// Given is a simulated run whose sensor data a setting has changed; empty without a setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -130,17 +131,18 @@ Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, OutcomeStatus
   return outcome;
 }
 
-/// Reports that the scenario and seed cannot be drawn or simulated on any machine.
+/// Reports that the scenario cannot be simulated with this seed on any machine.
 void reject(const DrawTask& task, const std::exception& error, int fd) {
   write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
-/// Assigns `status` to each method of a simulated run that could not be produced.
+/// Reports the outcome `status` for each method of a run that could not be simulated or read.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// MadeDraw is a simulated or recorded run. The run includes the true surface for map scores if a method builds maps.
+/// MadeDraw is a run that was simulated or read from a recording. The member for map scores is the true surface, if a
+/// method builds maps.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -165,8 +167,8 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Simulates or reads the run and reports its motion values. On failure, the function reports the reason and returns
-/// null.
+/// Simulates the run, or reads it from a recording, and reports its motion values. On failure, the function reports the
+/// reason and returns null.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -186,8 +188,8 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// Runs one method on the sensor data. `given` contains the modified sensor data of the previous method, which are
-/// reused if the settings are equal.
+/// Runs one method on the sensor data of a run. The argument `given` contains the changed sensor data of the previous
+/// method, which are reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -218,7 +220,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  // A child that is killed cannot remove its temporary files.
+  // A killed child process cannot remove its temporary files, so its parent removes them.
   const ScratchFolder temporary("run");
   Process process(
       [&](int fd) {
@@ -260,7 +262,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Memory that the simulation freed is returned to the system. Unreturned memory would hide the method's memory use.
+  // The memory that the simulation freed is returned to the operating system. Unreturned memory would hide the memory
+  // use of the method.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the next line without its newline, or nothing if the other end is closed.
+/// Returns the next line from the pipe without its newline, or nothing if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -27,7 +27,7 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// Runs in the worker process, and reads one line per task until an empty line.
+/// Runs in the worker process, and reads one task per line until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   if (!terms.temporary.empty()) setenv("TMPDIR", terms.temporary.c_str(), 1);
@@ -36,8 +36,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // An idle worker must not hold memory of its last draw.
-    // The last message is sent after all destructors. If the process dies before the last message, its death is
-    // assigned to the current task.
+    // The last message of a run is sent after all destructors. If the worker process dies before the last message of a
+    // run, the current task fails.
     write_all(fd, to_line({}));
   }
 }

@@ -19,13 +19,14 @@ struct WorkerTerms {
   double timeout_s;                ///< time limit of a method
   double memory_mib;               ///< memory limit of the worker and of each process that it starts
   bool recordings_unseen = false;  ///< as in SweepOptions
-  /// Folder for temporary files of the worker and its methods, because a killed process cannot remove its own files.
+  /// The folder `temporary` is for temporary files of the worker and its methods, because a killed process cannot
+  /// remove its files.
   std::filesystem::path temporary = {};
 };
 
-/// DrawWorker is a process that executes one simulated run after another. The worker process communicates in lines of
-/// text, so that no state of a run remains for the next run. The worker process ends after `kDrawsPerWorker` runs, or
-/// after a run with a child process that ended abnormally.
+/// DrawWorker is a worker process that executes one simulated run after another. The worker receives tasks and sends
+/// results as lines of text, so that no state of a run remains for the next run. The worker ends after
+/// `kDrawsPerWorker` runs, or after a run in which a child process ended abnormally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;
@@ -33,19 +34,20 @@ class DrawWorker {
   /// Throws std::system_error if no process can be started.
   explicit DrawWorker(const WorkerTerms& terms);
 
-  /// Sends a task that must be complete by `deadline_s` (a time of now_s()). Returns false if the idle worker has died.
+  /// Sends a task to the worker, which must be complete by `deadline_s` (a time of now_s()). Returns false if the idle
+  /// worker process has died.
   bool give(const DrawTask& task, double deadline_s);
 
   bool is_busy() const { return busy_; }
   bool is_late() const { return busy_ && now_s() > deadline_s_; }
-  /// Returns true if the worker may execute another run.
+  /// Returns whether the worker may execute another run.
   bool is_fresh() const { return !busy_ && !spoilt_ && served_ < kDrawsPerWorker; }
   int read_end() const { return process_.read_end(); }
-  /// Returns the current task without the methods that already have results.
+  /// Returns the current task, without the methods that already have results.
   const DrawTask& draw() const { return draw_; }
 
-  /// Appends new messages of the worker to `said`. After the last message of a run, the worker is idle. Returns false
-  /// if the process has ended.
+  /// Appends the new messages of the worker to `said`. After the last message of a run, the worker is idle. Returns
+  /// false if the worker process has ended.
   bool hear(std::vector<Message>& said);
   void kill() { process_.kill(); }
   /// Ends an idle worker process and waits for its end.

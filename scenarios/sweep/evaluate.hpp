@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// SimulatedDraw is one simulated run or recording. All outcomes of the run share this struct.
+/// SimulatedDraw is one run, simulated or read from a recording. All outcomes of the run use the same SimulatedDraw.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -26,8 +26,9 @@ struct SimulatedDraw {
 /// read lidars.
 enum class Lidars { simulated, left_out };
 
-/// Draws the random numbers, builds the situation and simulates it, each once. Without lidars, motion and IMUs are
-/// bit-identical, but the digest differs. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure.
+/// Draws the random numbers of a scenario, builds the situation and simulates it. Without lidars, motion and IMU
+/// readings are bit-identical, but the digest of the recording differs. Throws BadInput, sim::InvalidSituation or
+/// sim::SimulationFailure if the simulation is impossible.
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 
@@ -40,22 +41,23 @@ Subject subject_of(const Scenario& scenario);
 /// Returns the methods that can run on `subject`, in the order of `methods`.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const Subject& subject);
 
-/// Throws BadInput with the reason if a method does not apply to a scenario.
+/// Throws BadInput, with the reason, if a method cannot run on a scenario.
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed. Without an error,
-/// `outcome` stays ok and can be scored. The first score of a method is the estimate's CPU time.
+/// Runs a method on the sensor data of `draw`, and returns the estimate. After an exception or an error status, the
+/// status of `outcome` is failed. Without an error, the status of `outcome` is ok, and the estimate can be scored. The
+/// CPU time of the method becomes the first score.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
-/// Adds verdict and scores of a completed estimate. `surface` may be null.
+/// Adds the status and the scores of a completed estimate to the outcome. The pointer `surface` may be null.
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns the original simulated run with the IMU stamps of `given`. An estimate is compared with the truth of the IMU
-/// sample that has the estimate's stamp, even if the sensor data were modified.
+/// Returns the original simulated run `draw` with the IMU time stamps of `given`. With the time stamps of `given`, each
+/// estimate is compared with the truth of its IMU sample, even if time stamps were changed.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
-/// Returns the CPU time of this process and its finished children [s].
+/// Returns the CPU time of this process and of its finished children [s].
 double process_cpu_s();
 
 }  // namespace tumble::scenarios

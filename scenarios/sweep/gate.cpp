@@ -29,14 +29,14 @@ bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
 }
 
-/// Returns the largest tolerated value of `difference`.
+/// Returns the largest tolerated change of a metric.
 double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   if (!by_difference(info)) return std::log1p(policy.margin);
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change from the accepted value `before` to the new value `now`. The change is a log ratio or a
-/// difference, as the metric states.
+/// Returns the change of a metric from the accepted value `before` to the new value `now`. The description of the
+/// metric states whether the change is a log ratio or a difference.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -45,8 +45,8 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// Returns how bad a value is, for `GatePolicy::worst`. For a fraction, the badness is one minus the value. For a
-/// signed value, the badness is the distance from the target.
+/// Converts a value of a metric to a badness, for the check of the worst run (`GatePolicy::worst`). For a fraction, the
+/// badness is one minus the value. For a signed value, the badness is the distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -57,8 +57,9 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// GatePairs contains pairs of accepted and new values of a metric. Runs without an accepted value are omitted. Runs
-/// that are ok in both results, but without a new value, are in `lost`.
+/// GatePairs contains pairs of accepted and new values of a metric, on the same simulated runs. Runs without an
+/// accepted value are omitted. The count `lost` is the number of runs that are ok in both results, but have no new
+/// value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -76,7 +77,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // Runs that are not ok rank as worst, regardless of their values.
+    // Runs that are not ok rank worst, regardless of their values.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -90,8 +91,8 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-/// Checks that no run is worse than the worst accepted run times `GatePolicy::worst`. The fault message names the
-/// failing run.
+/// Checks that no new value is worse than the worst accepted value times `GatePolicy::worst`. The fault message names
+/// the failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -109,8 +110,9 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests the median of a metric, and adds the shift and any fault to the result. Each metric counts as one statistical
-/// test. Two-sided metrics use twice the smaller p-value.
+/// Tests whether the median change of a metric exceeds the margin, and adds the change and any fault to the result.
+/// Each metric counts as one statistical test. For a two-sided metric, the p-value is twice the smaller one-sided
+/// p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -153,7 +155,8 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// Returns true if a verdict is 1. A verdict of 1 counts as a failure; a verdict that was 0 must stay 0.
+/// Returns whether a pass-fail metric is 1 (a failure) on a run. A pass-fail metric that was 0 in the accepted results
+/// must remain 0.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -200,7 +203,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// Pooled is one metric of a method over all scenarios that have the metric.
+/// Pooled contains one metric of a method, over all scenarios that have the metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -211,7 +214,7 @@ struct Pooled {
   }
 };
 
-/// Returns the metrics of more than one scenario, in the order of the accepted results.
+/// Returns the metrics that more than one scenario has, in the order of the accepted results.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {

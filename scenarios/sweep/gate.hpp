@@ -12,24 +12,24 @@
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// The gate compares results on a suite's fixed seeds with accepted results, for each simulated run.
+/// A gate compares new results of a suite with accepted results, separately for each simulated run.
 ///
-/// A simulated run has equal sensor data in both results, so differences between seeds cancel in each pair. The gate
-/// makes the following checks for each scenario and method of the accepted results.
+/// New and accepted results contain the same simulated runs with equal sensor data, so differences between seeds cancel
+/// in each pair. The gate makes the following checks for each scenario and method in the accepted results.
 ///
-/// Check of outcomes: a run that was ok must be ok again, and no verdict (`map_failed`) may change to 1. Check of
-/// presence: an ok outcome must still have every metric of the accepted outcome.
+/// The check of outcomes requires that a run that was ok is ok again, and that no pass-fail metric (`map_failed`)
+/// changes to 1. The check of presence requires that an ok outcome still has every metric of the accepted outcome.
 ///
-/// Check of the median of each gate metric (metric.hpp, `held_metrics`): the pairs must not become worse by more than
-/// the margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
-/// (`Compared`). The exact signed-rank test (statistics/paired.hpp) is applied to the differences minus the margin.
-/// Metrics with a target are checked on both sides, so a covariance that becomes too small also fails. If the new
-/// results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni).
+/// The check of the median requires that no gate metric (metric.hpp, `held_metrics`) becomes worse by more than the
+/// margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
+/// (`Compared`). The exact signed-rank test (statistics/paired.hpp) tests the differences of the pairs minus the
+/// margin. A metric with a target is checked on both sides, so a covariance that becomes too small also fails. If the
+/// new results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni).
 ///
-/// Check of the median over all scenarios of a method: this test detects shifts that are too small for one scenario.
+/// The check of the median over all scenarios of a method detects shifts that are too small for one scenario.
 ///
-/// Check of the worst run: its value may be at most `worst` times the accepted worst value. The tests of the median
-/// cannot detect single bad runs.
+/// The check of the worst run requires that no value is worse than `worst` times the accepted worst value. The tests of
+/// the median cannot detect a single bad run.
 namespace tumble::scenarios {
 
 /// MethodRun contains the results of one method, in the order of `GateRun::seeds`.
@@ -59,8 +59,8 @@ struct GatePolicy {
   double worst = 2.0;           ///< allowed factor on the accepted worst draw; at least 1
 };
 
-/// Gate contains the accepted results of a suite. The file scenarios/gates/SUITE.yaml states the policy, and SUITE.csv
-/// contains the results. The two files of a gate are kept in git.
+/// Gate contains the accepted results of a suite, and the limits for new results. The file scenarios/gates/SUITE.yaml
+/// contains the limits, and SUITE.csv contains the results. The two files of a gate are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -68,20 +68,20 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Loads the gate of a suite, or a file if `name` ends in ".yaml". The results are in the ".csv" file of equal name.
-/// `described` are external methods (external_method.hpp) that the gate may contain. Throws BadInput with file and line
-/// for an unknown gate, another suite, or empty results; the message for an unknown gate suggests the nearest name.
-/// Throws BadInput also for an unknown key, kind, method, metric or status, a wrong row length, or a number out of
-/// bounds.
+/// Loads the gate of a suite by its name, or from a file if `name` ends in ".yaml". The accepted results are in a
+/// ".csv" file with the same name. The list `described` contains external methods (external_method.hpp) that may occur
+/// in the gate. Throws BadInput with file and line for an unknown gate, another suite, or empty results; the message
+/// for an unknown gate suggests the nearest name. Throws BadInput for an unknown key, kind, method, metric or status, a
+/// wrong row length, or a number out of bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
-/// These functions return the policy and the results of a gate as text that `load_gate` reads. Numbers are restored
+/// Returns the limits or the accepted results of a gate as text that `load_gate` can read. Reading restores all numbers
 /// exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// GateResult is one result of the gate, for one scenario or all scenarios. A GateResult is about one metric, or about
-/// the outcomes of a method (no metric).
+/// GateResult is the result of one check of the gate, for one scenario or all scenarios. A GateResult belongs to one
+/// metric, or to the outcomes of a method (no metric).
 struct GateResult {
   std::string scenario;  ///< empty: all scenarios that have the metric
   Kind kind = Kind::rate;
@@ -97,7 +97,8 @@ struct GateResult {
   bool passes() const { return fault.empty(); }
 };
 
-/// Compares new results with the gate. Throws BadInput if the seeds differ or the accepted results are empty.
+/// Compares new results with the accepted results of the gate. Throws BadInput if the seeds differ or the accepted
+/// results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
 /// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Results without an ok outcome

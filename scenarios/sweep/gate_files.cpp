@@ -38,7 +38,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// GateLine is one line of the gate's table, with its location for error messages.
+/// GateLine is one line in the table of a gate, with its location for error messages.
 struct GateLine {
   const std::string& file;
   int number;

@@ -50,7 +50,7 @@ std::optional<double> badness(const OutcomeView& row, const std::string& metric)
   return std::nullopt;
 }
 
-/// Worst contains the worst runs of one scenario and method, up to a requested number.
+/// Worst contains the worst runs of one scenario and method, up to a maximum number.
 class Worst {
  public:
   void add(double badness, std::uint64_t seed, std::size_t count) {

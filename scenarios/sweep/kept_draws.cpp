@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Converts a file system error to a BadInput with the path.
+/// Converts a file system error to the exception BadInput with the path.
 template <typename Action>
 auto guarded(Action&& action) {
   try {

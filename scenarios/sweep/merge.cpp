@@ -29,7 +29,7 @@ std::string text_of(const Notes& notes, const std::string& key) {
   return found == notes.end() ? std::string() : found->second;
 }
 
-/// Throws BadInput if outcomes come from different programs, models or scenarios, and are therefore not comparable.
+/// Throws BadInput if two databases have outcomes of different programs, models or scenarios, which are not comparable.
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
   const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
                                                          {"data", "was made from models and scenarios"}};
@@ -42,7 +42,8 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// Joins the version notes of external methods with the methods' rows. The merge rejects two versions of one method.
+/// Joins the notes with the versions of external methods when the rows of a database are joined. The merge rejects two
+/// versions of one method.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -55,22 +56,23 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
   }
 }
 
-/// Joins the paths of descriptions and recordings. If two paths conflict, the path of the first input is kept, even if
-/// the path no longer exists.
+/// Joins the notes with the paths of method descriptions and recordings. If two databases contain different paths, the
+/// path in the first database is kept, even if it no longer exists.
 void join_place_notes(const Notes& shard, Results& into) {
   for (const auto& [key, place] : shard) {
     if (is_place_note(key) && into.note(key).empty()) into.set_note(key, place);
   }
 }
 
-/// Joins the commands that produced the rows of the databases.
+/// Joins the notes with the commands that produced the rows of the databases.
 void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   std::string commands = into.note(kCommandNote);
   for (const Notes& own : notes) commands = with_commands(commands, text_of(own, kCommandNote));
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Reads the notes of all inputs before any merge. Only one input database is open at a time.
+/// Reads and checks the notes of all input databases before any rows are joined. Only one input database is open at a
+/// time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {
@@ -80,7 +82,7 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
-/// Returns the keep rule that all inputs share, or an empty text if the rules differ.
+/// Returns the keep rule that all input databases share, or an empty text if the rules differ.
 std::string common_rule(const std::vector<Notes>& notes) {
   const std::string rule = text_of(notes.front(), kKeepNote);
   const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
@@ -125,7 +127,8 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
       }
       for (const Notes& own : notes) join_place_notes(own, results);
       join_command_notes(notes, results);
-      // The merged database keeps the origin of its rows. The program that joined the rows is not recorded.
+      // The merged database keeps the notes on the origin of its rows. The program that joined the rows is not
+      // recorded.
       for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Message is a message from a worker about its current simulated run, one JSON object per line. At most one field of a
-/// message is set. If no field is set, the simulated run is complete.
+/// Message is a message from a worker about its current simulated run; each message is one line with a JSON object. At
+/// most one field of a message is set. If no field is set, the simulated run is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
@@ -19,11 +19,12 @@ struct Message {
   bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 
-/// Returns the message as one line with a newline. Numbers are restored bit-exactly. Non-finite numbers become NaN.
+/// Converts the message to one line with a newline. Finite numbers are restored bit-exactly by from_line. Non-finite
+/// numbers become NaN.
 std::string to_line(const Message& message);
 
-/// Parses a line without its newline. Returns nothing if the line is no message, because the process died while
-/// writing.
+/// Parses the line of a message, without its newline. Returns nothing if the line is not a message, because the process
+/// died while writing.
 std::optional<Message> from_line(const std::string& line);
 
 }  // namespace tumble::scenarios

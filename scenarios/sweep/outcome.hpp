@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Setting is the point of a curve to which a row of the results belongs (variation.hpp): the varied key and its value.
-/// An empty key means an unmodified scenario and unmodified methods.
+/// Setting is one value of a number that a suite varies for a curve (variation.hpp): key and value. An empty key means
+/// an unmodified scenario and unmodified methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -21,7 +21,7 @@ struct Setting {
   auto operator<=>(const Setting&) const = default;
 };
 
-/// Outcome is one row of the results: one method on one simulated run.
+/// Outcome is one row of the results: the result of one method on one simulated run.
 struct Outcome {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -35,8 +35,8 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// DrawValues contains the motion values of one simulated run. Motion values are independent of the methods
-/// (scenarios/scoring/motion_summary.hpp).
+/// DrawValues contains the motion values of one simulated run, such as the peak rate. Motion values are independent of
+/// the methods (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -44,18 +44,19 @@ struct DrawValues {
   Setting setting = {};
 };
 
-/// Returns true if the method completed: its status is ok, diverged or failed.
+/// Returns whether the method completed: its status is ok, diverged or failed.
 bool was_scored(OutcomeStatus status);
 
-/// Returns true if `status` has more information about the method than `other`. A completed run has most information,
-/// then crashed and timeout, then killed.
+/// Returns whether `status` contains more information about the method than `other`. A completed run contains most
+/// information, followed by crashed and timeout, then by killed.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// Returns true if a sweep may repeat a method that ended with this status: crashed, timeout or killed.
+/// Returns whether a sweep may repeat a method that ended with this status: crashed, timeout or killed.
 bool may_run_again(OutcomeStatus status);
 
-/// RejectedDraw is a scenario and seed that cannot be drawn or simulated on any machine. Kind and method of a rejected
-/// run are empty in the database. If a process dies instead, the status of its methods is crashed, timeout or killed.
+/// RejectedDraw is a scenario and a seed with which the simulation is impossible on any machine. In the database, a
+/// RejectedDraw has an empty kind and method. If a process dies instead, the status of its methods is crashed, timeout
+/// or killed.
 struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// SQLite has no NaN, so null is stored instead.
+// SQLite has no NaN, so NaN is stored as null.
 void bind_value(SQLite::Statement& statement, int index, double value) {
   if (std::isnan(value))
     statement.bind(index);

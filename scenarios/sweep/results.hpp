@@ -18,9 +18,9 @@
 
 namespace tumble::scenarios {
 
-/// ScoreRow is one row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without
-/// scores has one row with an empty metric and the value NaN. A rejected run has one row with empty kind and method and
-/// the status `rejected`.
+/// ScoreRow is one row of the database view scores(scenario, seed, kind, method, status, metric, value). An outcome
+/// without scores has one row with an empty metric and the value NaN. A run that could not be simulated has one row
+/// with empty kind and method and the status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -31,21 +31,22 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Rows selects rows of the results: unmodified scenarios and methods, points of curves, or all rows.
+/// Rows selects rows of the results: rows of unmodified scenarios and methods, points of curves, or all rows.
 enum class Rows { plain, curves, all };
 
-/// MergeCounts contains row counts of a merge: added rows, rows that replaced a lower-ranked row, and rows that were
-/// already present.
+/// MergeCounts contains numbers of rows in a merge: added rows, rows that replaced a lower-ranked row, and rows that
+/// existed already.
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
   std::size_t rejected = 0;  ///< number of rejected runs among the added rows
 };
 
-/// Names contains names that many rows share. The reader stores each name once.
+/// Names contains the names that many rows share, such as names of metrics. The reader of a results database stores
+/// each name once.
 using Names = std::set<std::string, std::less<>>;
 
-/// OutcomeView is an outcome while it is read. The pointers are valid until the next outcome; pointers to names remain
-/// valid.
+/// OutcomeView refers to an outcome while the outcome is read. The pointers in an OutcomeView are valid until the next
+/// outcome; pointers to names remain valid.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< in the `Names` of the reader
@@ -61,58 +62,60 @@ struct OutcomeView {
   std::span<const Value> scores;  ///< sorted by name
 };
 
-/// Returns the key of the note with the version of an external method: "method slam/theirs".
+/// Returns the key of the note with the version of an external method, for example "method slam/theirs".
 std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
-/// Results is the results database (SQLite). Rows of the database are unique by (scenario, seed, kind, method,
-/// setting). Storing a row again replaces the old row. Each call of store is one transaction, so that completed results
+/// Results is a results database (SQLite). The database has at most one row for each scenario, seed, kind, method and
+/// setting. Storing a row again replaces the old row. Each call of store is one transaction, so that completed results
 /// survive the end of the process.
 class Results {
  public:
-  /// Mode `join` is `create_or_append` for callers that only use `absorb`. The function `absorb` ensures that each
-  /// score has an outcome, so the database skips this check in mode `join`.
+  /// The mode `join` equals `create_or_append`, for callers that only use `absorb`. In mode `join`, the database does
+  /// not check that each score has an outcome, because `absorb` ensures this.
   enum class Mode { create_or_append, join, read_only };
-  /// Throws BadInput for a missing file (read_only), a file that is no results database, an incomplete schema, another
-  /// build (except read_only; note "build"), or lack of space. All member functions throw BadInput with the path, also
-  /// for stored values that are not numbers.
+  /// Opens a results database; throws BadInput for a missing file (read_only), a file that is no results database, an
+  /// incomplete schema, another build (except read_only; note "build"), or lack of space. All member functions throw
+  /// BadInput with the path, also for stored values that are not numbers.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
 
-  /// Stores an outcome, and removes a rejection of the same scenario and seed. Scores without a name are omitted,
-  /// because `scores()` returns a score without a name for an outcome without scores.
+  /// Stores an outcome, and removes a rejection of the same scenario and seed. Scores without a name are not stored,
+  /// because an empty name marks an outcome without scores.
   void store(const Outcome& outcome);
-  /// Stores a rejection, unless the scenario and seed already have an outcome; then returns false.
+  /// Stores a rejection; returns false if the scenario and seed already have an outcome.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
-  /// Stores a certificate, which replaces an existing certificate of its build.
+  /// Stores a certificate (checks of the simulation), which replaces the existing certificate of its build.
   void store(const Certificate& certificate);
-  /// Stores a text under a key with the results. Common keys of notes are "suite", "build" and "data".
+  /// Stores a note, a text with a key, in the database. Common keys of notes are "suite", "build" and "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// Copies all rows of another database, without notes, by the rule of merge.hpp, with constant memory. Throws
-  /// BadInput if two scored rows differ in status, digest or a score other than cost, unless `mixed`.
+  /// Copies all rows of the database `shard`, with constant memory; of two rows with the same key, the row with the
+  /// higher-ranked status is kept (`outranks`). The notes are not copied. Throws BadInput if two scored rows differ in
+  /// status, digest or a score other than cost, unless `mixed` is true.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
-  /// Runs `work` in one transaction. If `work` throws, nothing is stored and the exception is rethrown.
+  /// Calls `work` within one transaction. If `work` throws, nothing is stored, and the exception is rethrown.
   void in_one_transaction(const std::function<void()>& work);
 
-  /// Returns true if any simulated run has an outcome or a rejection.
+  /// Returns whether any simulated run has an outcome or a rejection.
   bool has_rows() const;
-  /// Returns the row with the scenario, seed, kind, method and setting of `key`, without scores.
+  /// Returns the row with the scenario, seed, kind, method and setting of `key`, without its scores.
   std::optional<Outcome> find(const Outcome& key) const;
-  /// Returns the rows of one scenario and seed, including points of curves, without scores.
+  /// Returns the rows of one scenario and seed, including points of curves, without their scores.
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
-  /// Visits every outcome with its scores, in the order of storing. Only the names of the metrics stay in memory.
+  /// Calls `visit` with every outcome and its scores, in the order of storing. Only the names of the metrics remain in
+  /// memory.
   void each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
   /// Returns every outcome without its scores.
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
   std::vector<RejectedDraw> rejected(Rows rows = Rows::plain) const;
   std::vector<DrawValues> draws(Rows rows = Rows::plain) const;
-  /// Returns one certificate per build. A merged database may have several certificates.
+  /// Returns the certificates in the database, one per build. A merged database may have several certificates.
   std::vector<Certificate> certificates() const;
 
  private:

@@ -20,7 +20,7 @@ inline constexpr int kSqliteBusy = 5;  // as in sqlite3.h
 inline constexpr const char* kBusy =
     "another program is writing to this database; try again after that program has ended";
 
-/// Converts an unsigned seed to SQLite's signed integer with equal bits.
+/// Converts an unsigned seed to a signed integer of SQLite with the same bits.
 inline std::int64_t stored_seed(std::uint64_t seed) {
   return std::bit_cast<std::int64_t>(seed);
 }
@@ -28,13 +28,13 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// Impl is an open results database; results_reading.cpp and results.cpp (writing) share this struct.
+/// Impl is an open results database, shared by results_reading.cpp (reading) and results.cpp (writing).
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
   bool in_transaction = false;  ///< a transaction of the caller
 
-  /// Transaction opens a transaction unless the caller already has one.
+  /// Transaction opens a transaction unless the caller already has an open transaction.
   class Transaction {
    public:
     explicit Transaction(Impl& impl) {
@@ -55,14 +55,14 @@ struct Results::Impl {
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // With a rollback journal, the database is one file and is readable in a read-only folder. Each store is on disk
-    // before the call returns.
+    // With a rollback journal, the database is one file and is readable in a read-only folder. Each stored row is on
+    // disk before the call returns.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
   }
 
-  // Converts SQLite errors to a one-line BadInput with the path.
+  // Calls a function and converts SQLite errors to a one-line BadInput with the path.
   template <typename Action>
   auto guarded(Action&& action) const {
     try {

@@ -198,8 +198,8 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
-    // Rows of unmodified scenarios have one setting, so the order by scenario and seed equals the order of the key and
-    // needs no sorting.
+    // Rows of unmodified scenarios all have the same setting, so the order by scenario and seed is the order of the key
+    // and needs no sorting.
     const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
                                             : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(

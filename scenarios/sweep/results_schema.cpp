@@ -7,11 +7,11 @@
 
 namespace tumble::scenarios {
 
-// Seeds are unsigned 64-bit numbers, stored as signed numbers with equal bits. A rejected run is an outcome with empty
-// kind and method and status 'rejected'. The view `scores` has a row for each score, and a row with a null metric for
-// an outcome without scores. A point of a curve has its keys in `varied` and their value in `setting`. `varied` is
-// empty for unmodified scenarios and methods. The view `scores` contains only rows with empty `varied`, and the view
-// `curves` contains points of curves.
+// The database stores an unsigned 64-bit seed as a signed number with the same bits. A run that could not be simulated
+// is an outcome with an empty kind and method and the status 'rejected'. The view `scores` has a row for each score,
+// and a row with a null metric for an outcome without scores. The column `varied` contains the keys of a curve point,
+// and `setting` contains their value. For unmodified scenarios and methods, `varied` is empty. The view `scores`
+// contains only rows with an empty `varied`, and the view `curves` contains points of curves.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,
@@ -75,8 +75,8 @@ CREATE TABLE certificates (
 
 namespace {
 
-/// Returns names such as "table outcomes", "column seed of table outcomes" and "view scores". The columns of views are
-/// omitted, because they follow from the tables.
+/// Returns the names of the parts of a database, such as "table outcomes", "column seed of table outcomes" and "view
+/// scores". The columns of views are omitted, because they follow from the tables.
 std::set<std::string> parts_of(const SQLite::Database& database) {
   std::set<std::string> parts;
   SQLite::Statement objects(database, "SELECT type || ' ' || name FROM sqlite_master WHERE type IN ('table', 'view')");

@@ -16,7 +16,7 @@
 
 namespace tumble::scenarios {
 
-/// RunResult contains the results of one situation: the recording, and the estimate and outcome of each method.
+/// RunResult contains the recording of one run, and the estimate and outcome of each method.
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -30,14 +30,15 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
-/// skipped. With a `setting`, the run is one point of a sweep's curve (variation.hpp), and the recording contains the
-/// sensor data that the methods receive. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure.
+/// Draws and simulates one situation, then runs and scores each method, all in this process. Methods that do not apply
+/// to the robot are skipped. With a `setting`, the run is one point of a curve (variation.hpp), and the recording
+/// contains the sensor data that the methods receive. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure
+/// if the simulation is impossible.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});
 
-/// Returns a digest of the recording and every estimate.
+/// Returns a digest of the recording and of every estimate.
 std::string run_digest(const RunResult& result);
 
 }  // namespace tumble::scenarios

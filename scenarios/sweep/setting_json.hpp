@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// These functions convert a setting to and from a JSON pair of key and value. Used only within scenarios/sweep.
+/// Converts a setting to or from JSON: a pair of key and value.
 nlohmann::json to_json(const Setting& setting);
 Setting setting_from(const nlohmann::json& pair);
 

@@ -96,7 +96,7 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.scenarios.empty()) node.fail("the suite needs at least one scenario");
 }
 
-/// Reads the key `draws: {mild: {hill: [3, 8]}}`: classes of scenarios with their seeds.
+/// Reads classes of runs with their scenarios and seeds from the key `draws: {mild: {hill: [3, 8]}}`.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;
@@ -140,7 +140,7 @@ void read_recordings(const YamlNode& node, Suite& suite) {
   if (suite.recordings.empty()) node.fail("the suite needs at least one recording");
 }
 
-/// Reads the content of the suite: recordings, named runs, or scenarios with seeds.
+/// Reads which runs the suite contains: recordings, listed runs, or scenarios with seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
@@ -165,12 +165,12 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
-/// Resolves a relative path of an external method against the suite's folder.
+/// Resolves the relative path of an external method against the folder of the suite.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// Throws BadInput if the text is the file of a scenario instead of a suite.
+// Throws BadInput if the text is a scenario file instead of a suite file.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {
@@ -217,7 +217,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
-/// Returns a suite of all methods on one scenario.
+/// Returns a suite that runs all methods on one scenario.
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;

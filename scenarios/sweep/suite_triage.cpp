@@ -22,8 +22,8 @@ namespace {
 
 constexpr char kBetween = '\t';  // separates the input's name from its outcome; no name contains a tab
 
-/// Runs in the process of a simulated run. The function writes each triage result as a line, then an empty line or an
-/// error.
+/// Runs the triage in the process of a simulated run. The function writes each result as a line, then an empty line or
+/// an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {
@@ -50,7 +50,7 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// Reads the triage rows that a process wrote; returns false if the process did not complete.
+/// Reads the triage results that a process wrote; returns false if the process did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -77,7 +77,7 @@ struct Worker {
   std::string said;
 };
 
-/// Finishes a simulated run whose process has ended or timed out.
+/// Stores the result of a simulated run whose process has ended or timed out.
 void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();

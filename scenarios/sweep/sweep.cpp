@@ -51,7 +51,7 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Throws BadInput if the results would contain two versions of an external method under one name.
+/// Throws BadInput if the results would contain two versions of an external method under the same name.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -99,7 +99,7 @@ class Sweep {
   }
 
  private:
-  /// Ends the workers and removes the incomplete files of runs to keep.
+  /// Ends the workers and removes the incomplete files of kept runs.
   void discard_unfinished() {
     for (DrawWorker& worker : workers_) worker.kill();
     workers_.clear();
@@ -128,7 +128,7 @@ class Sweep {
       }
       report();
     }
-    // Messages that workers sent before they were stopped are still stored.
+    // Messages that workers sent before they were stopped are also stored.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -220,7 +220,7 @@ class Sweep {
     return open;
   }
 
-  // The process of a task died, so the remaining methods of the task have no result.
+  // The process of a task died, so the remaining methods of the task get an outcome without a result.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
@@ -238,8 +238,8 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Updates the kept runs to match the results: reproduces missing runs and removes obsolete runs. File system errors
-  /// do not fail the sweep.
+  /// Updates the folder of kept runs to match the results: repeats missing runs and removes runs that the rule no
+  /// longer selects. A file system error does not stop the sweep.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);

@@ -21,14 +21,14 @@
 
 namespace tumble::scenarios {
 
-/// DrawClass is a class of simulated runs ("mild"). Each run of the class is a scenario and a seed.
+/// DrawClass is a named class of simulated runs, for example "mild". Each run of the class has a scenario and a seed.
 struct DrawClass {
   std::string name;
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
-/// Suite is a suite file, scenarios/suites/NAME.yaml. A suite contains scenarios x seeds x methods, repeated for each
-/// point of each curve, or recordings x methods (recorded_draw.hpp).
+/// Suite is the content of a suite file, scenarios/suites/NAME.yaml. A suite runs methods on scenarios with several
+/// seeds, repeated for each point of each curve, or on recordings (recorded_draw.hpp).
 struct Suite {
   std::string name;
   std::string doc;
@@ -43,17 +43,18 @@ struct Suite {
   std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`. The seeds may be those of a
-  /// shard.
+  /// Returns the number of unmodified simulated runs with seeds from `first_seed` to `last_seed`. The seeds may be a
+  /// part of the suite's seeds.
   std::uint64_t draw_count() const;
 };
 
-/// Throws BadInput if the last seed is below the first seed, or if the range exceeds the limit of a sweep.
+/// Throws BadInput if the last seed is below the first seed, or if there are more seeds than a sweep permits.
 void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// Loads a suite by name, from a suite file, or from a scenario's name. A scenario's name gives a suite of all methods
-/// on this scenario; a named case uses its own seed. Throws BadInput if the name is unknown or the file is invalid.
+/// Loads a suite by its name, from a suite file, or from the name of a scenario. The name of a scenario gives a suite
+/// of all methods on this scenario; a named case uses its seed. Throws BadInput if the name is unknown or the file is
+/// invalid.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
@@ -67,10 +68,10 @@ struct SweepProgress {
   std::uint64_t not_ok() const;
 };
 
-/// kWorkerMemoryMib is the default memory limit of a worker, equal to the limit of an external command
+/// kWorkerMemoryMib is the default memory limit of a worker, which equals the limit of an external command
 /// (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
-/// Throws BadInput if a worker's memory limit is too small or too large.
+/// Throws BadInput if the memory limit of a worker is too small or too large.
 void require_worker_memory(double mib);
 
 struct SweepOptions {
@@ -81,29 +82,31 @@ struct SweepOptions {
   std::vector<OutcomeStatus> again;  ///< repeat rows with these statuses: crashed, timeout, killed
   Keep keep;                         ///< which runs are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
-  /// Simulates without lidars if the built-in methods of the suite read no lidar. Estimates and scores are unchanged
-  /// without lidars, but the recording's digest differs. The option recordings_unseen cannot be combined with `keep`.
+  /// If `recordings_unseen` is true, the simulation omits lidars, provided that the built-in methods of the suite read
+  /// no lidar. Without lidars, estimates and scores are unchanged, but the digest of the recording differs. The option
+  /// recordings_unseen cannot be combined with `keep`.
   bool recordings_unseen = false;
 };
 
 /// Throws BadInput if an option is invalid: jobs, seeds, statuses to repeat, keep rule or memory.
 void require_sound(const Suite& suite, const SweepOptions& options);
 
-/// Opens or creates the database for this suite, build, models and scenarios. Throws BadInput if the database belongs
-/// to another suite, build, models or scenarios.
+/// Opens or creates the results database for this suite, build, models and scenarios. Throws BadInput if the database
+/// belongs to another suite, build, models or scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Executes the runs of the sweep that the database does not contain yet. Workers (draw_worker.hpp) run each method in
-/// a separate process. A crash, time-out or memory failure becomes an outcome (crashed, timeout, killed) and never
-/// stops the sweep. Outcomes are stored as they complete. Simulated runs are planned one at a time, so memory does not
-/// grow with their number.
+/// Executes the runs of the suite that the database does not contain yet. Workers (draw_worker.hpp) run each method in
+/// a separate process. After a crash, time-out or memory failure of a method, the outcome is crashed, timeout or
+/// killed, and the sweep continues. Outcomes are stored as they complete. Simulated runs are planned one at a time, so
+/// the memory use is independent of their number.
 ///
-/// At the end of the sweep, the kept runs match the keep rule. Returns the final progress of the sweep. If the sweep
-/// was stopped, draws_done is below draws_total. Throws BadInput if the results of a recording were computed from other
-/// data (another digest), or if no method applies to any scenario.
+/// At the end of the sweep, the folder of kept runs matches the keep rule. Returns the final progress of the sweep. If
+/// the sweep was stopped, draws_done is below draws_total. Throws BadInput if the results of a recording were computed
+/// from other data (another digest), or if no method applies to any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
-/// Executes the sweep and owns the database during the sweep. Throws BadInput if another process owns the database.
+/// Executes the sweep, and locks the database during the sweep. Throws BadInput if another process has locked the
+/// database.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

@@ -4,26 +4,28 @@
 #include <string>
 #include <vector>
 
-/// sweep_notes.hpp lists keys and values of notes that a sweep stores in its results (Results::set_note).
+/// The header sweep_notes.hpp lists keys and values of the notes that a sweep stores in its results
+/// (Results::set_note).
 namespace tumble::scenarios {
 
-/// kRecordingsSource is the value of the note `source` for results of recordings. Recordings cannot be simulated again.
+/// kRecordingsSource is the value of the note `source` if the results come from recordings. Recordings cannot be
+/// simulated again.
 inline constexpr const char* kRecordingsSource = "recordings";
 
-/// kMixedBuilds is the value of the note `build` for results merged from several builds (report-only databases).
+/// kMixedBuilds is the value of the note `build` if results of several builds were merged, which only reports accept.
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// kCommandNote is the key of the note with the commands that produced the results. The note has one line per sweep
+/// kCommandNote is the key of the note with the commands that produced the results. The note has one line per sweep,
 /// with suite, seeds and methods, quoted for a shell.
 inline constexpr const char* kCommandNote = "command";
 
-/// Returns the non-empty lines of `note`.
+/// Returns the non-empty lines of a note with commands.
 std::vector<std::string> commands_of(const std::string& note);
 
-/// Appends the lines of `more` that `note` does not contain, and returns the result.
+/// Adds the lines of `more` that are missing in `note`, and returns the result.
 std::string with_commands(const std::string& note, const std::string& more);
 
-/// Quotes `text` as one word of a POSIX shell if it contains anything but letters, digits and `_-./:=,+@%`.
+/// Returns `text` as one word of a POSIX shell, in quotes if it contains anything but letters, digits and `_-./:=,+@%`.
 std::string shell_word(const std::string& text);
 
 }  // namespace tumble::scenarios

@@ -10,17 +10,17 @@
 
 namespace tumble::scenarios {
 
-/// TrueInput is one input of a method, with a function that replaces it by its truth. Each input is registered by one
-/// line of true_inputs.cpp.
+/// TrueInput is one input of a method, with a function that replaces the input by its true value. Each input has one
+/// line in a table of true_inputs.cpp.
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording lacks this input or if
-  /// the input is already exact.
+  /// Replaces the input in the sensor data `sensors`, which belong to `truth`, by its true value. Returns false if the
+  /// recording lacks this input or if the input is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
-/// Returns all inputs; the last entry replaces all inputs at once.
+/// Returns all inputs that can be replaced by their true values; the last entry replaces all at once.
 std::span<const TrueInput> true_inputs();
 
 /// Returns whether the score states that the run failed (for example `map_failed`). Verdicts without a better direction
@@ -49,10 +49,10 @@ struct TriageOptions {
   std::function<void(const TriageRow&)> on_row;  ///< called after each row
 };
 
-/// Runs a method on the unmodified sensor data, then with each input replaced by its truth, in separate processes. All
-/// runs are scored against one truth and the original sensor data. The first triage result is that of the unmodified
-/// sensor data. Errors that no true input removes come from the method or the scenario. Throws the exceptions of
-/// simulate_draw for the simulation, and BadInput if the method does not apply to the scenario.
+/// Runs a method on the unmodified sensor data, then with each input replaced by its true value, in separate processes.
+/// All runs are scored against the same truth and the original sensor data. The first result belongs to the unmodified
+/// sensor data. If no true input prevents a failure, its cause is the method or the scenario. Throws the exceptions of
+/// simulate_draw, and BadInput if the method does not apply to the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

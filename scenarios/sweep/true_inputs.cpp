@@ -93,7 +93,8 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Sets each stamp to the end of the sample's averaging window. The function needs a complete recording.
+/// Sets the time stamp of each sample to the true end of its averaging window. The samples of the recording must be
+/// complete.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -108,7 +109,7 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Returns the lidar's pose. `lidar` must be the first lidar, whose frame the track has.
+/// Returns the true pose of the first lidar at a given time. The track must belong to the frame of the first lidar.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -117,7 +118,7 @@ Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   return T_WL;
 }
 
-/// Moves each return to the true hit of the beam.
+/// Moves each lidar point to the true hit of its beam.
 bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -133,8 +134,8 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Removes the motion distortion of the sweeps. All points move to the sensor pose at the last point, with stamps
-/// within a microsecond. Range errors remain in the points.
+/// Removes the motion distortion of the sweeps with the true poses. All points are transformed to the sensor pose at
+/// the last point, with times within a microsecond. The range errors of the points remain.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -171,8 +172,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first, because this correction needs the time of each point. Removing the motion
-/// distortion deletes these times.
+/// Range errors are corrected first, because this correction needs the time of each point. The removal of the motion
+/// distortion deletes the times of the points.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

@@ -8,9 +8,9 @@ namespace tumble::scenarios {
 /// kUnfinished is the subfolder for incomplete folders, next to the complete folders.
 inline constexpr const char* kUnfinished = ".unfinished";
 
-/// UnfinishedFolder is a folder under construction, WITHIN/.unfinished/NAME. The destructor removes the folder unless
-/// it was moved to its final path. Only one process at a time may build a folder with the name NAME. Throws
-/// std::filesystem::filesystem_error on failure.
+/// UnfinishedFolder is an incomplete folder, WITHIN/.unfinished/NAME. The destructor removes the folder unless it was
+/// moved to its final path. Only one process at a time may create a folder with the name NAME. Throws
+/// std::filesystem::filesystem_error if the folder cannot be created.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);
@@ -18,7 +18,7 @@ class UnfinishedFolder {
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// Moves the folder to its final path, and replaces any existing folder.
+  /// Moves the folder to its final path, and replaces an existing folder there.
   void move_into_place();
 
  private:

@@ -15,7 +15,7 @@ namespace tumble::tools {
 /// (pictures/colours.hpp).
 inline constexpr int kTruthColour = -1;
 
-/// PlotLine is one line of a plot. `x` and `y` are parallel; NaN marks a gap.
+/// PlotLine is one line of a plot. The lists `x` and `y` are parallel; NaN marks a gap.
 struct PlotLine {
   std::string name;
   int colour = kTruthColour;
@@ -63,12 +63,12 @@ struct Example {
 /// Returns the folder for the examples of a results database: FILE.db.files.
 std::filesystem::path examples_folder(const std::filesystem::path& database);
 
-/// Returns the example as JSON. README.md describes the file names of the pictures.
+/// Converts the example to JSON. README.md describes the file names of the pictures.
 std::string to_json(const Example& example);
 
 /// Writes the files of an example to FOLDER/.unfinished: pictures SCENARIO-SEED-NAME.png, the animation
 /// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` moves these files to FOLDER.
-/// Throws BadInput.
+/// Throws BadInput if a file cannot be written.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
 /// Removes the files in FOLDER/.unfinished.
@@ -77,8 +77,9 @@ void discard_unfinished(const std::filesystem::path& folder);
 /// Returns the file name of the replay of an example.
 std::string replay_file(const Example& example);
 
-/// Joins the results of `to_json` into the list of the folder and moves the unfinished files into place. The function
-/// then removes files that the previous list named and the new list does not name. Throws BadInput.
+/// Joins the JSON texts of examples to the list in the folder, and moves the unfinished files into place. The function
+/// then removes files that the previous list named and the new list does not name. Throws BadInput if a file cannot be
+/// written.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
@@ -87,12 +88,12 @@ struct FoundExamples {
   std::vector<std::string> unreadable;  ///< path and reason for each part of the list that cannot be read
 };
 /// Reads the examples of a folder; the result is empty if the folder has no list. An unreadable example does not affect
-/// other examples. read_examples reports these errors: the list has the wrong format or is truncated (examples that end
-/// before the cut are returned), a picture is missing, or a name leads out of the folder.
+/// other examples. The result reports each error: a list with a wrong format or without its end, a missing picture, or
+/// a name that leads out of the folder.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
-/// Copies a list that is damaged or truncated to examples.json.damaged, so that the next list does not overwrite the
-/// damaged list. Returns the path of the copy.
+/// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it. Returns the path of the
+/// copy.
 std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 
 }  // namespace tumble::tools

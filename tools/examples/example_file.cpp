@@ -77,7 +77,7 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return file_of(example, picture.name + ".png");
 }
 
-/// Returns the folder for files that no list names yet.
+/// Returns the folder for files that are not yet in a list.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
 }
@@ -103,7 +103,7 @@ std::string file_name(const json& picture) {
   return file_name(picture.at("file"), ".png", "picture");
 }
 
-/// Returns "" if the example has no replay, for example if an earlier version of the program wrote it.
+/// Returns the file name of the replay; "" if the example has no replay, for example in a file of an earlier version.
 std::string replay_name(const json& example) {
   const std::string name = example.value("replay", "");
   return name.empty() ? name : file_name(name, ".html", "replay");
@@ -111,7 +111,8 @@ std::string replay_name(const json& example) {
 
 constexpr const char* kMovingEnding = "moving.webp";
 
-/// Returns "" if the example has no animation, for example if an earlier version of the program wrote it.
+/// Returns the file name of the animation; "" if the example has no animation, for example in a file of an earlier
+/// version.
 std::string moving_name(const json& example) {
   if (!example.contains("moving")) return "";
   return file_name(example.at("moving").at("file"), ".webp", "moving picture");
@@ -151,7 +152,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   return example;
 }
 
-/// Returns null if there is no list.
+/// Reads the list of examples; returns null if there is no list.
 json read_list(const fs::path& folder) {
   const fs::path path = list_file(folder);
   std::error_code error;
@@ -171,7 +172,7 @@ json whole_examples(const fs::path& folder) {
       if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
       return true;
     };
-    // the JSON is complete, so the list was rejected because its content has another format
+    // The JSON is complete, so the list was rejected because its content has another format.
     if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
   } catch (const BadInput&) {  // the path is a folder
   }

@@ -32,7 +32,7 @@ constexpr const char* kAlsoFailed = "A draw on which methods failed";
 enum class Extent { whole, of_failure };
 
 /// Making is an example that a process is generating. Only the first example has an animation, because a report shows
-/// only one animation. `text` is what the process has printed so far, or the text of an existing example.
+/// only one animation. The member `text` is the output of the process so far, or the text of an existing example.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -69,7 +69,7 @@ std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> 
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // the method of tumble is called `tumble` in each kind (docs/design.md, "Methods and scores")
+  // The method of tumble is called `tumble` in each kind (docs/design.md, "Methods and scores").
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });
@@ -89,7 +89,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // lidars are simulated only if the sweep simulated them, so that the digest of the recording agrees with the rows
+    // Lidars are simulated only if the sweep simulated them, so that the digest of the recording agrees with the rows.
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -165,7 +165,7 @@ class Makers {
   Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
       : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
 
-  /// Returns false if the generation was stopped.
+  /// Generates the examples in parallel; returns false if the generation was stopped.
   bool run(std::vector<Making>& makings) {
     auto next = makings.begin();
     while (true) {
@@ -206,7 +206,7 @@ class Makers {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Returns true when the worker has ended.
+  /// Reads the output of a worker; returns true when the worker has ended.
   bool serve(Worker& worker) {
     const bool open = worker.process.read_available(worker.making->text);
     const bool late = open && scenarios::now_s() > worker.deadline_s;

@@ -26,9 +26,9 @@ struct LeaveOptions {
 ///   succeeded. The further failed runs show the failed methods and `tumble` of the kinds of the failed methods
 ///   (`failure_example_of`).
 ///
-/// Existing examples that show the rows of the results, or that belong to scenarios outside the suite, are kept. A run
-/// that cannot be shown is reported in a note. The function does nothing for recordings. Returns false if the
-/// generation was stopped. Throws BadInput if the folder cannot be written.
+/// An existing example is kept if it matches the results, or if its scenario is not in the suite. A run that cannot be
+/// shown is reported in a note. The function does nothing for recordings. Returns false if the generation was stopped.
+/// Throws BadInput if the folder cannot be written.
 bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const std::filesystem::path& database, const LeaveOptions& options);
 

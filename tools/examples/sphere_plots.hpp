@@ -4,8 +4,9 @@
 #include "scenarios/sweep/run_situation.hpp"
 #include "tools/examples/example.hpp"
 
-/// sphere_plots.hpp contains plots that correspond to the published figures of the rolling sphere. Each plot shows the
-/// truth, and either all attitude methods or, for each origin, the first position method that does not need the truth.
+/// The functions in sphere_plots.hpp make plots that correspond to the published figures of the rolling sphere. Each
+/// plot shows the truth, and either all attitude methods or, for each origin, the first position method that does not
+/// need the truth.
 namespace tumble::tools {
 
 /// Plots the path from above, with equal scales on both axes.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// html.hpp contains helpers for text in HTML pages. All text that comes from a file or a database must pass through
+/// The functions in html.hpp write text in HTML pages. All text that comes from a file or a database must pass through
 /// `escaped`.
 namespace tumble::tools::html {
 

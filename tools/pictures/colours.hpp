@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-/// colours.hpp defines the palette that plots, pictures and replays share.
+/// The header colours.hpp defines the palette that plots, pictures and replays share.
 namespace tumble::tools {
 
 struct Colour {

@@ -12,7 +12,7 @@
 #include "sim/recording.hpp"
 #include "sim/render/renderer.hpp"
 
-/// map_pictures.hpp draws maps whose points are coloured by their distance to the true surface.
+/// The functions in map_pictures.hpp draw maps whose points are coloured by their distance to the true surface.
 namespace tumble::tools {
 
 /// Errors of at least kMapErrorMax_m have the last colour of the scale [m].
@@ -37,8 +37,8 @@ std::array<std::uint8_t, 3> error_colour(float error_m);
 
 /// Draws maps next to each other from one viewpoint: from the side and above, limited to the surroundings of the true
 /// path. Nearer points hide points that are farther away. A colour scale from 0 to kMapErrorMax_m is below the maps.
-/// `width` and `height` are the size of one map. Throws std::invalid_argument if there are no maps or if the truth is
-/// empty.
+/// The arguments `width` and `height` are the size of one map. Throws std::invalid_argument if there are no maps or if
+/// the truth is empty.
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height);
 
 }  // namespace tumble::tools

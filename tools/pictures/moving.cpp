@@ -65,7 +65,7 @@ std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, c
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   const std::vector<std::int64_t> stands =
       options.strobe > 0 ? instants_along(*scene.truth, options.strobe) : std::vector<std::int64_t>{};
-  // frames have a few hundred pixels: finer shadows would be invisible and most of the cost
+  // The frames have a few hundred pixels, so finer shadows would be invisible and most of the cost.
   sim::Renderer renderer(*scene.built, 1024);
   sim::View view;
   view.width = options.width;

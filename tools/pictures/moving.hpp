@@ -9,7 +9,8 @@
 #include "tools/pictures/paths.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// moving.hpp renders animations of a motion: the camera follows the robot, and copies of the robot mark its path.
+/// The functions in moving.hpp render animations of a motion: the camera follows the robot, and copies of the robot
+/// mark its path.
 namespace tumble::tools {
 
 struct MovingOptions {

@@ -9,7 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// paths.hpp computes paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
+/// The functions in paths.hpp compute paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
 namespace tumble::tools {
 
 /// Path is the path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass
@@ -23,8 +23,8 @@ struct Path {
 /// Returns the pose of frame A in W, with the attitude normalised.
 Eigen::Isometry3d pose_of(const PoseState& state);
 
-/// Finds the mounting of the frame of an estimate's poses, as the estimator received this mounting. Returns false if
-/// the recording or its truth lacks the sensor. `truth` may be null; in this case the sphere's centre is the origin of
+/// Finds the calibrated mounting of the frame to which the poses of an estimate belong. Returns false if the recording
+/// or its truth lacks the sensor. The pointer `truth` may be null; in this case the sphere's centre is the origin of
 /// the body.
 bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const sim::Truth* truth,
                     Eigen::Isometry3d& T_BA);

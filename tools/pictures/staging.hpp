@@ -10,7 +10,7 @@
 #include "sim/render/renderer.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// staging.hpp provides viewpoints, instants and paths that still pictures and animations share.
+/// The functions in staging.hpp provide viewpoints, times and paths for still pictures and animations.
 namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);

@@ -9,7 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// motion.hpp computes the motion of the body by the truth or by an estimate, in one common world frame.
+/// The class Motion contains the motion of the body by the truth or by an estimate, in one common world frame.
 namespace tumble::tools {
 
 /// Motion contains poses of the body B in W at increasing instants. Between samples, positions are interpolated
@@ -24,7 +24,7 @@ class Motion {
   bool empty() const { return time_ns_.empty(); }
   std::int64_t begin_ns() const { return time_ns_.front(); }
   std::int64_t end_ns() const { return time_ns_.back(); }
-  /// Returns the interpolated pose. Cost: O(log N).
+  /// Returns the interpolated pose. The cost is O(log N).
   std::optional<Eigen::Isometry3d> at(std::int64_t time_ns) const;
 
  private:
@@ -38,11 +38,11 @@ class Motion {
 /// BadInput if the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// Converts an estimate to poses of the body, by the mounting that the estimator received. If there is a truth, the
+/// Converts an estimate to poses of the body, with the mounting that the estimator received. If there is a truth, the
 /// motion is aligned with the truth as for the scores: position and heading at the first pose within the time of the
 /// truth. Without a truth, the motion is aligned with `reference` in the same way. An estimate that has no common time
 /// with the reference is not moved. The returned motion is empty without poses, or if the frame of the poses belongs to
-/// a sensor that the recording lacks. `truth` may be null.
+/// a sensor that the recording lacks. The pointer `truth` may be null.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

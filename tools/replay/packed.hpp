@@ -7,7 +7,7 @@
 
 #include "tools/replay/replay.hpp"
 
-/// packed.hpp converts a replay to the bytes of a page (README.md describes every field).
+/// The function `packed` converts a replay to the bytes of a page (README.md describes every field).
 namespace tumble::tools {
 
 struct PackedReplay {

@@ -6,18 +6,18 @@
 #include "tools/replay/motion.hpp"
 #include "tools/replay/replay.hpp"
 
-/// points.hpp provides the lidar returns that a replay shows, with their distance to the true surface for a given
-/// motion.
+/// The functions in points.hpp provide the lidar points that a replay shows, with their distance to the true surface
+/// for a given motion.
 namespace tumble::tools {
 
 /// Selects at most `most` returns of the first lidar, spread evenly over its sweeps and beams. Return i is selected if
 /// the fractional part of i times the golden ratio is below the wanted fraction. The additive recurrence of the golden
 /// ratio includes every beam, whereas "every tenth return" would always select the same beams of a 16-beam lidar.
-/// Returns from the robot's own body are left out: returns that the truth marks, or returns nearer than 0.5 m if there
-/// is no truth. shown_points returns no points without a lidar. `truth` may be null.
+/// Points on the robot's body are omitted: points that the truth marks, or points nearer than 0.5 m without a truth.
+/// Without a lidar, the result is empty. The pointer `truth` may be null.
 ReplayPoints shown_points(const sim::Sensors& sensors, const sim::Truth* truth, std::size_t most);
 
-/// Returns the transform from body axes by the estimator's calibration to body axes by the true mounting. The transform
+/// Returns the transform from body axes of the estimator's calibration to body axes of the true mounting. The transform
 /// is the identity if the truth has no lidar.
 Eigen::Isometry3d true_from_given_body(const sim::Sensors& sensors, const sim::Truth& truth);
 

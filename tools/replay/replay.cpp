@@ -99,7 +99,7 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  // estimates with a path come first, so that their colours agree with the pictures of the same run
+  // Estimates with a path come first, so that their colours agree with the pictures of the same run.
   const auto with_path = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_path));
   std::size_t paths = 0, other = with_path;
   for (const ReplayEstimate& given : input.estimates) {
@@ -175,7 +175,7 @@ void add_tracks(const std::vector<Motion>& motions, const ReplayLimits& limits, 
       std::count_if(motions.begin(), motions.end(), [](const Motion& motion) { return !motion.empty(); }));
   const std::size_t room = limits.bytes / kTracksShare / (kPoseBytes * tracks);
   const auto poses = static_cast<std::int64_t>(std::max<std::size_t>(std::min(limits.poses, room), 2));
-  // the step is a multiple of whole microseconds, the page's unit of time
+  // The step is a multiple of whole microseconds, the page's unit of time.
   replay.pose_step_ns = std::max(kStep_ns, (replay.end_ns / (poses - 1) / 1000 + 1) * 1000);
   for (std::size_t i = 0; i < motions.size(); ++i)
     replay.actors[i].track = sampled(motions[i], replay.end_ns, replay.pose_step_ns);
@@ -217,7 +217,7 @@ Replay replay_of(const ReplayInput& input, const ReplayLimits& limits) {
   replay.title = input.title;
   replay.facts = input.facts;
   const std::vector<Motion> motions = motions_of(input, input.truth == nullptr ? 0 : input.truth->period_ns);
-  // the end is at least 1 ns, even if there is only one pose
+  // The end is at least 1 ns, even if there is only one pose.
   replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);
   replay.actors = actors_of(input);
   add_rates(input, limits, replay);

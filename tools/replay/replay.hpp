@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 #include "sim/render/world_mesh.hpp"
 
-/// replay.hpp defines the content of a replay, independent of the page and of its binary format.
+/// The header replay.hpp defines the content of a replay, independent of the page and of its binary format.
 namespace tumble::tools {
 
 struct ReplayEstimate {
@@ -49,8 +49,8 @@ struct ReplayActor {
   std::string colour;
   bool is_truth = false;
   ReplayTrack track;  ///< empty if the actor has no positions
-  /// Transform from body axes by the estimator's calibration, which the points use, to the actor's body axes. The two
-  /// axes differ for the truth, which has the true mounting of the lidar.
+  /// This transform converts body axes of the estimator's calibration, which the points use, to the actor's body axes.
+  /// The two axes differ for the truth, which has the true mounting of the lidar.
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
   std::vector<float> error_m;               ///< error of each point as placed by this actor [m]; NaN if unknown; empty
                                             ///< without a true surface

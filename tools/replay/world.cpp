@@ -89,7 +89,7 @@ std::vector<MeshPart> thinned_world(std::vector<MeshPart> parts, const AlignedBo
     triangles.of += triangle_count(part);
     if (is_field(part)) ++fields;
   }
-  // three quarters of the triangles are for the ground, which is always visible
+  // Three quarters of the triangles are for the ground, which is always visible.
   std::size_t left = most;
   for (MeshPart& part : parts) {
     if (!is_field(part)) continue;
@@ -140,7 +140,7 @@ std::vector<MeshPart> plain_body(double sphere_radius_m) {
     }
     return {body};
   }
-  // a roof-shaped nose indicates the forward direction; each face has its own vertices, so that edges are visible
+  // A roof-shaped nose indicates the forward direction; each face has separate vertices, so that edges are visible.
   const Vector3f corners[] = {{-0.15f, -0.1f, -0.05f}, {0.1f, -0.1f, -0.05f},  {0.1f, 0.1f, -0.05f},
                               {-0.15f, 0.1f, -0.05f},  {-0.15f, -0.1f, 0.05f}, {0.1f, -0.1f, 0.05f},
                               {0.1f, 0.1f, 0.05f},     {-0.15f, 0.1f, 0.05f},  {0.18f, 0.0f, -0.05f},

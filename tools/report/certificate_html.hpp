@@ -8,7 +8,7 @@
 
 namespace tumble::tools {
 
-/// Returns for example "31 of 31 figures within their bounds", or "none" without entries.
+/// Summarises a certificate, for example "31 of 31 figures within their bounds"; "none" without entries.
 std::string certificate_summary(const scenarios::Certificate& certificate);
 
 /// Returns one table per certificate with the measured quantity and object, the value, the accepted range, the verdict,

@@ -9,8 +9,8 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// contests.hpp computes the headline of a report: the best method of each section, its margin, and the statistical
-/// certainty.
+/// The functions in contests.hpp compute the headline of a report: the best method of each section, its margin, and the
+/// statistical certainty.
 namespace tumble::tools {
 
 /// Certainty is the statistical significance of a difference.
@@ -26,10 +26,10 @@ struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
   bool better = false;  ///< the difference favours the method; may be chance if `certainty` is `open`
-  /// Difference as a percentage of the baseline's median, with its interval; NaN if the median is 0 or not finite, or
-  /// if the difference is not finite. An end of the interval is infinite if one run of a pair failed.
+  /// The difference is a percentage of the baseline's median, with its interval; NaN if the median is 0 or not finite,
+  /// or if the difference is not finite. An end of the interval is infinite if one run of a pair failed.
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
-  /// Baseline's median divided by the method's median, for metrics where a lower value is better; NaN otherwise.
+  /// This factor is the baseline's median divided by the method's median, if lower values are better; otherwise NaN.
   double times = std::numeric_limits<double>::quiet_NaN();
   /// The interval alone is insufficient, because the method was chosen as the best of several methods on these
   /// simulated runs.
@@ -37,8 +37,9 @@ struct ContestResult {
   bool lost() const { return !better && certainty == Certainty::corrected; }
 };
 
-/// Returns contests in the order of the summary's sections. Attitude is included only if there is no other kind of
-/// method, because attitude describes the motion least. Sections that contain only the baseline are left out.
+/// Computes the contests (best method against baseline) in the order of the summary's sections. Attitude is included
+/// only if there is no other kind of method, because attitude describes the motion least. Sections that contain only
+/// the baseline are omitted.
 std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
 
 /// Tally contains counts of contests by result.
@@ -52,7 +53,7 @@ struct Tally {
 };
 Tally tally(const std::vector<ContestResult>& results);
 
-/// Summarises the tally in one sentence, for example "tumble is better than the baseline in 3 of 4 contests".
+/// Summarises the counts in one sentence, for example "tumble is better than the baseline in 3 of 4 contests".
 std::string tally_text(const Tally& tally);
 
 /// Describes the certainty of a contest in words: which method is better, and what is missing if the contest is open.

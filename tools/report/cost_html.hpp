@@ -14,12 +14,13 @@ namespace tumble::tools {
 struct CostRow {
   std::string scenario, method;  ///< method: KIND/NAME
   double cpu_s = 0.0;            ///< median CPU time of one estimate
-  /// Median over the simulated runs of the recording's duration divided by the CPU time; above 1, the method is faster
-  /// than real time on one processor. NaN if the results contain no durations.
+  /// This factor is the median over the simulated runs of the recording's duration divided by the CPU time; above 1,
+  /// the method is faster than real time on one processor. The factor is NaN if the results contain no durations.
   double real_time_factor = 0.0;
 };
 
-/// Returns one row per scenario, kind and method that has a CPU time. Cost: O(values * log(draws)).
+/// Returns the cost of each scenario, kind and method that has a CPU time. The cost of the function is O(values *
+/// log(draws)).
 std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<const scenarios::DrawValues> draws);
 
 /// Returns the cost rows as a folded table.

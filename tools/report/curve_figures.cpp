@@ -122,7 +122,7 @@ json x_axis(const Curve& curve, const std::string& title) {
     axis["ticktext"].push_back(plot_text(curve.bins[k]));
   }
   axis["range"] = {0.5, static_cast<double>(curve.bins.size()) + 0.5};
-  // Plotly's automatic rotation would leave out the last label
+  // Plotly's automatic rotation would omit the last label.
   if (curve.bins.size() > 4) axis["tickangle"] = -30;
   return axis;
 }
@@ -170,7 +170,7 @@ Figure curve_figure(const Curve& curve, const Palette& palette) {
   figure.id = "curve-" + curve.scenario + "-" + to_string(curve.kind) + "-" + curve.axis + "-" + curve.metric;
   figure.caption = caption_of(curve);
   const MetricStyle x_style = metric_style(curve.axis), y_style = metric_style(curve.metric);
-  // bins are placed by rank and labelled in the metric's unit
+  // Bins are placed by rank and labelled in the metric's unit.
   const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
   json data = json::array(), lines = json::array();
   for (std::size_t i = 0; i < curve.lines.size(); ++i) {

@@ -73,8 +73,8 @@ std::string moving_html(const ShownExample& shown) {
   const bool has_picture = !example.pictures.empty();
   const std::string still = has_picture ? html::png_address(example.pictures.front().png) : "";
   std::string out = "<figure class=\"moving\"><picture>";
-  // the browser selects still or animated picture without a script; without a still picture, the animation is always
-  // shown
+  // The browser selects the still or the animated picture without a script; without a still picture, the animation is
+  // always shown.
   if (!example.moving.empty() && has_picture) {
     out += fmt::format("<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"{}\">", still);
   }

@@ -17,7 +17,7 @@ std::string moving_html(const ShownExample& shown);
 std::string examples_html(const std::vector<ShownExample>& examples, const Palette& palette,
                           std::vector<Figure>& figures);
 
-/// Shows the picture of a run with failed methods, folded. `examples_html` leaves these runs out.
+/// Shows the picture of a run with failed methods, folded. The function `examples_html` omits these runs.
 std::string failure_html(const ShownExample& shown);
 
 /// Returns the id of the element that shows a run; other parts of the page link to this element.

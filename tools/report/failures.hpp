@@ -10,7 +10,7 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// failures.hpp lists simulated runs on which methods failed, with commands to reproduce them.
+/// The functions in failures.hpp list the simulated runs on which methods failed, with commands to repeat the runs.
 namespace tumble::tools {
 
 /// kFailedDrawsShown is the maximum number of failed runs on the page.
@@ -36,8 +36,8 @@ struct FailedDraws {
   std::vector<FailedDraw> shown;  ///< draws with the most failed methods, at most `kFailedDrawsShown`
 };
 
-/// Finds the failed runs, and reads messages only for the runs that are shown. `database` is the path of the results;
-/// kept files are next to the database.
+/// Finds the failed runs, and reads messages only for the runs that are shown. The argument `database` is the path of
+/// the results; kept files are next to the database.
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
                          const std::filesystem::path& database);
 

@@ -26,7 +26,7 @@ constexpr std::size_t kShownContests = 6;
 /// kNamedScenarios is the maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
 
-/// Returns for example "hill, roll and slip", or the count if there are many.
+/// Lists names, for example "hill, roll and slip", or returns the count if there are many.
 std::string names_text(const std::vector<std::string>& all, const char* many) {
   if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
   std::string names;
@@ -34,7 +34,7 @@ std::string names_text(const std::vector<std::string>& all, const char* many) {
   return names;
 }
 
-/// Returns for example "8 draws each of hill, roll and slip".
+/// Describes the number of runs, for example "8 draws each of hill, roll and slip".
 std::string draws_text(const Summary& summary) {
   std::int64_t least = 0, most = 0;
   for (const auto& [scenario, draws] : summary.draws) {
@@ -108,12 +108,12 @@ std::string difference_text(const ContestResult& result) {
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
-  // an interval without any finite end is left out
+  // An interval without a finite end is omitted.
   if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
   return sign + value + " " + styled_interval(result.row.metric, own);
 }
 
-/// Returns for example "0.894 rad/s, 37 times as much".
+/// Describes the baseline's value, for example "0.894 rad/s, 37 times as much".
 std::string baseline_text(const ContestResult& result) {
   const std::string value = styled_value(result.row.metric, result.row.against_median, true);
   if (!(result.times >= 1.5)) return value;

@@ -29,7 +29,7 @@ json density(const MotionMap& map) {
       each.push_back(five_digits(100.0 * map.share[row * MotionMap::kCells + i]));
     rows.push_back(std::move(each));
   }
-  // values below the first contour are transparent
+  // Values below the first contour are transparent.
   return {
       {"type", "contour"},
       {"name", "all draws"},

@@ -42,7 +42,7 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
-/// Lists the reasons why simulated runs were rejected. The instant at the end of a reason is removed, so that equal
+/// Lists the reasons why simulated runs were rejected. The time at the end of a reason is removed, so that equal
 /// reasons are counted together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
@@ -154,7 +154,7 @@ std::string figures_json(const std::vector<Figure>& figures) {
   return html::script_json("[" + all + "]");
 }
 
-/// Allows only content that is embedded in the page: scripts, styles, and pictures as data.
+/// The policy allows only content that is embedded in the page: scripts, styles, and pictures as data.
 constexpr const char* kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; style-src "
     "'unsafe-inline'; script-src 'unsafe-inline'\">";

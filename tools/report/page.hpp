@@ -26,7 +26,7 @@ struct ShownExample {
   std::string replay_address;     ///< URL relative to the page, escaped for an attribute; may be empty
 };
 
-/// Name and value.
+/// Fact is a pair of name and value.
 using Fact = std::pair<std::string, std::string>;
 
 /// PageContent is the content of a report page. The function `page_html` adds only markup.

@@ -108,7 +108,7 @@ class Boxes {
   };
 
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
-    // the shares of values and of failed runs remain if only some of the runs are drawn
+    // The fractions of values and of failed runs remain if only some of the runs are drawn.
     const std::size_t all = values.size() + failed;
     const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {

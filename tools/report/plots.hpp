@@ -36,14 +36,15 @@ double five_digits(double value);
 std::string plot_text(const std::string& text);
 
 /// Reduces a list to `most` (at least 2) values: the smallest, the largest, and values at equal steps of rank between
-/// them, sorted. The quantiles of the reduced list are close to those of all values. Cost: O(n log n).
+/// them, sorted. The quantiles of the reduced list are close to those of all values. The cost is O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
 /// Palette assigns one colour index to each method of a page, in order of first `add`. Methods of different kinds with
 /// one name share their colour.
 class Palette {
  public:
-  /// `method` is a name, or KIND/NAME. Keeps the index of a known method; uses `wanted` if it is free.
+  /// Adds a method, by its name or by KIND/NAME. A known method keeps its index; a new method gets the index `wanted`
+  /// if it is free.
   void add(const std::string& method, std::optional<std::size_t> wanted = {});
   /// Returns the index of the method, or `otherwise` for an unknown method.
   std::size_t index(const std::string& method, std::size_t otherwise) const;
@@ -72,8 +73,8 @@ Figure figure_of(const Plot& plot, const std::string& id, const Palette& palette
 /// Returns the colour of a line in an example's plot, and of its legend entry.
 Colour colour_of(int colour);
 
-/// Returns the marker, dash and fill opacity that distinguish methods with equal colours. `round` is the result of
-/// `colour_round`.
+/// Returns the marker, dash and fill opacity that distinguish methods with equal colours. The argument `round` is the
+/// result of `colour_round`.
 const char* symbol_of_round(std::size_t round);
 const char* dash_of_round(std::size_t round);
 double filling_of_round(std::size_t round);

@@ -65,7 +65,7 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-/// Returns the commands that reproduce the page and extend it; leaves out commands that would refuse these results.
+/// Returns the commands that repeat the page and extend it, without commands that would reject these results.
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
                            const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
@@ -89,7 +89,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their fraction.
+/// Plots the headline metrics of each kind. Pass-fail metrics are omitted, because the table shows their fraction.
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -103,9 +103,9 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& p
   return figures;
 }
 
-/// Returns true if the example belongs to these results: the database contains the rows of the example, and a new
-/// simulation gives a recording with the digest of the rows. The digest may be that of a recording without lidars,
-/// because sweeps of methods that need no lidar leave lidars out.
+/// Returns whether the example belongs to these results: the database contains its rows, and a new simulation gives a
+/// recording with the same digest. The digest may be that of a recording without lidars, because sweeps omit lidars
+/// that no method needs.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -115,7 +115,7 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// States why there are no pictures, and which command creates pictures. Only a sweep adds pictures, and only to
+/// Explains why there are no pictures, and which command creates pictures. Only a sweep adds pictures, and only to
 /// results of the sweep's build and data.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
@@ -160,7 +160,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // errors of the pictures must not hide the scores
+  // Errors of the pictures must not hide the scores.
   for (const std::string& what : found.unreadable)
     content.warnings.push_back(fmt::format("The page cannot show some pictures of single draws: {}", what));
   if (!found.unreadable.empty()) return;

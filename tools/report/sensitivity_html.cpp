@@ -68,7 +68,7 @@ std::string row_html(const Sensitivity& row) {
   return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">no influence beyond chance</td></tr>\n";
 }
 
-// at least two classes are needed for a trend
+// A trend needs at least two classes.
 constexpr auto kDrawsMin = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
 constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
 

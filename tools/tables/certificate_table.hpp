@@ -12,7 +12,7 @@ namespace tumble::tools {
 /// no value).
 Table certificate_table(const scenarios::Certificate& certificate);
 
-/// Formats the accepted range of a value: "<= 1e-08" or "0.001 to 0.02". A lower end of 0 is not printed.
+/// Formats the accepted range of a value: "<= 1e-08" or "0.001 to 0.02". A lower limit of 0 is omitted.
 std::string bound_text(double low, double high);
 
 }  // namespace tumble::tools

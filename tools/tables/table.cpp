@@ -104,7 +104,7 @@ std::string more_draws_text(double needed, std::int64_t draws, bool open) {
 }
 
 std::size_t character_count(const std::string& text) {
-  // continuation bytes of UTF-8 start with the bits 10
+  // In UTF-8, continuation bytes start with the bits 10.
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 

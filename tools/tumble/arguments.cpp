@@ -57,7 +57,7 @@ Shard parse_shard(const std::string& text) {
 
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) {
   if (shard.count == 1) return true;
-  // 2^64 seeds overflow a counter, but the difference between the ends fits
+  // 2^64 seeds overflow a counter, but the difference between the first and the last seed fits.
   const std::uint64_t span = last - first, rest = span % shard.count + 1;
   const std::uint64_t length = span / shard.count + rest / shard.count, longer = rest % shard.count;
   const std::uint64_t before = shard.index - 1;

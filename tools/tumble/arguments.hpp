@@ -14,8 +14,8 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/session.hpp"
 
-/// arguments.hpp parses command-line arguments and prepares output files. All functions of arguments.hpp throw
-/// scenarios::BadInput with a one-line message.
+/// The functions in arguments.hpp parse command-line arguments and prepare output files. All functions in arguments.hpp
+/// throw scenarios::BadInput with a one-line message.
 namespace tumble::tools {
 
 /// Parses a seed: an unsigned decimal integer below 2^64.
@@ -47,8 +47,8 @@ void note_time_limits(const Session& session, std::span<const std::string> names
 /// Returns the named metric of the method's kind, or the first metric of the kind if `name` is empty.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 
-/// Parses the random seed. If `text` is empty, returns the seed of a named case; for other scenarios, an empty seed is
-/// an error.
+/// Parses the random seed in `text`. If `text` is empty, the function returns the seed of a named case; for other
+/// scenarios, an empty seed is an error.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
 /// Returns a check that rejects names that are neither a scenario of the catalogue nor a scenario file. The check runs
@@ -57,7 +57,7 @@ std::function<void(const std::string&)> a_scenario(const Session& session);
 /// Returns a check that rejects names that are neither a suite, a suite file nor a scenario.
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// Rejects a missing file and a file that is no recording, before CLI11 reports missing options.
+/// Throws BadInput for a missing file or a file that is no recording, before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
 /// Returns the number of processors that this process may use.

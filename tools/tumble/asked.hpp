@@ -8,7 +8,7 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/session.hpp"
 
-/// asked.hpp parses questions about two methods from the command line. All functions of asked.hpp throw
+/// The functions in asked.hpp parse questions about two methods from the command line. All functions in asked.hpp throw
 /// scenarios::BadInput with a one-line message.
 namespace tumble::tools {
 
@@ -16,11 +16,11 @@ namespace tumble::tools {
 /// `option`.
 scenarios::Margin parse_margin(const std::string& option, const std::string& text);
 
-/// Parses "A:B:METRIC" or "A:B:METRIC:MARGIN". The question covers the scenarios and seeds of a suite with methods A
-/// and B.
+/// Parses a question, "A:B:METRIC" or "A:B:METRIC:MARGIN": is method A better than method B? The question covers all
+/// scenarios and seeds of the suite.
 scenarios::Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite);
 
-/// Returns a table with one row per scenario.
+/// Returns a table of the answers, with one row per scenario.
 Table table_of(const std::vector<scenarios::Answer>& answers, const scenarios::Question& question);
 nlohmann::json json_of(const std::vector<scenarios::Answer>& answers, const scenarios::Question& question);
 

@@ -79,8 +79,8 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Reads the results stored in the source tree, and named files. A named file with results of another suite is an
-/// error.
+/// Reads the results stored in the source tree, and the result files that the user names. A result file with results of
+/// another suite is an error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
@@ -96,7 +96,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   return all;
 }
 
-/// Returns the command with file names only, so that no path of this machine appears on the page.
+/// Returns the command with file names only, so that the page contains no path of this machine.
 std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
@@ -142,8 +142,8 @@ std::string sweep_command(const BenchOptions& options, const scenarios::Suite& s
   return words;
 }
 
-/// Writes a database with the measured and the stored results for `report`. The measured database stays free of stored
-/// results, because a sweep would take them for completed runs. Returns the database to report.
+/// Writes a database with the measured and the stored results for `report`. The measured database never contains stored
+/// results, because a sweep would take them for completed runs. Returns the path of the database for the report.
 fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
   std::vector<BenchResult> others = page.stored;
   std::erase_if(others, [&](const BenchResult& stored) {

@@ -48,7 +48,7 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
 }
 
 int run_doctor(const Session& session, const ImportOptions& options) {
-  // wrong options and an unknown format are wrong use; every later error is a finding
+  // Invalid options and an unknown format are wrong use; every later error is a finding.
   (void)format_of(options);
   (void)bag_reading(session, options);
   std::vector<RecordingFinding> findings;

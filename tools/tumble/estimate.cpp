@@ -109,11 +109,11 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
-  // printed also after a failure, because a sensor fault may be the cause
+  // The findings are printed even after a failure, because a sensor fault may be the cause.
   for (const HealthFinding& each : estimate.faults.findings)
     session.note(full_name(method.info) + ": " + to_text(each));
   if (estimate.status.ok()) return kDone;
-  // the estimate is kept for inspection, because the cause of the error is in the recording
+  // The estimate is kept for inspection, because the cause of the error is in the recording.
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + failure_reason(estimate.status, sensors));
 }

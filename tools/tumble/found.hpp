@@ -9,8 +9,8 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/importing.hpp"
 
-/// found.hpp reports what `odometry` detected in a recording, and completes properties that neither the recording nor
-/// the user states.
+/// The functions in found.hpp report what `odometry` detected in a recording, and add properties that neither the
+/// recording nor the user supplies.
 namespace tumble::tools {
 
 /// FoundItem is one detected or assumed property.
@@ -21,10 +21,10 @@ struct FoundItem {
   std::string option;  ///< option that changes the item
 };
 
-/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a stated pose. The function
+/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a known pose. The function
 /// stores the detected properties in the recording and returns them.
 ///
-/// @param own_body_L  Box around the robot in lidar axes; returns inside are dropped. For display only.
+/// @param own_body_L  Box around the robot in lidar axes; points inside are dropped. For display only.
 std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
                                           const Eigen::AlignedBox3d& own_body_L, bool own_body_stated);
 

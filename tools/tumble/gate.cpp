@@ -148,7 +148,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Loads the gate; the result is empty if the gate does not exist and --accept creates it.
+/// Loads the gate; the result is empty if the gate does not exist and the option --accept creates it.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
@@ -164,15 +164,15 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   return gate;
 }
 
-/// Stores the run as accepted and keeps the policy.
+/// Stores the run as accepted results, with unchanged limits.
 void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (file.has_parent_path()) make_folder(file.parent_path());
   scenarios::replace_file(fs::path(file).replace_extension(".csv"), scenarios::to_csv(gate.accepted));
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// Stores the known certificate of this build next to a kept database and describes the certificate's state. The
-/// certificate is not measured here, because gates run often.
+/// Stores the certificate of this build, if known, next to a kept database, and describes the state of the certificate.
+/// The certificate is not measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));

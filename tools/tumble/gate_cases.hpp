@@ -8,7 +8,7 @@
 #include "scenarios/data_root.hpp"
 #include "tools/tumble/session.hpp"
 
-/// gate_cases.hpp implements the gate of the named cases in scenarios/regressions.
+/// The function hold_cases implements the gate of the named cases in scenarios/regressions.
 namespace tumble::tools {
 
 /// kAllCases is the command-line word that selects all named cases of the source tree.

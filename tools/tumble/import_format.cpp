@@ -90,7 +90,7 @@ std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // a pipe can be read only once, so a pipe is not opened here
+  // A pipe can be read only once, so the function does not open a pipe.
   if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
     scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;

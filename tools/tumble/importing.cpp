@@ -47,7 +47,7 @@ Imported import_format(const Session& session, const ImportOptions& options, con
   return scenarios::import_sweeps(sweep_source(session, options, format));
 }
 
-/// Notes the assumptions about an IMU for properties that the file cannot state.
+/// Adds notes on the assumptions about an IMU, for properties that the file format lacks.
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
@@ -68,15 +68,15 @@ bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   return false;
 }
 
-/// Rejects options that do not apply to a recording of this program; sheet and mounting of its first sensors can be
-/// set.
+/// Throws BadInput for options that do not apply to a recording of this program; only data sheet and mounting of its
+/// first sensors can be set.
 void require_own_options(ImportOptions options) {
   for (std::string* name : {&options.device, &options.lidar}) name->clear();
   for (std::vector<double>* pose : {&options.lever_arm_m, &options.T_body_lidar}) pose->clear();
   require_fitting(options, "recording");
 }
 
-/// Applies data sheet and mounting as the options state.
+/// Applies the data sheet and the mounting in the options to the sensors.
 void apply_mounting(const Session& session, const ImportOptions& options, sim::Sensors& sensors) {
   if (!sensors.imus.empty()) {
     const sim::ImuRecord stated = imu_sheet(session, options);

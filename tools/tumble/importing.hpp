@@ -11,11 +11,11 @@
 #include "tools/tumble/import_options.hpp"
 #include "tools/tumble/session.hpp"
 
-/// importing.hpp reads a recording of any format for `import`, `odometry` and `doctor`.
+/// The functions in importing.hpp read a recording of any format for `import`, `odometry` and `doctor`.
 namespace tumble::tools {
 
-/// Imports a recording of one format with the notes of the reader and of the checks. `rotation` receives the comparison
-/// of IMU and lidar. Throws BadInput.
+/// Imports a recording of one format, with the notes of the reader and of the checks. The argument `rotation` receives
+/// the comparison of IMU and lidar. Throws BadInput if the import fails.
 scenarios::Imported import_recording(const Session& session, const ImportOptions& options, const std::string& format,
                                      scenarios::LidarRotationCheck& rotation);
 
@@ -35,9 +35,9 @@ struct OpenRecording {
   scenarios::LidarRotationCheck rotation;
 };
 
-/// Opens a recording of this program, or any file that `tumble import` reads. If an error names an option that repairs
-/// the reading, and the user did not set the option, the recording is read again with the option. If a bag has several
-/// topics, faulty topics are left out. Throws BadInput.
+/// Opens a recording of this program, or any file that `tumble import` reads. If an error names an option that makes
+/// the recording readable, the recording is read again with this option, unless the user set it. If a bag has several
+/// topics of a kind, faulty topics are skipped. Throws BadInput if the recording cannot be read.
 OpenRecording open_recording(const Session& session, ImportOptions options);
 
 }  // namespace tumble::tools

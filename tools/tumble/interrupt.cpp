@@ -7,11 +7,11 @@ namespace tumble::tools {
 
 namespace {
 
-// a signal handler may access only static storage
+// A signal handler may access only static storage.
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-// previous signal handlers
+// These variables store the previous signal handlers.
 struct sigaction interrupt_before = {}, terminate_before = {}, hang_up_before = {};
 
 /// A second signal has its previous effect, except for SIGHUP.

@@ -6,7 +6,7 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// intervals.hpp formats intervals for people (text) and for programs (JSON).
+/// The functions in intervals.hpp format intervals for people (text) and for programs (JSON).
 namespace tumble::tools {
 
 /// Formats the two ends of an interval; "[-]" if neither is known.

@@ -14,12 +14,12 @@ namespace tumble::tools {
 /// the file contains the calibration of this run.
 class LearntFile {
  public:
-  /// An empty path means that the option is not used. A missing file means that there is no calibration yet. Throws
-  /// BadInput if the file cannot be read.
+  /// Reads the calibration file; an empty path means that the option is not used. A missing file means that there is no
+  /// calibration yet. Throws BadInput if the file cannot be read.
   explicit LearntFile(std::filesystem::path path);
 
-  /// Throws BadInput if the file cannot be written, and leaves no file behind. require_place is called before the run,
-  /// after the folder of the file was created.
+  /// Throws BadInput if the file cannot be written. The caller calls require_place before the run, after creating the
+  /// folder of the file.
   void require_place() const;
 
   /// Compares the lever arm in the file with the lever arm of the recording; returns a warning if the file belongs to
@@ -30,8 +30,8 @@ class LearntFile {
   /// Returns the full names of the methods that calibrate the rig.
   static std::string learning_methods();
 
-  /// Returns `method` with a start from the calibration in the file. Returns `method` unchanged if the method does not
-  /// calibrate or if there is no file. The returned method refers to this object.
+  /// Returns a method that starts with the calibration in the file. If `method` does not calibrate or there is no file,
+  /// the function returns `method` unchanged. The returned method refers to the LearntFile.
   scenarios::Method wrap(const scenarios::Method& method);
 
   /// Writes the calibration to the file. If the run produced no calibration, the file is unchanged and a note states

@@ -186,7 +186,7 @@ Listing list_methods(const std::string& only) {
   }
   out.tables.push_back(std::move(table));
   if (!parameters.empty()) out.tables.push_back(std::move(parameters));
-  // the numbers of all methods would fill thousands of lines
+  // The numbers of all methods would fill thousands of lines.
   if (!only.empty() && !further.empty()) out.tables.push_back(std::move(further));
   return out;
 }

@@ -8,17 +8,18 @@
 #include "scenarios/summary/sensitivity.hpp"
 #include "tools/tumble/session.hpp"
 
-/// numbers_of_draws.hpp provides the random numbers of the simulated runs in a results database, by scenario.
+/// The functions in numbers_of_draws.hpp return the random numbers of the simulated runs in a results database, by
+/// scenario.
 namespace tumble::tools {
 
 using NumbersByScenario = std::map<std::string, scenarios::NumbersOfDraws>;
 
-/// Returns the random numbers of catalogue scenarios; other scenarios are noted and left out. The database must have
+/// Returns the random numbers of catalogue scenarios; other scenarios are omitted with a note. The database must have
 /// been made with the same models and catalogue.
 NumbersByScenario numbers_of_catalogue(const Session& session, const scenarios::DataRoot& data,
                                        const scenarios::Summary& summary);
 
-/// Returns the measures of motion of each simulated run.
+/// Returns the motion values of each simulated run, such as the peak rate.
 NumbersByScenario numbers_of_motions(std::span<const scenarios::DrawValues> draws, const scenarios::Summary& summary);
 
 }  // namespace tumble::tools

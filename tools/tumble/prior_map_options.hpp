@@ -8,7 +8,8 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/verb_options.hpp"
 
-/// prior_map_options.hpp declares the options with which a verb localises a run in the map of an earlier run.
+/// The header prior_map_options.hpp declares the options with which a verb localises a run in the map of an earlier
+/// run.
 namespace tumble::tools {
 
 struct PriorMapOptions {
@@ -19,7 +20,8 @@ struct PriorMapOptions {
 
 void declare_prior_map(VerbOptions& verb, PriorMapOptions& options);
 
-/// Returns `method` with the prior map of the options, if any. Throws BadInput.
+/// Returns `method` with the prior map of the options, if any. Throws BadInput if the map cannot be read or the method
+/// cannot use a map.
 scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options);
 
 /// States from which sweep on the poses are in the prior map.

@@ -81,7 +81,7 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  // messages are shortened, because a corrupt file may contain megabytes in place of a word
+  // Messages are shortened, because a corrupt file may contain megabytes in place of a word.
   constexpr std::size_t kBegin = 1500, kEnd = 300;
   std::string shown =
       line.size() <= kBegin + kEnd ? line : line.substr(0, kBegin) + " ... " + line.substr(line.size() - kEnd);
@@ -91,7 +91,7 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// Shows the text of `tumble` without arguments.
+/// Prints the text that `tumble` shows without arguments.
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
@@ -142,7 +142,7 @@ int dispatch(int argc, const char* const* argv) {
     options->add_flag("--quiet", session.quiet, "suppresses notes and progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
-    // for some verbs, --format is the format of a recording
+    // For some verbs, --format is the format of a recording.
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);
@@ -169,7 +169,7 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // a lack of processes, pipes or threads is not a defect of the program
+    // A lack of processes, pipes or threads is not a defect of the program.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the simulation rejected the draw: ", error.what(), kCheckFailed);

@@ -10,7 +10,7 @@
 
 namespace tumble::tools {
 
-/// Returns the versions of program and engine that recordings state.
+/// Returns the versions of program and engine for the metadata of recordings.
 scenarios::RecordingInfo recording_versions();
 
 /// Returns the information that the program stores with a recording after a simulation.
@@ -20,9 +20,9 @@ scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation,
 /// scenario's `duration_s` may be too short. Returns an empty text if the body is at rest.
 std::string end_in_motion(const sim::Truth& truth);
 
-/// Builds the world in which a recording was simulated, from the numbers that the recording states. Messages start with
-/// `place`. Sensors are left out, so that sensor parameters unknown to this build cause no error. Throws BadInput,
-/// sim::InvalidSituation.
+/// Builds the world in which a recording was simulated, from the numbers in the recording. Error messages start with
+/// `place`. Sensors are omitted, so that sensor parameters unknown to this build cause no error. Throws BadInput or
+/// sim::InvalidSituation if the world cannot be built.
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data);
 

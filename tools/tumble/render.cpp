@@ -48,8 +48,8 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // a name with a recording's extension means a file, even if the file does not exist; a folder is never a recording,
-  // so that the folder that 'tumble run hill' writes does not hide the scenario
+  // A name with a recording's extension means a file, even if the file does not exist. A folder is never a recording,
+  // so that the folder that 'tumble run hill' writes does not hide the scenario.
   if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
   return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
@@ -64,7 +64,7 @@ void load_situation(const scenarios::DataRoot& data, const RenderOptions& option
                     options.what));
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
-  // the truth positions the robot and the estimates in the picture; no estimate is computed here
+  // The truth gives the poses of the robot and the alignment of the estimates in the picture.
   if (!info.has_truth)
     throw BadInput(
         fmt::format("{}: this recording contains no truth, so its path cannot be drawn; give a recording with truth",

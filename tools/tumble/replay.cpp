@@ -38,7 +38,7 @@ struct ReplayContent {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// Loads the recording with the truth, for display only; no estimate is computed here.
+/// Loads the recording with the truth, for display only.
 void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
                     ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);

@@ -179,7 +179,7 @@ PageContent content_of(const Session& session, const ReportVerbOptions& options,
 void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
-  // both files are complete before the first is moved, so that a full disk leaves neither
+  // Both files are complete before the first is moved, so that a full disk leaves neither.
   std::list<scenarios::OutputFile> files;
   const auto write = [&](const std::filesystem::path& path, const std::string& text) {
     files.emplace_back(path).write(std::as_bytes(std::span(text)));
@@ -222,7 +222,7 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // the page is written first, because it must not depend on a reader of standard output
+  // The page is written first, because it must not depend on a reader of standard output.
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);

@@ -38,7 +38,7 @@ struct RunOptions {
   fs::path learnt;
 };
 
-/// Returns true if the command line states only a scenario and perhaps a seed, as for a first try of the program.
+/// Returns whether the command line contains only a scenario and perhaps a seed, as for a first try of the program.
 bool is_bare(const RunOptions& options) {
   return options.methods.empty() && options.folder.empty() && options.learnt.empty() && options.parameters.empty() &&
          options.vary.empty();
@@ -61,7 +61,7 @@ const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   return nullptr;
 }
 
-/// Returns the method that is registered as the baseline of a kind, else the first method of the kind.
+/// Returns the method that is registered as the baseline of a kind, or else the first method of the kind.
 const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   const scenarios::MethodInfo* const baseline = first_of(kind, [](const auto& info) { return info.baseline; });
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });

@@ -60,7 +60,7 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
 }
 
 constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
-// below these limits, the comparison would include hardly more than the alignment pose
+// Below these limits, the comparison would include hardly more than the alignment pose.
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
@@ -70,7 +70,7 @@ struct Standing {
   std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth, and of all poses
   double covered_s = 0;                       ///< covered time, without gaps longer than a fifth of the truth
   scenarios::Alignment alignment;
-  /// fraction of the truth's time between first and last pose, gaps included
+  /// Returns the fraction of the truth's time between the first and last pose, gaps included.
   double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };

@@ -11,8 +11,8 @@
 
 namespace tumble::tools {
 
-/// Returns one table per kind: one row per metric in the order of first occurrence, one column per method, the status
-/// first. `status` replaces the status of the outcomes if `status` has more detail.
+/// Returns one table per kind: one row per metric in the order of first occurrence, one column per method, with the
+/// status in the first row. The argument `status` replaces the status of the outcomes if it has more detail.
 std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes,
                                 const std::string& status = "");
 

@@ -36,8 +36,8 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// Returns the oracle of the method's kind if the oracle applies to the robot. A simulated run on which even the oracle
-/// fails is not a useful case.
+/// Returns the method with true input (oracle) of the method's kind, if it applies to the robot. A simulated run on
+/// which even this method fails is not a useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;

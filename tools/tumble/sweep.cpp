@@ -78,15 +78,15 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
         fmt::format("--data does not apply to suite '{}', because the suite has no recordings", suite.name));
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
-    // an unknown name must be rejected before the sweep starts
+    // An unknown name must cause an error before the sweep starts.
     for (const std::string& name : options.methods) scenarios::find_methods(name);
     suite.methods = options.methods;
   }
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// Stores the certificate of this build with the results; the certificate is measured at most once per build and
-/// machine.
+/// Stores the certificate of this build (checks of its simulation) with the results; the certificate is measured at
+/// most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -124,7 +124,7 @@ void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Generates examples only if the complete suite was swept, because typical runs of a shard may not be typical of the
+/// Generates examples only if the complete suite was swept, because the typical runs of a part may be untypical of the
 /// suite. Errors in pictures are reported but do not change the table and the exit status. Returns false if the
 /// generation was stopped.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
@@ -132,7 +132,8 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // `--examples 0` also disables pictures of failures; a sweep that is too small for typical runs still shows failures
+  // The option `--examples 0` also disables pictures of failures; a sweep that is too small for typical runs still
+  // shows failures.
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -223,7 +224,7 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// Stores the question in the results before anything runs; an empty text asks nothing.
+/// Stores the question in the results before the first run; an empty text asks nothing.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
@@ -264,7 +265,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // the call creates an empty database, so that all shards can be merged
+    // The call creates an empty database, so that the databases of all parts can be merged.
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
@@ -277,7 +278,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // the certificate applies only to simulations
+  // The certificate applies only to simulations.
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {

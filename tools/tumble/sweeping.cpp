@@ -22,7 +22,7 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   all.elapsed_s += before.elapsed_s;
   all.peak_mib = std::max(all.peak_mib, before.peak_mib);
   if (all.not_kept.empty()) all.not_kept = before.not_kept;
-  // the estimate of the remaining time uses the mean time per run, as if all runs were executed
+  // The estimate of the remaining time uses the mean time per run, as if all runs were executed.
   if (all.draws_done > 0)
     all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
   return all;
@@ -46,7 +46,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   ProgressDisplay shown = ProgressDisplay::on_standard_error();
   AskedSweep out;
   scenarios::Suite part = suite;
-  // the worst runs are determined after the last step
+  // The worst runs are determined after the last step.
   scenarios::SweepOptions own = options;
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };

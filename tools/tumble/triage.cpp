@@ -105,8 +105,8 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// Rejects a name that is neither a suite's nor a scenario's, before CLI11 reports missing options. The content of a
-/// file is checked when all options are known.
+/// Throws BadInput for a name that is neither a suite nor a scenario, before CLI11 reports missing options. The content
+/// of a file is checked when all options are known.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);

@@ -95,7 +95,8 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// Names the true input that cures most simulated runs. All inputs together are only a bound and are not considered.
+/// Names the true input that prevents the failure of most simulated runs. The replacement of all inputs together is
+/// only a bound, so it is not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
   if (worths.empty()) return "no draw could be run";
   const std::string& whole = worths.back().scenario;  // the summary over all scenarios, if there are several

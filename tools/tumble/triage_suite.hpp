@@ -7,7 +7,7 @@
 #include "scenarios/sweep/suite_triage.hpp"
 #include "tools/tumble/session.hpp"
 
-/// triage_suite.hpp runs the triage over all simulated runs of a suite.
+/// The function run_suite_triage runs the triage over all simulated runs of a suite.
 namespace tumble::tools {
 
 struct SuiteTriage {

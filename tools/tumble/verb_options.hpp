@@ -9,8 +9,8 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// verb_options.hpp declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, because
-/// CLI11's headers add seconds of compile time to every source.
+/// The classes in verb_options.hpp declare the options of a verb. Only verb_options.cpp and program.cpp include CLI11,
+/// because CLI11's headers add seconds of compile time to every source.
 namespace tumble::tools {
 
 /// VerbOption contains further properties of an option or argument that was just declared.
@@ -24,13 +24,14 @@ class VerbOption {
   VerbOption within(double low, double high);
   /// Accepts whole numbers from `low` to `high`.
   VerbOption whole(int low, int high);
-  /// Adds a check that runs before CLI11 reports missing options. `refuse` throws BadInput with a one-line message.
+  /// Adds a check that runs before CLI11 reports missing options. The function `refuse` throws BadInput with a one-line
+  /// message.
   VerbOption check(std::function<void(const std::string&)> refuse);
   /// Rejects an empty word.
   VerbOption filled();
-  /// The option takes exactly `count` words.
+  /// The option then takes exactly `count` words.
   VerbOption words(int count);
-  /// The option takes one word each time it occurs; the next word belongs to another option.
+  /// The option then takes one word each time it occurs; the next word belongs to another option.
   VerbOption one_at_a_time();
   /// Splits one word into several words at `separator`.
   VerbOption separated_by(char separator);
@@ -46,8 +47,8 @@ class VerbOptions {
  public:
   explicit VerbOptions(CLI::App& app) : app_(&app) {}
 
-  /// Declares an option ("--seed", "-o,--output") or a positional argument ("SCENARIO"). `Value` is one of the types
-  /// instantiated in verb_options.cpp. The target must exist while the command line is parsed.
+  /// Declares an option ("--seed", "-o,--output") or a positional argument ("SCENARIO"). The type `Value` is one of the
+  /// types instantiated in verb_options.cpp. The target must exist while the command line is parsed.
   template <class Value>
   VerbOption add(const std::string& names, Value& target, const std::string& doc);
   void add_flag(const std::string& name, bool& target, const std::string& doc);

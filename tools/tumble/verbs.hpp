@@ -12,8 +12,8 @@ namespace tumble::tools {
 /// Action runs a verb after its options were parsed, and returns the exit status.
 using Action = std::function<int()>;
 
-/// Verb is a verb of the program. The declaration adds the verb's options to `verb` and returns its action. The session
-/// outlives the action.
+/// Verb is a subcommand of the program. The declaration adds the verb's options to `verb` and returns its action. The
+/// session outlives the action.
 struct Verb {
   const char* name;
   const char* doc;

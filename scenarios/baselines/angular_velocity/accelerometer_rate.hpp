@@ -16,15 +16,15 @@ namespace tumble::baselines {
 /// AccelerometerRate estimates angular rates from several accelerometers at known positions (gyro-free inertial
 /// system), by an extended Kalman filter.
 ///
-/// The filter state contains the angular rate and the angular acceleration, driven by white jerk. The measurement is
-/// the difference of the specific force between each auxiliary IMU and the primary IMU: alpha x p + w x (w x p). The
-/// motion model is valid in flight, in contact and at rest. The filter also uses the unclipped gyro axes (`use_gyro`),
-/// so the accelerometers only need to supply the clipped axes.
+/// The filter state contains the angular rate w and the angular acceleration alpha, which is driven by white jerk. The
+/// measurement is the difference of the specific force between each auxiliary IMU at p and the primary IMU: alpha x p +
+/// w x (w x p). The motion model is valid in flight, in contact and at rest. The filter also uses the unclipped gyro
+/// axes (`use_gyro`), so the accelerometers only need to supply the clipped axes.
 ///
 /// AccelerometerRate is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles).
 /// Centripetal acceleration grows with the squared rate, so noise and misalignment hide slow rotation. The filter
-/// neglects free flight, bias and misalignment of the accelerometers, and the correlation between the auxiliary IMUs'
-/// differences.
+/// neglects free flight, accelerometer bias and misalignment, and the correlation between the force differences of the
+/// auxiliary IMUs.
 ///
 /// With one auxiliary IMU, the rate about the line between the two IMUs is observable only through products with the
 /// other axes' rates. Without auxiliary IMUs, the filter bridges clipped readings by assuming a smooth rate.
@@ -36,13 +36,13 @@ class AccelerometerRate {
     bool use_gyro = true;
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
     double accel_noise_density = 1.5e-3;   ///< largest of the accelerometers [m/s^2/sqrt(Hz)]
-    double accel_floor_m_s2 = 0.05;        ///< standard deviation of the bias of a force difference
+    double accel_floor_m_s2 = 0.05;        ///< standard deviation of the bias of a force difference between two IMUs
     double accel_scale_error = 2e-3;       ///< scale and misalignment, relative to the force
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
     double rate_max_rad_s = 50.0;          ///< largest rate about one axis in the result
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -71,9 +71,10 @@ class AccelerometerRate {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit AccelerometerRate(const Params& params);
 
-  /// Computes one RateState per sample. On error, `out` is unchanged. Possible errors are `empty`, `too_few` (fewer
-  /// than two samples, or an auxiliary IMU with a different number of samples), `non_finite`, `time_order` and `gap`.
-  /// The cost is proportional to the number of samples times the number of auxiliary IMUs.
+  /// Estimates the angular rate of each sample, and writes one RateState per sample to `out`. On error, `out` keeps its
+  /// content. Possible errors are `empty`, `too_few` (fewer than two samples, or an auxiliary IMU with a different
+  /// number of samples), `non_finite`, `time_order` and `gap`. The cost is proportional to the number of samples times
+  /// the number of auxiliary IMUs.
   Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;
 

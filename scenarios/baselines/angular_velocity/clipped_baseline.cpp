@@ -14,7 +14,7 @@ namespace tumble::baselines {
 
 namespace {
 
-// Axis contains the data of one gyro axis for the smoother: readings, clipping flags and variance.
+// Axis contains the data of one gyro axis: readings, saturation flags and noise variance.
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;    ///< saturated
@@ -37,8 +37,8 @@ double cubic(double share, double span_s, double from, double slope_from, double
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the unclipped readings that end (step -1) or start (step +1) at sample k. Returns 0 if
-// there is only one unclipped reading.
+// Returns the derivative of the rate at sample k, from the unclipped readings before (step -1) or after (step +1) a
+// gap. Returns 0 if only one reading there is unclipped.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -62,7 +62,8 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic has no variance, so the distance between the cubic and the reading serves as standard deviation.
+      // A cubic curve has no variance, so the distance between the curve and the clipped reading serves as standard
+      // deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }
@@ -71,7 +72,7 @@ std::vector<Value> interpolate(const Axis& axis) {
   return out;
 }
 
-// RandomWalk models the angular rate as a random walk.
+// RandomWalk models the angular rate of one axis as a random walk.
 struct RandomWalk {
   static constexpr int kSize = 1;
   using Matrix = Eigen::Matrix<double, 1, 1>;
@@ -82,9 +83,8 @@ struct RandomWalk {
   Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
 };
 
-// BoundedJerk models the angular rate by the stationary process with Matern 5/2 covariance: white snap over short
-// times, bounded rate over long times. The state of this process is rate, acceleration and jerk (Hartikainen and
-// Saerkkae 2010, section 4).
+// BoundedJerk models the angular rate of one axis by a stationary Gaussian process with Matern 5/2 covariance. The
+// state of the Matern 5/2 process is rate, acceleration and jerk (Hartikainen and Saerkkae 2010, section 4).
 struct BoundedJerk {
   static constexpr int kSize = 3;
   using Matrix = Eigen::Matrix3d;
@@ -99,7 +99,7 @@ struct BoundedJerk {
     P << variance, 0.0, -middle, 0.0, middle, 0.0, -middle, 0.0, lambda * lambda * lambda * lambda * variance;
     return P;
   }
-  // Returns exp(A t) of the companion matrix A, whose three eigenvalues are -lambda.
+  // Returns the state transition matrix exp(A t), where all three eigenvalues of the companion matrix A are -lambda.
   Matrix transition(double dt_s) const {
     Matrix N;
     N << lambda, 1.0, 0.0, 0.0, lambda, 1.0, -lambda * lambda * lambda, -3.0 * lambda * lambda, -2.0 * lambda;
@@ -108,8 +108,8 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// Chain models the rate of one axis as a linear Gaussian process. The process model ignores clipped readings, unless
-// `bounds` adds one Gaussian factor per clipped sample.
+// Chain estimates the rate of one axis by a Kalman filter and smoother for a linear Gaussian process. Chain ignores
+// clipped readings, unless `bounds` adds one Gaussian factor per clipped sample.
 template <typename Process>
 class Chain {
  public:
@@ -131,10 +131,10 @@ class Chain {
     }
   }
 
-  // Returns rate estimates that use all readings up to each sample.
+  // Returns the rate at each sample, estimated from all readings up to this sample.
   std::vector<Value> filtered() const { return values(after_); }
 
-  // Returns rate estimates that use all readings (Rauch, Tung and Striebel 1965).
+  // Returns the rate at each sample, estimated from all readings (Rauch, Tung and Striebel 1965).
   std::vector<Value> smoothed() const {
     std::vector<Moment> out = after_;
     for (std::size_t k = out.size() - 1; k-- > 0;) {
@@ -177,9 +177,9 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// Computes the most likely rate curve whose magnitude is at least every clipped reading. Each round smooths the curve
-// and adds a hard limit at each clipped reading that the curve violates. The reported variance is that of the curve
-// without limits, truncated at the reading.
+// Computes the most likely rate curve whose magnitude is at least every clipped reading. Each iteration smooths the
+// curve, then adds a hard limit at each clipped reading whose magnitude exceeds the curve. The reported variance
+// belongs to the smoothed curve without limits, truncated at the clipped reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);

@@ -12,25 +12,27 @@
 
 namespace tumble::baselines {
 
-/// ClippedBaseline estimates clipped angular rates from the gyro alone, with one of three models of the hidden rate.
+/// ClippedBaseline estimates clipped angular rates from the gyro alone, with one of three models of the rate during
+/// clipping.
 ///
 /// ClippedBaseline estimates each gyro axis independently. The estimate is limited to the range from the saturation
 /// level to a maximum rate. ClippedBaseline ignores the accelerometer.
 ///
-/// - `interpolate`: a cubic over each gap of clipped samples that matches the rate and its derivative at both ends. The
-///   cubic interpolation suits gaps that are short compared with the motion.
-/// - `reject`: a causal Kalman filter with a random-walk rate; the estimate is constant over a gap. Between lidar
-///   corrections, Point-LIO also keeps the rate constant during saturation. The `reject` model suits gaps shorter than
-///   the time between corrections by another sensor.
-/// - `constant_jerk`: a smoother with the stationary Matern 5/2 process of deviation `rate_sigma_rad_s`: white snap
-///   over short times, bounded rate over long times. The smoother uses clipped readings as hard lower limits of the
-///   rate's magnitude. The `constant_jerk` model suits swings without impacts and gaps up to about 2 / lambda = 0.15 s,
-///   with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer gaps, the `constant_jerk` estimate returns towards
-///   the saturation level. The reported variance then belongs to a curve above the saturation level.
+/// - The model `interpolate` bridges each gap of clipped samples by a cubic that matches the rate and its derivative at
+///   both ends of the gap. The cubic interpolation suits gaps that are short compared with the motion.
+/// - The model `reject` is a causal Kalman filter with a random-walk rate, so the estimated rate is constant over a
+///   gap. Between lidar corrections, Point-LIO also keeps the rate constant during saturation. The `reject` model suits
+///   gaps shorter than the time between corrections by another sensor.
+/// - The model `constant_jerk` is a smoother with a stationary Matern 5/2 process, which combines white snap with a
+///   bounded rate (`rate_sigma_rad_s`). The smoother of `constant_jerk` uses clipped readings as hard lower limits of
+///   the rate's magnitude. The `constant_jerk` model suits swings without impacts and gaps up to about 2 / lambda =
+///   0.15 s, with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer gaps, the rate that `constant_jerk`
+///   estimates returns towards the saturation level. In longer gaps, the variance that `constant_jerk` reports belongs
+///   to a curve above the saturation level.
 ///
-/// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative. On tumbles of the
-/// rig, the mean error of `interpolate` and `constant_jerk` exceeds that of the clipped reading. ClippedBaseline
-/// neglects impacts within a gap and the coupling between the axes of a tumbling body.
+/// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative of the rate. On
+/// simulated tumbles of the rig, `interpolate` and `constant_jerk` have a larger mean error than the clipped reading.
+/// ClippedBaseline neglects impacts within a gap and the coupling between the axes of a tumbling body.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };
@@ -38,18 +40,19 @@ class ClippedBaseline {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
-    /// Noise density of the gyro [rad/s/sqrt(Hz)].
+    /// The number `gyro_noise_density` is the noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
-    /// Density of the white angular acceleration that model `reject` assumes [rad^2/s^3].
+    /// The model `reject` assumes white angular acceleration with the density `acceleration_psd` [rad^2/s^3].
     double acceleration_psd = 1e3;
-    /// Density of the white angular snap that model `constant_jerk` assumes [rad^2/s^7].
+    /// The model `constant_jerk` assumes white angular snap with the density `snap_psd` [rad^2/s^7].
     double snap_psd = 1e9;
-    /// Standard deviation of one axis's rate that model `constant_jerk` assumes [rad/s].
+    /// The model `constant_jerk` assumes that the rate of one axis has the standard deviation `rate_sigma_rad_s`
+    /// [rad/s].
     double rate_sigma_rad_s = 20.0;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
     double gap_max_s = 1.0;        ///< longest accepted time between samples
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -76,8 +79,9 @@ class ClippedBaseline {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit ClippedBaseline(const Params& params);
 
-  /// Computes one RateState per sample in O(N). On error, `out` is unchanged. Possible errors are `empty`, `too_few`
-  /// (fewer than two samples), `non_finite`, `time_order` and `gap`.
+  /// Estimates the angular rate of each sample, and writes one RateState per sample to `out`, in O(N). On error, `out`
+  /// keeps its content. Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and
+  /// `gap`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -50,13 +50,13 @@ struct Step {
   ErrorCovariance transition = ErrorCovariance::Identity();
 };
 
-// Noise contains the noise of one sample, computed from the parameters and the sample period.
+// Noise contains the noise variances of one sample, computed from the parameters and the sample period.
 struct Noise {
   double gyro_variance = 0.0, accel_variance = 0.0;
 };
 
-// BoundedAcceleration models the rate of one axis by the stationary Matern 3/2 process: white jerk over short times,
-// bounded rate over long times. The state of this process is rate and acceleration.
+// BoundedAcceleration models the rate of one axis by a stationary Matern 3/2 process: white jerk over short times,
+// bounded rate over long times. The state of the Matern 3/2 process is rate and acceleration.
 struct BoundedAcceleration {
   double lambda = 1.0, variance = 1.0;
 
@@ -74,7 +74,8 @@ struct BoundedAcceleration {
 void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& process, const Noise& noise,
              const ImuSample& sample, double dt_s, Belief& belief, ErrorCovariance& F) {
   Navigation& n = belief.mean;
-  // Specific force and rate of a sample are means over the averaging window that ends with this time step.
+  // The specific force and the rate of a sample are means over the averaging window that ends with the current time
+  // step.
   const Eigen::Matrix2d motion = process.transition(dt_s);
   const Vector3d turn = dt_s * (motion(0, 0) * n.rate_rad_s + motion(0, 1) * n.acceleration_rad_s2);
   const Eigen::Quaterniond middle = n.q_WI * so3::exp(0.5 * turn);
@@ -122,8 +123,8 @@ void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief&
   if (held != rate) measure_component(6 + axis, side * (held - rate), kSoftness * kSoftness, belief);
 }
 
-// Returns whether the tilt or velocity error at rest is too large for the linear smoother to correct the preceding
-// motion.
+// Returns whether the tilt or velocity error at a standstill is too large for the linear smoother to correct the
+// previous motion.
 bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const Belief& belief) {
   const Vector3d up = belief.mean.q_WI * sample.specific_force_m_s2.normalized();
   if (std::atan2(up.head<2>().norm(), up.z()) > p.tilt_max_rad) return true;
@@ -133,7 +134,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
   return v.dot(spread.ldlt().solve(v)) > p.velocity_gate * p.velocity_gate;
 }
 
-// Restarts attitude and velocity without correlation to earlier states, and keeps the rate estimate.
+// Resets attitude and velocity, removes their correlation with earlier states, and keeps the rate estimate.
 void restart(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
   constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
   Navigation& n = belief.mean;
@@ -171,7 +172,7 @@ std::vector<bool> standstills(const StandstillSmoother::Params& p, std::span<con
   return rest;
 }
 
-// Performs a Rauch-Tung-Striebel step from the next sample back to this sample.
+// Performs one Rauch-Tung-Striebel step backward in time, from the next sample to this sample.
 void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
   const ErrorCovariance& ahead = next.before.covariance;
   const ErrorCovariance gain = ahead.ldlt().solve(next.transition * now.covariance).transpose();

@@ -14,7 +14,7 @@ namespace tumble::baselines {
 
 /// StandstillSmoother estimates angular rates between standstills with an inertial navigation filter and a backward
 /// smoothing pass. At rest the filter applies zero-velocity and zero-rate updates. The smoother distributes the
-/// rotation lost to saturation over the clipped samples between two rests.
+/// rotation lost to saturation over the clipped samples between two standstills.
 ///
 /// The error state has 12 elements: attitude, velocity, rate and angular acceleration. The filter integrates the
 /// specific force and models the rate as a Matern 3/2 process: white angular jerk over short times, bounded rate over
@@ -24,10 +24,10 @@ namespace tumble::baselines {
 ///
 /// The method follows zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh).
 /// StandstillSmoother is designed for motions of one or two seconds between rests with few clipped samples. If the tilt
-/// or velocity error at the next standstill is too large for a linear filter, attitude and velocity restart at that
-/// standstill. After a restart of attitude and velocity, the rates since the previous standstill follow only from the
-/// limits of the clipped readings and from smoothness. A tumble of several turns causes a restart. StandstillSmoother
-/// neglects clipped specific force, a lever arm and sensor bias.
+/// or velocity error at the next standstill is too large for a linear filter, the filter resets attitude and velocity.
+/// After a reset, only the limits of the clipped readings and smoothness determine the rates since the previous
+/// standstill. A tumble of several turns causes a reset. StandstillSmoother neglects clipped specific force, lever arms
+/// and sensor bias.
 class StandstillSmoother {
  public:
   struct Params {
@@ -48,7 +48,7 @@ class StandstillSmoother {
     double rate_max_rad_s = 50.0;           ///< largest rate about one axis in the result
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -86,9 +86,10 @@ class StandstillSmoother {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit StandstillSmoother(const Params& params);
 
-  /// Computes one RateState per sample; the rates of unclipped axes are copied from the gyro. On error, `out` is
-  /// unchanged. Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
-  /// Time and memory are proportional to the number of samples.
+  /// Estimates the angular rate of each sample, and writes one RateState per sample to `out`. For unclipped axes, the
+  /// estimated rate equals the gyro reading. On error, `out` keeps its content. Possible errors are `empty`, `too_few`
+  /// (fewer than two samples), `non_finite`, `time_order` and `gap`. Time and memory are proportional to the number of
+  /// samples.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -10,8 +10,7 @@
 
 namespace tumble::baselines {
 
-/// AutogainProfile selects how Autogain converts the angular rate to the factor that weights gyro against
-/// accelerometer.
+/// AutogainProfile selects the function of the angular rate that weights the gyro against the accelerometer.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
   code2021,  ///< the authors' code of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, but not the factors, use 0
@@ -27,9 +26,9 @@ struct AutogainGains {
 };
 
 /// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). The filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight
-/// falls with the rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The
-/// filter estimates neither bias nor heading.
+/// 2-5). The filter applies Madgwick's correction, with a gain that grows with the rate, then a complementary
+/// correction, with a weight that falls with the rate. During slow rotation the filter relies on the accelerometer even
+/// if the body accelerates. Autogain estimates neither gyro bias nor heading.
 class Autogain {
  public:
   struct Params {
@@ -38,16 +37,17 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// Computes the complementary step as the authors' code does. In the authors' code, the check for gimbal lock is
-    /// always true. As a consequence, the target attitude keeps the current roll, and roll is never corrected. The
-    /// option serves to reproduce the attitudes in the authors' recordings.
+    /// If `roll_error_2021` is true, the complementary step has the same error as the authors' code of 2021. In the
+    /// authors' code, the check for gimbal lock is always true. Because of the error in this check, the target attitude
+    /// keeps the current roll, so the filter never corrects roll. The option serves to reproduce the attitudes in the
+    /// authors' recordings.
     bool roll_error_2021 = false;
-    /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw. The
-    /// `smooth` profile uses the smallest rotation.
+    /// If `tilt_form` is true, the complementary step is the smallest rotation that corrects the tilt, instead of a
+    /// step in roll, pitch and yaw. The `smooth` profile always uses the smallest rotation.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.profile,
@@ -83,12 +83,12 @@ class Autogain {
 
   explicit Autogain(const Params& params);
 
-  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples integrate
-  /// the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro. On
-  /// error the state is unchanged. O(1), no allocation.
+  /// Updates the attitude with one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later
+  /// samples integrate the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates
+  /// the gyro. On error, `state` keeps its content. The cost is O(1), without allocation.
   Status step(const ImuSample& sample, State& state) const;
 
-  /// Returns factors and gains for a rate in sensor axes and a sample period.
+  /// Returns the correction factors and gains for a rate in sensor axes and a sample period.
   AutogainGains gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const;
 
  private:

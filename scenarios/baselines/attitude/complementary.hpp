@@ -11,15 +11,15 @@ namespace tumble::baselines {
 
 /// Complementary estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the
 /// fraction 1 - exp(-dt / tau) of the smallest rotation that levels the specific force. The estimated attitude is
-/// steady at rest, but accelerations that last longer than tau cause errors. The complementary filter does not estimate
-/// the gyro bias.
+/// steady at rest, but an acceleration that lasts longer than tau causes an error. The complementary filter does not
+/// estimate the gyro bias.
 class Complementary {
  public:
   struct Params {
     double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.tau_s,
@@ -39,9 +39,9 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples integrate
-  /// the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro. On
-  /// error the state is unchanged. O(1), no allocation.
+  /// Updates the attitude with one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later
+  /// samples integrate the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates
+  /// the gyro. On error, `state` keeps its content. The cost is O(1), without allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

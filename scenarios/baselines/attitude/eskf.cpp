@@ -33,7 +33,7 @@ Status Eskf::step(const ImuSample& sample, State& state) const {
 void Eskf::start(State& state) const {
   const double tilt = params_.tilt_sigma_start_rad * params_.tilt_sigma_start_rad;
   const double bias = params_.bias_sigma_start_rad_s * params_.bias_sigma_start_rad_s;
-  // The initial heading defines the world's x axis and thus has no error.
+  // The initial heading has no error, because it defines the world's x axis.
   state.covariance.diagonal() << tilt, tilt, 0.0, bias, bias, bias;
   state.started = true;
 }
@@ -52,9 +52,9 @@ void Eskf::predict(const Eigen::Vector3d& rate_rad_s, double dt_s, State& state)
 }
 
 void Eskf::correct(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
-  // The Kalman update uses the specific force rather than its direction. Over a bounded motion, the mean specific force
-  // is gravity, while the mean of its direction is biased. The vertical component of the specific force contains no
-  // information about attitude.
+  // The Kalman update uses the specific force instead of its direction. During bounded motion, the mean of the specific
+  // force equals gravity, while the mean of its direction is biased. The vertical component of the specific force
+  // contains no information about attitude.
   const Eigen::Vector3d up_W = state.q_WI * f_I_m_s2 / params_.gravity_m_s2;
   const Eigen::Vector2d innovation(up_W.y(), -up_W.x());
   const double sigma = params_.acceleration_noise_m_s2_sqrts / params_.gravity_m_s2;

@@ -10,13 +10,13 @@
 namespace tumble::baselines {
 
 /// Eskf estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias.
-/// The specific force measures the up direction. The textbook form of the filter is that of J. Sola, arXiv 1711.02508,
-/// sections 5-7, but with the error in world axes.
+/// The specific force measures the up direction of the filter. The filter follows Sola (arXiv 1711.02508, sections
+/// 5-7), but expresses the attitude error in world axes.
 ///
-/// The filter models body acceleration as zero-mean white noise on the force. The filter uses the unnormalised force
-/// with a constant weight, because normalising or weighting by its norm biases the mean. In fast translations,
-/// normalising caused an error of 12 deg instead of 0.8 deg. Real accelerations are not white, and the vertical gyro
-/// bias drifts at rest.
+/// The filter models body acceleration as zero-mean white noise of the specific force. The filter neither normalises
+/// the specific force nor weights it by its norm, because both would bias the mean. During fast translations,
+/// normalising the specific force increased the attitude error from 0.8 deg to 12 deg. Real accelerations are not
+/// white, and the estimated bias of the vertical gyro axis drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -30,7 +30,7 @@ class Eskf {
     double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -60,9 +60,9 @@ class Eskf {
 
   explicit Eskf(const Params& params);
 
-  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples predict
-  /// and correct. For a specific force below 1e-6 m/s^2, the filter only predicts. On error the state is unchanged.
-  /// O(1), no allocation.
+  /// Updates attitude and gyro bias with one IMU sample. The first sample sets roll and pitch from gravity and yaw to
+  /// 0; later samples predict and correct. For a specific force below 1e-6 m/s^2, the filter only predicts. On error,
+  /// `state` keeps its content. The cost is O(1), without allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

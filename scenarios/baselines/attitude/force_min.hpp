@@ -3,7 +3,7 @@
 
 namespace tumble::baselines {
 
-/// A specific force with a norm below kForceMin_m_s2 has no usable direction.
+/// kForceMin_m_s2 is the smallest norm of a specific force whose direction the attitude filters use.
 inline constexpr double kForceMin_m_s2 = 1e-6;
 
 }  // namespace tumble::baselines

@@ -11,8 +11,8 @@ namespace tumble::baselines {
 
 /// Mahony estimates attitude by the explicit complementary filter on SO(3) from gyro and accelerometer (Mahony, Hamel,
 /// Pflimlin, IEEE TAC 53(5), 2008, eq 32). The corrected rate is w + kp e + integral of ki e, with the tilt error e =
-/// f/|f| x R^T z in sensor axes. The integral estimates the gyro bias, but also follows lasting accelerations. Mahony's
-/// filter does not estimate the heading.
+/// f/|f| x R^T z in sensor axes. The integral of the tilt error estimates the gyro bias, but also follows lasting
+/// accelerations. Mahony's filter does not estimate the heading.
 class Mahony {
  public:
   struct Params {
@@ -20,7 +20,7 @@ class Mahony {
     double integral_rad_s2 = 0.001;   ///< ki
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.proportional_rad_s, {"proportional_rad_s", "rad/s", 0.0, 100.0,
@@ -41,9 +41,9 @@ class Mahony {
 
   explicit Mahony(const Params& params);
 
-  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples integrate
-  /// the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only applies the gyro and the
-  /// integral. On error the state is unchanged. O(1), no allocation.
+  /// Updates attitude and gyro bias with one IMU sample. The first sample sets roll and pitch from gravity and yaw to
+  /// 0; later samples integrate the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only
+  /// applies the gyro and the integral. On error, `state` keeps its content. The cost is O(1), without allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -27,10 +27,10 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// Returns the time of the registered pose: the start of the sweep, or the common time of all points, as in triage
-/// runs. If points with one common time were moved to the distant start of the sweep, velocity errors would be fed back
-/// with v' = v_true + (v - v''). The recursion v' = v_true + (v - v'') is unstable, with root -1.6. Points spread over
-/// the sweep halve the feedback term (v - v''), which gives the roots 0.5 and -1.
+/// Returns the time of the registered pose: the start of the sweep, or the common time if all points have the same
+/// time. With a common time, registration at the start of the sweep would feed velocity errors back by v' = v_true + (v
+/// - v''). The recursion v' = v_true + (v - v'') is unstable, because it has the root -1.6. Points spread over the
+/// sweep halve the term (v - v''), which gives the roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(
@@ -39,7 +39,7 @@ TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   return sweep.start_ns + rounded_offset(*first, step_ns);
 }
 
-/// SweepBounds accepts returns that miss the robot and whose range is within the limits.
+/// SweepBounds accepts lidar points outside the robot whose range is within the limits.
 class SweepBounds {
  public:
   explicit SweepBounds(const PublishedChain::Params& params)
@@ -76,7 +76,8 @@ std::vector<TrimmedIcp::Point> means_of(std::span<const SweepCell> cells, double
   return points;
 }
 
-/// Returns the points of a sweep, deskewed to the lidar axes at `at_ns` and voxelised, with variances.
+/// Deskews the points of a sweep to the lidar axes at `at_ns`, downsamples them to voxels, and returns them with
+/// variances.
 std::vector<TrimmedIcp::Point> deskewed(const Sweep& sweep, TimeNs at_ns, const PublishedImuOdometry& odometry,
                                         const PublishedChain::Params& params) {
   const double rate = params.skew_sigma_m_s;
@@ -184,7 +185,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// New points are compared only with points that were in the map before the extension.
+/// The distance of each new point is measured to the points that were in the map before this sweep.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
@@ -203,7 +204,7 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
   icp_.forget_normals();
 }
 
-/// Reports the poses of the sweep in the map's frame.
+/// Fills the report with the poses of the sweep in the map's frame.
 void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   const auto at = [&](TimeNs time_ns) {
     return pose_state(T_map_odom_ * odometry_.pose(time_ns), T_map_odom_.linear() * odometry_.velocity_m_s(time_ns),

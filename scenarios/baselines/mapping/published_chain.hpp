@@ -17,12 +17,12 @@
 namespace tumble::baselines {
 
 /// PublishedChain estimates trajectory and map from given rates with the published mapping chain (Deschenes et al.,
-/// ICRA 2024, with the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer
-/// odometry estimates position with velocity feedback from registration. The chain deskews each sweep, weights its
-/// points by time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers
-/// to the start of the sweep, or to the common time of the sweep's points. The published chain adds points only where
-/// the map is empty. A parameter switches each known error of the published chain; the defaults are those of the launch
-/// files.
+/// ICRA 2024). PublishedChain has the constants of the authors' launch files. Madgwick's filter estimates attitude, and
+/// accelerometer odometry estimates position with velocity feedback from registration. The chain deskews each sweep,
+/// weights its points by time, and registers the voxelised points to a map by trimmed point-to-plane registration. Each
+/// sweep is deskewed to its start, or to the common time of its points. The published chain inserts points only where
+/// the map is empty. Each known error of the published chain has a parameter that switches it; the defaults are those
+/// of the launch files.
 class PublishedChain {
  public:
   struct Params {
@@ -82,23 +82,24 @@ class PublishedChain {
   };
   using SweepReport = LidarInertialOdometry::SweepReport;
 
-  /// Sweep is one lidar sweep in lidar axes; the time offsets of points count from `start_ns`.
+  /// Sweep is one lidar sweep in lidar axes; the time offset of each point counts from `start_ns`.
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::span<const LidarPoint> points;
   };
 
-  /// Stores the samples of a whole recording, and `rates` with one angular rate per sample, which replaces the gyro.
-  /// `samples` must outlive this object.
+  /// Stores the samples of a whole recording, and `rates` with one angular rate per sample, which replaces the gyro
+  /// reading. The data of `samples` must outlive the PublishedChain.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
   /// Returns whether the IMU samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Registers a sweep that `covers` accepts and that is later than all earlier sweeps. Returns `out_of_range` if a
-  /// point's offset is beyond the end of the samples; the state is then unchanged. Returns `empty`, `degenerate` (all
-  /// points have one time) or `too_few` (points in range) without registration; the odometry then continues.
+  /// Registers a sweep to the map; `covers` must accept the sweep, and its time must be later than all earlier sweeps.
+  /// Returns `out_of_range`, without change of the state, if a point's time is after the last IMU sample. Returns
+  /// `empty`, `degenerate` (all points have one time) or `too_few` (points in range) without registration; the odometry
+  /// still advances.
   Status add(const Sweep& sweep, SweepReport& report);
-  /// Returns the map points with normals that point towards the sensor.
+  /// Returns the points of the map with normals that point towards the sensor.
   std::vector<MapPoint> map() const;
 
  private:

@@ -12,29 +12,31 @@
 namespace tumble::baselines {
 
 /// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
-/// frame "odom". PublishedChain uses this odometry for deskewing and as the registration prior. The estimated position
-/// is constant until the first velocity feedback.
+/// frame "odom". PublishedChain uses PublishedImuOdometry for deskewing and as initial pose of the registration. The
+/// estimated position is constant until registration supplies the first velocity.
 class PublishedImuOdometry {
  public:
-  /// `rates` contains one angular rate per sample, which replaces the gyro. `samples` must outlive this object.
+  /// Stores the IMU samples and `rates`, which contains one angular rate per sample that replaces the gyro reading. The
+  /// data of `samples` must outlive the PublishedImuOdometry.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
   /// Integrates the samples up to the first sample at or after `to_ns`.
   void advance(TimeNs to_ns);
-  /// Sets the velocity at `time_ns` to the velocity from registration, and adds the later accelerometer increments
+  /// Sets the velocity at `time_ns` to the velocity from registration, and integrates the later accelerometer samples
   /// again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU at a given time. Between samples, the pose is interpolated: position linearly and
+  /// Returns the pose of the IMU at `time_ns`. The pose between two samples is interpolated: position linearly and
   /// attitude by slerp. Before the first sample, the pose is constant.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the integrated velocity at the first sample at or after `time_ns`, without feedback that arrived after
-  /// this sample.
+  /// Returns the integrated velocity at the first sample at or after `time_ns`, without velocity feedback that arrived
+  /// after this sample.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:
-  /// Returns the index of the first integrated sample at or after `time_ns`, or of the last sample.
+  /// Returns the index of the first integrated sample at or after `time_ns`, or the index of the last sample if all are
+  /// earlier.
   std::size_t sample_at(TimeNs time_ns) const;
   Eigen::Vector3d acceleration_m_s2(std::size_t k) const;
 

@@ -16,9 +16,9 @@
 
 namespace tumble::baselines {
 
-/// RigidOdometry registers sweeps to a map, with a motion model that the caller supplies. RigidOdometry deskews each
-/// sweep once, to its end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar
-/// odometries differ in the motion model (`Motion`) and in how they use the registered pose; the caller chooses both.
+/// RigidOdometry registers sweeps to a map, with a motion prediction from the caller. Like most lidar odometries,
+/// RigidOdometry deskews each sweep once, to its end, and corrects only the end pose. Published lidar odometries differ
+/// in the motion prediction (`Motion`) and in how they use the registered pose; the caller implements both.
 ///
 /// RigidOdometry neglects motion errors within the sweep, mounting errors and clock offsets, and does not recover after
 /// a tracking failure.
@@ -32,12 +32,13 @@ class RigidOdometry {
     double sweep_voxel_m = 0.25;     ///< the filter registers one point per voxel of a sweep
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    /// Inserts unregistered sweeps into the map at the predicted pose, as most published methods do.
+    /// If `extend_always` is true, unregistered sweeps are inserted into the map at the predicted pose, as in most
+    /// published methods.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
@@ -67,7 +68,7 @@ class RigidOdometry {
     }
   };
 
-  /// Motion is the predicted motion over a time interval, with the uncertainty at its end.
+  /// Motion is the predicted motion over a time interval, with the uncertainty at the end of the interval.
   struct Motion {
     MotionState start;                  ///< time_ns at or before the sweep's start
     std::vector<MotionSample> samples;  ///< from the start to the sweep's end
@@ -77,12 +78,13 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers a sweep with points between start_ns and end_ns. The possible errors are those of
+  /// Registers the points of a sweep from `start_ns` to `end_ns` to the map. The errors of add_sweep are those of
   /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// These functions return the predicted and the registered state at the end of the last sweep, with covariance.
+  /// The functions predicted() and state() return the predicted and the registered motion state at the end of the last
+  /// sweep, with covariance.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

@@ -14,10 +14,10 @@
 
 namespace tumble::baselines {
 
-/// TrimmedIcp aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per
-/// point. The registration determines the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips
+/// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point, as the published chain
+/// does. The registration estimates the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips
 /// et al., 2007, with lambda). The registration weights each match by the inverse variances of both points. Each
-/// iteration solves normal equations for small angles.
+/// iteration solves normal equations that are linearised for small angles.
 ///
 /// The registration result has no measure of observability. If a direction is unobservable, as in a corridor, the
 /// registration still reports success. LidarInertialOdometry, in contrast, detects unobservable directions. The cost of
@@ -31,9 +31,10 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// Reproduces an error of the original code. In the original code, the kept fraction refers to all match slots,
-    /// although unmatched slots are missing from the sorted list. The original code reads beyond the end of the sorted
-    /// list. TrimmedIcp stops at the end of the sorted list.
+    /// If `count_unmatched_slots` is true, TrimmedIcp has the same error as the authors' code. In the authors' code,
+    /// the kept fraction refers to all match slots, although the sorted list of distances omits slots without a match.
+    /// The authors' code therefore reads beyond the end of the sorted list. TrimmedIcp stops at the end of the sorted
+    /// list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound
@@ -41,7 +42,7 @@ class TrimmedIcp {
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
@@ -80,15 +81,16 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Aligns `points` to `map`, starting from `prior`. As in the published chain, reaching the iteration limit is not an
-  /// error. Returns an error if there are no matches or if the correction exceeds its limit.
+  /// Estimates the pose that aligns `points` to `map`, starting from the pose `prior`. As in the published chain, a
+  /// registration that reaches the iteration limit counts as a success. Returns an error if there are no matches or if
+  /// the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns how many of the sorted squared distances d^2 to keep. The kept fraction f minimises (sum of the smallest f
-  /// n distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
+  /// Returns how many of the sorted squared distances d^2 the registration keeps. The kept fraction f minimises (sum of
+  /// the smallest f n distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Clears the cached normals of the map. The caller must call forget_normals after each change of the map.
+  /// Clears the cached normals of the map points. The caller must call forget_normals after each change of the map.
   void forget_normals() { normals_.clear(); }
 
  private:

@@ -10,12 +10,12 @@
 
 namespace tumble::baselines {
 
-/// AutogainFusion estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated
-/// accelerometer (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only during
-/// rotation. The filter limits the integrated acceleration to slightly more than the rolling velocity, then averages
-/// both. Only the sign of the integral matters, so the estimated path of a sphere that rolls without slip is up to half
-/// too short. AutogainFusion is a baseline for comparisons; its options select the variants of the paper and of the
-/// authors' code.
+/// AutogainFusion estimates the position of a rolling sphere on a flat floor from the rolling velocity and the
+/// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only
+/// during rotation. The filter limits the integrated acceleration to slightly more than the rolling velocity, then
+/// averages both velocities. Only the sign of the integrated acceleration affects the result, so the path of a sphere
+/// that rolls without slip is up to half too short. AutogainFusion is a baseline for comparisons; its options select
+/// the variants of the paper and of the authors' code.
 class AutogainFusion {
  public:
   struct Params {
@@ -26,8 +26,8 @@ class AutogainFusion {
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Each option switches one difference between the paper and the authors' code. The default options are the paper's
-    // equations as printed.
+    // Each option switches one difference between the paper and the authors' code. The default options follow the
+    // paper's equations as printed.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
     bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g
     bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
@@ -37,7 +37,7 @@ class AutogainFusion {
 
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -89,8 +89,8 @@ class AutogainFusion {
 
   explicit AutogainFusion(const Params& params);
 
-  /// Processes one IMU sample. `q_WI` is the attitude at the end of the sample's averaging window. On error the state
-  /// is unchanged.
+  /// Updates the position with one IMU sample. The parameter `q_WI` is the attitude at the end of the sample's
+  /// averaging window. On error, `state` keeps its content.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

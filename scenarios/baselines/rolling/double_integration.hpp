@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// DoubleIntegration computes the position of an IMU by integrating the specific force twice, minus gravity at an
-/// attitude that the caller supplies. The integration is second order in the sample period, and exact if the force is
-/// constant in W over each sample. The drift is unbounded: a tilt error of 0.1 deg causes an acceleration error of 1.7
+/// DoubleIntegration computes the position of an IMU from the specific force and a given attitude: it subtracts gravity
+/// and integrates twice. The integration is second order in the sample period, and exact if the force in world axes is
+/// constant during each sample. The drift is unbounded: a tilt error of 0.1 deg causes an acceleration error of 1.7
 /// cm/s^2, and a position error of 1 m after 11 s.
 class DoubleIntegration {
  public:
@@ -19,7 +19,7 @@ class DoubleIntegration {
     double gravity_m_s2 = 9.80665;
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
@@ -38,8 +38,9 @@ class DoubleIntegration {
 
   explicit DoubleIntegration(const Params& params);
 
-  /// Processes one IMU sample. `q_WI` is the attitude at the end of the sample's averaging window. The integration
-  /// starts at rest at the origin with the first sample. On error the state is unchanged. O(1), no allocation.
+  /// Updates velocity and position with one IMU sample. The parameter `q_WI` is the attitude at the end of the sample's
+  /// averaging window. The integration starts at rest at the origin with the first sample. On error, `state` keeps its
+  /// content. The cost is O(1), without allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

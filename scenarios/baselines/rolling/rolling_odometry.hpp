@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// RollingOdometry computes the position of a rolling sphere's centre G from the angular velocity. The velocity is v =
-/// r w_W x n on a plane with normal n, integrated by the trapezoid rule. The position is exact without slip;
-/// RollingOdometry does not detect slip, sliding and height changes.
+/// RollingOdometry computes the position of a rolling sphere's centre G from the angular velocity. On a plane with
+/// normal n, the velocity of the centre is v = r w_W x n; the trapezoid rule integrates the velocity. The position is
+/// exact without slip; RollingOdometry does not detect slip, sliding and height changes.
 class RollingOdometry {
  public:
   struct Params {
@@ -19,7 +19,7 @@ class RollingOdometry {
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  ///< unit, from the contact to the centre
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -38,8 +38,9 @@ class RollingOdometry {
 
   explicit RollingOdometry(const Params& params);
 
-  /// Advances the position to `time_ns`. `w_I_rad_s` is the mean rate over the sample's averaging window, as an IMU
-  /// measures it; `q_WI` is the attitude at the end of the window. On error the state is unchanged.
+  /// Computes the position at `time_ns` from the position at the previous sample. The parameter `w_I_rad_s` is the mean
+  /// rate over the sample's averaging window, as an IMU measures it; `q_WI` is the attitude at the end of the window.
+  /// On error, `state` keeps its content.
   Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

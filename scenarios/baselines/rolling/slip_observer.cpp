@@ -12,7 +12,7 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Returns the measured mean acceleration minus the least-squares derivative of the rolling velocity over the window.
+/// Returns the mean measured acceleration over the window, minus the least-squares derivative of the rolling velocity.
 Eigen::Vector2d residual(const SlipObserver::State& state) {
   constexpr int kSize = SlipObserver::kWindow;
   double t = 0.0, t_mean = 0.0;
@@ -72,10 +72,9 @@ Status SlipObserver::step(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void SlipObserver::observe(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s, State& state) const {
   const Eigen::Vector3d& w = sample.angular_velocity_rad_s;
   const Eigen::Vector3d turning = (w - state.last_rate_rad_s) / dt_s;
-  // Acceleration of the IMU relative to the centre by rotation, equation (I1) of imu_merge.md.
+  // The rotation accelerates the IMU relative to the sphere's centre by equation (I1) of imu_merge.md.
   const Eigen::Vector3d lever = turning.cross(params_.lever_arm_m) + w.cross(w.cross(params_.lever_arm_m));
-  // The specific force is a mean over the averaging window, so it is rotated by the attitude in the middle of the
-  // window.
+  // The specific force is a mean over the averaging window, so the attitude in the middle of the window rotates it.
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * w);
   const Eigen::Vector3d a_W = q_mid * (sample.specific_force_m_s2 - lever);
   const Eigen::Vector3d w_W = q_WI * w;
@@ -104,7 +103,7 @@ void SlipObserver::advance_closed(const Eigen::Vector2d& e, double dt_s, State& 
   if (!state.ignoring && e.norm() > params_.open_m_s2) open_event(e, state);
 }
 
-/// Starts a slip event with the slip velocity and path that result from the earlier residuals.
+/// Starts a slip event, with the slip velocity and displacement that the earlier residuals give.
 void SlipObserver::open_event(const Eigen::Vector2d& e, State& state) const {
   state.open = true;
   state.event_s = 0.0;

@@ -14,12 +14,13 @@ namespace tumble::baselines {
 /// SlipObserver estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of
 /// the contact point: v = r w x n + u.
 ///
-/// Without slip, the acceleration of the sphere's centre is r w' x n. The residual e is the measured acceleration minus
-/// r w' x n over a window of 11 samples. A slip event starts when e is large. During a slip event, the observer
-/// integrates e to the slip velocity u. The slip event ends when e is small and u has returned to zero. At the start of
-/// a slip event, the observer also integrates e over the last 25 samples, because a slide starts before its detection.
-/// At the end of a slip event, the observer removes the linear drift of u. The observer undoes a slip event that lasts
-/// too long. The window length suits a sample rate of about 125 Hz.
+/// If the sphere rolls without slip, the acceleration of its centre is r w' x n. The residual e is the measured
+/// acceleration minus r w' x n, averaged over 11 samples. A slip event starts when the residual e is large. During a
+/// slip event, the observer integrates e to the slip velocity u. The slip event ends when the residual e is small and u
+/// has returned to zero. At the start of a slip event, the observer also integrates e over the last 25 samples, because
+/// a slide starts before its detection. At the end of a slip event, the observer removes the linear drift of the slip
+/// velocity u. If a slip event lasts too long, the observer removes its effect on the position. The window length suits
+/// a sample rate of about 125 Hz.
 ///
 /// The observer neglects tilt changes within a slip event, impacts and slopes. In simulations with realistic physics,
 /// the estimated position is hardly better than with the rolling assumption alone.
@@ -43,7 +44,7 @@ class SlipObserver {
     double blend_tau_s = 0.25;  ///< time constant for applying a position correction
     double gap_max_s = 1.0;
 
-    /// Visits every parameter with its name, unit and limits.
+    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -97,8 +98,8 @@ class SlipObserver {
 
   explicit SlipObserver(const Params& params);
 
-  /// Processes one IMU sample. `q_WI` is the attitude at the end of the sample's averaging window. On error the state
-  /// is unchanged. O(kWindow), no allocation.
+  /// Updates position and slip velocity with one IMU sample. The parameter `q_WI` is the attitude at the end of the
+  /// sample's averaging window. On error, `state` keeps its content. The cost is O(kWindow), without allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit of the specific force. If the caller states no unit and the readings are in g, the function
+/// Determines the unit of the specific force. If the caller sets no unit and the readings are in g, the function
 /// converts them to m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
@@ -67,7 +67,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
   const std::string lost = left_out.note(imu.time_ns.size());
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // Messages should be in rad/s by definition, but not every driver conforms to the definition.
+  // By definition, the messages are in rad/s, but not every driver follows the definition.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark :

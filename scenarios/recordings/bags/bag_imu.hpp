@@ -8,16 +8,16 @@
 #include "scenarios/recordings/bags/opened_bag.hpp"
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
-/// bag_imu.hpp reads the IMU topics of a bag. Used only within scenarios/recordings/bags.
+/// The functions in bag_imu.hpp read the IMU topics of a bag.
 namespace tumble::scenarios {
 
-/// Reads a topic of type sensor_msgs/Imu. Single faulty messages are left out with a note. Returns no readings for a
-/// topic without messages, unless the caller chose the topics. Throws BadInput for implausible units, or if too many
-/// messages are faulty.
+/// Reads the IMU samples of a topic of type sensor_msgs/Imu. Single faulty messages are skipped with a note. Returns no
+/// readings for a topic without messages, unless the caller chose the topics. Throws BadInput for implausible units, or
+/// if too many messages are faulty.
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                         const BagReading& reading, std::vector<std::string>& notes);
 
-/// Returns a note on the number of duplicate messages, or "".
+/// Describes the number of duplicate messages, or returns "" without duplicate messages.
 std::string repeats_text(std::size_t repeated);
 
 }  // namespace tumble::scenarios

@@ -4,17 +4,18 @@
 #include <string>
 #include <vector>
 
-/// bag_layout.hpp describes the topics, frames and point layout that a reader of bags expects. The default layout is
-/// that of bag.hpp.
+/// The header bag_layout.hpp describes the topics, frames and point layout that a reader of bags expects. The default
+/// layout is the layout in bag.hpp.
 namespace tumble::scenarios {
 
 /// PointQuantity is the physical quantity of a point field.
 enum class PointQuantity { x_m, y_m, z_m, intensity, ring, time };
 
-/// NumberType is the number type of a point field. Integers are rounded and limited to the type's range.
+/// NumberType is the number type of a point field. Values for integer fields are rounded and limited to the range of
+/// the type.
 enum class NumberType { uint8, uint16, uint32, float32, float64 };
 
-/// PointColumn is one field of a point.
+/// PointColumn describes one field of a point.
 struct PointColumn {
   std::string name;
   PointQuantity quantity;
@@ -23,9 +24,10 @@ struct PointColumn {
   bool absolute = false;  ///< time counts from 1970 instead of from the sweep's start in the header
 };
 
-/// SweepLayout is the message layout of a sweep.
+/// SweepLayout describes the message layout of a sweep.
 struct SweepLayout {
-  /// Fields of a sensor_msgs/PointCloud2, in order, without gaps. The time fields are omitted if points have no times.
+  /// The list `columns` contains the fields of a sensor_msgs/PointCloud2, in order, without gaps. The time fields are
+  /// omitted if the points have no times.
   std::vector<PointColumn> columns;
   bool livox = false;          ///< writes a CustomMsg of Livox drivers, with times in ns, and ignores `columns`
   bool in_time_order = false;  ///< sorts points by time; else points keep the recording's order
@@ -34,11 +36,11 @@ struct SweepLayout {
 /// Returns the columns x y z intensity ring time offset_ns: the layout of Velodyne's driver, plus a time in whole
 /// nanoseconds.
 SweepLayout own_sweep_layout();
-/// Returns the layout of the CustomMsg.
+/// Returns the layout of Livox drivers' CustomMsg.
 SweepLayout livox_sweep_layout();
 
-/// ReaderNames contains topic and frame names for a reader that expects one IMU and one lidar. The names belong to the
-/// first IMU and the first lidar.
+/// ReaderNames contains the topic and frame names that a reader for one IMU and one lidar expects. The names in
+/// ReaderNames belong to the first IMU and the first lidar.
 struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;

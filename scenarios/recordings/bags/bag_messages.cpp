@@ -18,13 +18,14 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// Returns the noise variance of one sample: density squared times the bandwidth of the output rate.
+/// Returns the covariance of one sample, whose variance is the squared noise density times the bandwidth of the output
+/// rate.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
 }
 
-/// Sets the variances of three rows to "unknown".
+/// Sets the variances of three rows of the covariance to -1, which means unknown.
 void set_unknown(std::size_t first_row, std::array<double, 36>& covariance) {
   constexpr std::size_t kRows = 6;
   for (std::size_t row = first_row; row < first_row + 3; ++row) covariance[row * kRows + row] = -1.0;
@@ -35,7 +36,7 @@ struct NamedType {
   ros::PointField::Type type;
 };
 
-/// Creates a cloud of `points` zero points with consecutive 4-byte fields.
+/// Creates a PointCloud2 message of `points` zero points with consecutive 4-byte fields.
 ros::PointCloud2 empty_cloud(std::initializer_list<NamedType> fields, std::size_t points, const ros::Header& header) {
   ros::PointCloud2 out;
   out.header = header;

@@ -7,14 +7,13 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// bag_messages.hpp converts sensor readings, poses and points of estimates to messages (bag.hpp); sweep_messages.hpp
-/// converts lidar sweeps. Used only within scenarios/recordings/bags.
+/// The functions in bag_messages.hpp convert sensor readings, poses and points of estimates to messages (bag.hpp).
 namespace tumble::scenarios {
 
 ros::Header header_of(std::int64_t stamp_ns, const std::string& frame);
 ros::Clock clock_message(std::int64_t stamp_ns);
 
-/// Returns sample `i` of an IMU.
+/// Converts sample `i` of an IMU to a message.
 ros::Imu imu_message(const sim::ImuRecord& imu, std::size_t i, const ros::Header& header);
 
 ros::PointCloud2 cloud_message(const BagCloud& cloud, const ros::Header& header);

@@ -17,7 +17,7 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
 
-/// NamedPoses contains poses and the frame that their messages name; "" if they name no frame.
+/// NamedPoses contains the poses of a topic and the frame that their messages name; "" if they name no frame.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -66,7 +66,7 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
                              kPoseStamped, kTransformStamped));
 }
 
-/// Returns the mounting of the reference frame: the user's choice, else the frame that the messages name, if the bag
+/// Returns the mounting of the reference frame: the user's choice, or else the frame that the messages name, if the bag
 /// contains its transform.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorMountings& places,
                                     const BagReading& reading, Imported& out) {

@@ -5,12 +5,13 @@
 #include "scenarios/recordings/bags/opened_bag.hpp"
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
-/// Used only within scenarios/recordings/bags.
+/// The function attach_reference reads the reference poses of a bag.
 namespace tumble::scenarios {
 
-/// Uses the poses of `reading.reference_topic` (Odometry, PoseStamped or TransformStamped) as the truth of the
-/// recording. The user chooses the frame of the reference poses. Without a choice, the frame is the child_frame_id of
-/// the messages if the bag contains its transform. Throws BadInput with topic and message.
+/// Reads the poses of the topic `reading.reference_topic` (Odometry, PoseStamped or TransformStamped) as the truth of
+/// the recording. The user chooses the frame of the reference poses. Without a choice, the frame is the child_frame_id
+/// of the messages, if the bag contains its transform. Throws BadInput, with the topic and the message, if the poses
+/// are invalid.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

@@ -17,10 +17,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header stamp that is later than its record's stamp by more than kAhead_ns belongs to another clock.
+/// If the header stamp is more than kAhead_ns later than the record stamp, the two stamps belong to different clocks.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// kSteady_ns is the largest normal delay between messages; beyond this delay, the clocks drift or stamps are not
-/// measurement times.
+/// kSteady_ns is the largest normal delay between header and record; beyond this delay, the clocks drift or stamps are
+/// not measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -32,14 +32,14 @@ std::string seconds_text(std::int64_t time_ns) {
 /// kLast_ns is the latest time that a header can store.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
-/// Returns the difference of two stamps without overflow.
+/// Returns the difference of two time stamps without overflow.
 std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   std::int64_t step_ns = 0;
   if (!__builtin_sub_overflow(to_ns, from_ns, &step_ns)) return step_ns;
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// Describes how a stamp changes relative to the previous stamp.
+/// Describes how a time stamp differs from the previous time stamp.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));

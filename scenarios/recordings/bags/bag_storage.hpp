@@ -10,8 +10,8 @@
 
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// bag_storage.hpp defines the common interface of all bag types. A bag has topics, and messages as bytes sorted by
-/// time. Used only within scenarios/recordings/bags.
+/// The header bag_storage.hpp defines the common interface of all types of bags. A bag contains topics, and messages as
+/// bytes sorted by time.
 namespace tumble::scenarios {
 
 /// BagTopic is a topic with its message type. Type names are those of ROS 1 ("sensor_msgs/Imu"); ROS 2 uses
@@ -23,12 +23,13 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Registers these topics before all other topics, in order. Returns false if this bag type registers topics with
-  /// their first messages. A bag of this type may contain other topics earlier.
+  /// Registers these topics before all other topics, in the given order. Returns false if this type of bag registers
+  /// each topic with its first message. A bag that registers topics with their messages may list other topics first.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
-  /// Writes a message. Messages must be sorted by time, and each topic has one message type. Throws BadInput.
+  /// Writes a message to the bag. Messages must be sorted by time, and each topic has one message type. Throws BadInput
+  /// if writing fails.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
-  /// Completes the bag. An unfinished bag is removed. Throws BadInput.
+  /// Completes the bag; the destructor removes a bag that was not completed. Throws BadInput if writing fails.
   virtual void finish() = 0;
 };
 
@@ -36,9 +37,9 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
   virtual std::vector<BagTopic> topics() = 0;
-  /// Take receives a message and the time of its record [ns since 1970].
+  /// Take is a function that receives a message and the time of its record [ns since 1970].
   using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
-  /// Calls `take` for each message of the topic in recorded order. Throws BadInput.
+  /// Calls `take` for each message of the topic, in the order of recording. Throws BadInput if the bag is damaged.
   virtual void read(const std::string& topic, const Take& take) = 0;
   /// Returns whether the topic's messages have CDR encoding instead of ROS 1's layout.
   virtual bool cdr(const std::string& topic) const = 0;
@@ -46,7 +47,7 @@ class BagReader {
   std::vector<std::string> notes;  ///< for the user, for example on files that the bag's metadata does not list
 };
 
-/// kFilesSorted is a note for the user on a bag of several files.
+/// kFilesSorted is a note to the user that a bag consists of several files.
 inline constexpr const char* kFilesSorted =
     "the bag does not list its files in the order of time; the import reads the files in the order of time";
 
@@ -54,14 +55,15 @@ std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
-/// Opens a file, or a folder of files that are parts of one recording. The messages of the files are merged by time.
+/// Opens a ROS 1 bag: a file, or a folder of files that are parts of one recording. The reader merges the messages of
+/// the files by time.
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
-/// Opens several files that form one bag. The files are read in the order of their first messages.
+/// Opens several MCAP files that form one bag. The reader reads the files in the order of their first messages.
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
 /// Checks every length, position and offset in the records of a ROS 1 bag against the file size, because librosbag does
-/// not. librosbag checks the content of compressed chunks. Throws BadInput with the offset in the file.
+/// not check them. Throws BadInput, with the offset in the file, if a check fails.
 void check_ros1_bag(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -19,21 +19,21 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Differences between header and record stamps above kClocksApart_s are noted.
+/// A difference above kClocksApart_s between header and record stamps gives a note.
 constexpr double kClocksApart_s = 1e-3;
-/// Points that are later than their record by more than kAhead_s are noted; smaller differences are normal between the
-/// clocks of two computers.
+/// A note is made if points are later than their record by more than kAhead_s; smaller differences between the clocks
+/// of two computers are normal.
 constexpr double kAhead_s = 0.01;
 
-/// Calls `take(message, origin)` for each cloud of the topic, of either type.
+/// Calls `take(message, origin)` for each message of the topic, PointCloud2 or CustomMsg.
 template <class Take>
 void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_out, Take&& take) {
   if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take, &left_out);
   bag.read<ros::PointCloud2>(topic, take, &left_out);
 }
 
-/// Points that are later than their own record cannot have been measured yet, so their times count from another start
-/// than the stamp.
+/// Points that are later than their own record cannot have been measured yet, so their times must count from another
+/// start than the stamp.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -50,8 +50,8 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
                   topic, std::to_string(middle_s)));
 }
 
-/// Stores the starts of the sweeps whose stamps are in order. `numbers` contains the positions of the messages to which
-/// the stamps belong.
+/// Stores the start of each sweep whose stamp is in order. The list `numbers` contains the positions of the messages to
+/// which the stamps belong.
 void keep_in_order(const OpenedBag& bag, const std::string& topic, const BagStamps& stamps,
                    const std::vector<std::size_t>& numbers, CloudHeaders& out) {
   const std::vector<bool> in_order = stamps_in_order(stamps.times_ns());

@@ -11,30 +11,30 @@
 #include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/left_out.hpp"
 
-/// Reads the cloud topics of a bag. Used only within scenarios/recordings/bags.
+/// The functions in bag_sweeps.hpp read the point cloud topics of a bag.
 namespace tumble::scenarios {
 
-/// CloudHeaders contains stamps and frame of the clouds of a topic, from a first pass that skips the points.
+/// CloudHeaders contains the stamps and the frame of a topic's clouds, from a first pass that skips the points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
   std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
-  /// Start of the sweep of each message; empty for a duplicate message and for a message that is left out.
+  /// The list `starts` contains the start of the sweep in each message; empty for duplicate and skipped messages.
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
   bool follow_records = true;  ///< records appear to use the headers' clock and are later than the stamps
   std::string frame;
-  /// Returns whether the caller did not choose the topic and its frame is not a sensor's frame. Clouds in the frame of
-  /// no sensor are a map, or points that are already transformed.
+  /// Returns whether the caller did not choose the topic and its frame belongs to no sensor. Clouds in a frame without
+  /// a sensor are a map, or points that were already transformed.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }
 };
 
-/// Reads stamps, frame and duplicates of a topic of clouds.
+/// Reads the stamps and the frame of a topic of clouds, and finds duplicate messages.
 CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const BagReading& reading);
 
-/// Reads the points of a topic. Single faulty clouds are left out with a note.
+/// Reads the points of a lidar topic. Single faulty clouds are skipped with a note.
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes);
 

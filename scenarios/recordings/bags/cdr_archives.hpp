@@ -13,10 +13,10 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// Encodes messages in ROS 2's CDR by Fast-CDR. Used only within scenarios/recordings/bags.
+/// The classes in cdr_archives.hpp encode messages in ROS 2's format CDR by the library Fast-CDR.
 namespace tumble::scenarios::ros {
 
-/// CdrBound computes an upper bound of the number of bytes, including padding.
+/// CdrBound computes an upper bound of a message's size in bytes, including padding.
 class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }
@@ -40,7 +40,7 @@ class CdrBound {
   static constexpr std::size_t kPadding = 7;
 };
 
-/// CdrWriter writes to a zeroed buffer, because Fast-CDR does not write padding bytes.
+/// CdrWriter writes a message to a buffer of zeros, because Fast-CDR does not write padding bytes.
 class CdrWriter {
  public:
   explicit CdrWriter(std::size_t bound)

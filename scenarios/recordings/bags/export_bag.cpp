@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// Event is an item to write at the time when a listener would receive it; a sweep is received at its end.
+/// Event is an item to write, with the time at which a listener would receive it; a sweep is received at its end.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
@@ -27,7 +27,7 @@ struct Event {
   std::size_t of, index;  ///< index of the sensor or track, and of its reading
 };
 
-/// Adds the thinned truth, without times at which a reference is unknown.
+/// Adds the true poses at a reduced rate, without times at which a reference is unknown.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
   constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
@@ -78,7 +78,7 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
-/// Returns the first reading of each IMU, in the order of the sensors.
+/// Returns the event of each IMU's first reading, in the order of the sensors.
 std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& events) {
   std::vector<Event> first;
   for (std::size_t s = 0; s < imus; ++s) {
@@ -89,7 +89,7 @@ std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& ev
   return first;
 }
 
-/// SensorNames contains the names of a sensor in a bag.
+/// SensorNames contains the topic and frame names of a sensor in a bag.
 struct SensorNames {
   std::string topic, frame;
 };
@@ -142,8 +142,8 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// The primary IMU is written first. Readers treat the first IMU in a bag as primary, but the first reading of
-  /// another IMU may be earlier.
+  /// The first message of the primary IMU is written first. Readers take the first IMU in a bag as primary, but another
+  /// IMU may have an earlier reading.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
@@ -197,7 +197,7 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // the truth moves the body; without a truth, the first track moves the body
+        // The truth determines the frame of the body; without a truth, the first track determines it.
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }
@@ -212,7 +212,7 @@ class Export {
     bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
   }
 
-  /// Empty clouds are detected only when they are created.
+  /// Whether a cloud is empty is known only after its creation.
   void write_cloud(const Event& event) {
     const BagTrack& track = writing_.tracks[event.of];
     const BagCloud cloud = track.cloud(track, event.index);

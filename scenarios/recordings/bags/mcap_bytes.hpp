@@ -13,18 +13,18 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// Encodes and decodes records of MCAP files. Used only within scenarios/recordings/bags.
+/// The classes in mcap_bytes.hpp encode and decode records of MCAP files.
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 inline constexpr std::uint64_t kHeadBytes = 9;  ///< of a record: kind and length
 
-/// BadRecord is the error for record content that ends before the last field.
+/// BadRecord is the exception for a record that ends before its last field.
 struct BadRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Put appends fields to bytes.
+/// Put appends fields to a byte string.
 class Put {
  public:
   template <std::unsigned_integral Number>
@@ -42,7 +42,8 @@ class Put {
   std::string bytes;
 };
 
-/// Take removes fields from the front of a byte range, with bounds checks. Throws BadRecord.
+/// Take reads fields from the front of a byte range, and checks the bounds. Throws BadRecord if the bytes end before
+/// the field.
 class Take {
  public:
   explicit Take(std::string_view bytes) : left(bytes) {}
@@ -85,7 +86,7 @@ class Take {
   }
 };
 
-/// Encodes a whole MCAP record. `tail` is appended after the fields of the record.
+/// Encodes a whole MCAP record. The bytes of `tail` follow the fields of the record.
 template <class Record>
 std::string to_bytes(Record record, std::string_view tail = {}) {
   Put content, out;
@@ -95,8 +96,8 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Decodes an MCAP record from its content. Fields that later versions of the format append are ignored. Throws
-/// BadRecord.
+/// Decodes an MCAP record from its bytes. Fields that later versions of the format append are ignored. Throws BadRecord
+/// if the bytes end before the last field.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

@@ -25,7 +25,7 @@ std::string in_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + " bytes";
 }
 
-/// Compares the data in the record of a chunk with the data in the chunk index.
+/// Compares the header of a chunk with its entry in the chunk index.
 bool agree(const ChunkIndex& a, const ChunkIndex& b) {
   return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
          a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
@@ -81,7 +81,7 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   return out;
 }
 
-/// Reads magic, header, footer and the end of the data.
+/// Reads the magic bytes, the header, the footer and the end of the data section.
 void File::open_ends() {
   if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
     fail(0, "the file does not begin with the magic bytes of MCAP 0, so it is not an MCAP file");
@@ -155,7 +155,7 @@ void File::read_summary() {
   take_indexed(std::move(chunks));
 }
 
-/// Each offset must point to a group of records of one kind.
+/// Each offset in the summary must point to a group of records of one kind.
 void File::check_groups(std::string_view summary, std::string_view groups) const {
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {
@@ -206,7 +206,7 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // Messages outside chunks are not indexed, so the file is scanned if any message is missing.
+  // The index omits messages outside chunks, so the file is scanned if any message is missing in the index.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
@@ -256,7 +256,7 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   return index;
 }
 
-/// Returns the data of the chunk's record, in the form of an index entry.
+/// Reads the header of a chunk and returns it in the form of an index entry.
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
   constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // including the name of the compression
   std::string head = text(at, std::min(bytes, kMost));

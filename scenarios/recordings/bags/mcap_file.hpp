@@ -13,11 +13,10 @@
 #include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// File reads an MCAP file chunk by chunk, and validates every length, position, time and checksum before use. Used
-/// only within scenarios/recordings/bags.
+/// File reads an MCAP file chunk by chunk, and validates every length, position, time and checksum before use.
 namespace tumble::scenarios::mcap {
 
-/// Segment is a run of consecutive records of a file: one chunk, or records outside chunks.
+/// Segment is a sequence of consecutive records of a file: one chunk, or records outside chunks.
 struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< position in the file, including record heads
   std::uint64_t first_ns = 0, last_ns = 0;
@@ -37,17 +36,19 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary if present, else scans the file. If the file states a checksum of the data section, the checksum
-  /// is verified. The cost is proportional to the file size; memory holds some MiB and the summary. Throws BadInput
-  /// with the offset if the file is not MCAP, is truncated or damaged, or has a compression other than none, lz4 or
-  /// zstd. Throws BadInput also for a chunk or record larger than 256 MiB.
+  /// Opens an MCAP file and reads its summary, or scans the file if it has no summary. If the file contains a checksum
+  /// of the data section, the function verifies the checksum. The cost is proportional to the file size; memory
+  /// contains some MiB and the summary. Throws BadInput with the offset if the file is not MCAP, is truncated or
+  /// damaged, or has a compression other than none, lz4 or zstd. Throws BadInput for a chunk or record larger than 256
+  /// MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
   /// Returns the segments in the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
-  /// Returns the number of messages of a channel that the file states, or nothing.
+  /// Returns the number of messages of a channel according to the file's statistics record, or nothing without this
+  /// record.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
   /// Returns the uncompressed records of a segment and verifies the segment's checksum.
@@ -55,7 +56,8 @@ class File {
   /// Returns the message index of the channel after the segment's chunk, or nothing if there is no index.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
-  /// Calls `take(record)` for each of `records`. For uncompressed records, `at` is their position in the file.
+  /// Calls `take(record)` for each of `records`. For uncompressed records, the parameter `at` is their position in the
+  /// file.
   template <class Call>
   void walk(std::string_view records, std::uint64_t at, Call&& take) const {
     for (std::uint64_t place = 0; place < records.size();) {
@@ -64,7 +66,8 @@ class File {
       place += kHeadBytes + record.content.size();
     }
   }
-  /// Decodes the content of a record. Throws BadInput with the offset.
+  /// Decodes the content of a record, with an error message that contains the offset in the file. Throws BadInput if
+  /// the content is damaged.
   template <class Content>
   Content as(const Record& record, std::uint64_t at) const {
     try {

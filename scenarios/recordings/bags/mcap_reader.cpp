@@ -16,10 +16,10 @@ namespace mcap {
 
 namespace {
 
-/// kWaitingMax limits the messages that wait because later chunks may contain earlier messages.
+/// kWaitingMax limits the size of the messages that wait because a later chunk may contain an earlier message.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
-/// Returns true for CDR messages, false for ROS 1 encoding.
+/// Returns whether the messages have CDR encoding; otherwise they have ROS 1 encoding.
 bool is_cdr(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "cdr" && (schema.encoding == "ros2msg" || schema.encoding == "ros2idl");
 }
@@ -27,8 +27,8 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// TopicWalk iterates over one topic of one file by time; memory holds one chunk and the chunks that overlap it in
-/// time.
+/// TopicWalk iterates over the messages of one topic of one file by time; memory contains one chunk and the chunks that
+/// overlap it in time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -78,7 +78,7 @@ class TopicWalk {
                     time_ns, segment.first_ns, segment.last_ns));
   }
 
-  /// Checks that the index after the chunk lists exactly the messages of the chunk.
+  /// Checks that the message index after a chunk lists exactly the messages of the chunk.
   void require_indexed(const Segment& segment, std::uint16_t channel,
                        std::vector<std::pair<std::uint64_t, std::uint64_t>>& found) {
     std::optional<MessageIndex> index = file_.index_of(segment, channel);
@@ -106,7 +106,7 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // Times beyond int64 are invalid in ROS; the reader limits them to int64.
+    // ROS times cannot exceed int64, so the reader limits larger times to int64.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -178,8 +178,8 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// Returns ROS 1's type name. If the topic is not a ROS message, the function returns the type with its encoding,
-  /// which no reader matches.
+  /// Returns the type name in the form of ROS 1. If the topic contains no ROS messages, the function returns the type
+  /// with its encoding, which no reader accepts.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-/// Record types of MCAP files (mcap.dev/spec, version 0). Each type lists its fields in the specified order. Numbers
-/// are little-endian. Texts have a 32-bit length prefix. Lists and maps have a prefix with their size in bytes. An
-/// encoded record consists of its kind (8 bits), its length (64 bits) and its content; mcap_bytes.hpp encodes and
-/// decodes records. Used only within scenarios/recordings/bags.
+/// The header mcap_records.hpp defines the record types of MCAP files (mcap.dev/spec, version 0). Each type lists its
+/// fields in the order of the specification. All numbers are little-endian. Each text has a prefix with its length (32
+/// bits). Each list or map has a prefix with its size in bytes. An encoded record consists of its kind (8 bits), its
+/// length (64 bits) and its content; mcap_bytes.hpp encodes and decodes records.
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {

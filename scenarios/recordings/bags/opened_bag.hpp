@@ -10,17 +10,17 @@
 #include "scenarios/recordings/left_out.hpp"
 #include "sim/parameters.hpp"
 
-/// Used only within scenarios/recordings/bags.
+/// The class OpenedBag reads the messages of an open bag.
 namespace tumble::scenarios {
 
-/// MessageOrigin is the origin of a message: the location for error messages, and the time of the record.
+/// MessageOrigin contains the location of a message for error messages, and the time of its record.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
   std::size_t number;  ///< position in the topic
 };
 
-/// OpenedBag is an open bag with its topics and its location for error messages.
+/// OpenedBag is an open bag with its topics, and its location for error messages.
 struct OpenedBag {
   BagReader& reader;
   std::string place;
@@ -48,8 +48,8 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the named topics, which must have a matching type. Without topic names, the function returns all topics of
-  /// a matching type.
+  /// Returns the topics in `names`, which must have a suitable type. Without names, the function returns all topics of
+  /// a suitable type.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;
@@ -63,8 +63,8 @@ struct OpenedBag {
     return out;
   }
 
-  /// Calls `take(message, origin)` for each message of the topic. Messages that cannot be decoded are counted in
-  /// `left_out`. If `left_out` is null, a message that cannot be decoded throws BadInput.
+  /// Calls `take(message, origin)` for each message of the topic. The list `left_out` counts messages that cannot be
+  /// decoded. If `left_out` is null, a message that cannot be decoded throws BadInput.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;

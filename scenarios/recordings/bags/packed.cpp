@@ -17,11 +17,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kRatioMax is the largest compression ratio of an LZ4 block.
+/// kRatioMax is the largest possible compression ratio of an LZ4 block.
 constexpr std::uint64_t kRatioMax = 255;
 constexpr std::uint64_t kFirstRoom = 1u << 20;
 
-/// Room is a growing output buffer, which doubles up to the stated size.
+/// Room is an output buffer that doubles its size when needed, up to the expected size.
 class Room {
  public:
   explicit Room(std::uint64_t promised) : promised_(promised), out_(std::min(promised, kFirstRoom), '\0') {}

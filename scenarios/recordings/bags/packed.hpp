@@ -5,19 +5,19 @@
 #include <string>
 #include <string_view>
 
-/// packed.hpp compresses bag chunks and computes their checksums. Used only within scenarios/recordings/bags.
+/// The functions in packed.hpp compress and decompress the chunks of bags, and compute checksums.
 namespace tumble::scenarios {
 
-/// Returns an LZ4 frame of the bytes with independent blocks of at most 4 MiB, without checksums.
+/// Compresses the bytes to an LZ4 frame with independent blocks of at most 4 MiB, without checksums.
 std::string packed_lz4(std::string_view plain);
 
 /// Decompresses any LZ4 frame (linked blocks, checksums, content size) or a series of Zstandard frames to exactly
-/// `bytes` bytes. The allocated memory grows with the actual output, not with the stated size. Throws BadInput without
-/// a location if the data are damaged or have another size.
+/// `bytes` bytes. The memory grows with the decompressed data, so a wrong size in the file cannot exhaust the memory.
+/// Throws BadInput, without a location, if the data are damaged or have another size.
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 
-/// Returns the CRC-32 of zlib (IEEE 802.3, reflected), continued from the checksum `before`.
+/// Returns the CRC-32 of zlib (IEEE 802.3, reflected) of the bytes, continued from the checksum `before`.
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0);
 
 }  // namespace tumble::scenarios

@@ -8,19 +8,20 @@
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
 
-/// Reads ROS 2 bags with Zstandard compression. Used only within scenarios/recordings/bags.
+/// The functions in packed_bag.hpp read ROS 2 bags with Zstandard compression.
 namespace tumble::scenarios {
 
-/// Decompresses files of Zstandard frames ("bag_0.db3.zstd") to a temporary folder. The folder is removed with the
-/// reader, even if a signal ends the program. Calls `open` with the paths of the decompressed files. Throws BadInput
-/// with the file if the data are damaged or truncated, if disk space is missing, or if the output exceeds both 64 MiB
-/// and 200 times the file's size.
+/// Decompresses files of Zstandard frames ("bag_0.db3.zstd") to a temporary folder, and calls `open` with the paths of
+/// the decompressed files. The folder is removed with the reader, even if a signal ends the program. Throws BadInput,
+/// with the file name, if the data are damaged, if disk space is missing, or if the output exceeds both 64 MiB and 200
+/// times the file's size.
 std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);
 
-/// Wraps a bag whose messages are Zstandard frames with a stated size. The decompressed size may be at most 64 MiB and
-/// 200 times the compressed size. Reading a damaged message throws BadInput, with a message that starts with `place`.
+/// Wraps a bag reader whose messages are Zstandard frames that contain their decompressed size. A decompressed message
+/// may have at most 64 MiB and 200 times its compressed size. Reading a damaged message throws BadInput, with a message
+/// that starts with `place`.
 std::unique_ptr<BagReader> with_packed_messages(std::unique_ptr<BagReader> bag, std::string place);
 
 }  // namespace tumble::scenarios

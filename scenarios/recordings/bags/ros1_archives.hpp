@@ -9,14 +9,15 @@
 #include <string>
 #include <vector>
 
-/// Encodes and decodes messages in ROS 1's little-endian layout. Readers check every length against the remaining bytes
-/// before any allocation. Used only within scenarios/recordings/bags.
+/// The classes in ros1_archives.hpp encode and decode messages in ROS 1's little-endian layout. The decoder checks
+/// every length against the remaining bytes before it allocates memory.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// BadMessage is the error for a message that ends before its last field, or that states more data than it contains.
+/// BadMessage is the exception for a message that ends before its last field, or that claims more data than it
+/// contains.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
-/// CheckedRecord is one record: its header fields, and the position of its data.
+/// CheckedRecord is one record of a bag: its header fields, and the position of its data.
 struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
@@ -29,7 +29,7 @@ struct CheckedRecord {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// Walk reads ranges of a file with bounds checks.
+/// Walk reads ranges of a file and checks that they are within the file.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
@@ -74,7 +74,7 @@ class Walk {
     return out;
   }
 
-  /// Returns the length stored at `at`; the item with this length must end before `end`.
+  /// Returns the length stored at `at`, after a check that the item with this length ends before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
       fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
@@ -128,7 +128,7 @@ class Walk {
 
   std::uint8_t op(const CheckedRecord& record) const { return number<std::uint8_t>(record, "op"); }
 
-  /// Registers a record and checks the record's references to other records.
+  /// Registers a record and checks its references to other records.
   void step(const CheckedRecord& record) {
     switch (op(record)) {
       case ros1::kChunk:
@@ -203,7 +203,7 @@ class Walk {
     return count;
   }
 
-  /// Checks the message offsets of the preceding chunk.
+  /// Checks the offsets in the message index of the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
     if (chunks_.empty()) fail(record.at, "an index precedes the first chunk: the file is damaged");

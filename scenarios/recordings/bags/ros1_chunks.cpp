@@ -18,13 +18,14 @@ namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
 
-/// RawRecord is one record of a bag. The header of the record is kept as bytes, so that fields can be changed in place.
+/// RawRecord is one record of a ROS 1 bag. The header of the record is stored as bytes, so that a field can be changed
+/// in place.
 struct RawRecord {
   std::uint64_t at = 0;
   std::string header;
   std::uint32_t data_bytes = 0;
 
-  /// Returns offset and length of a field's value in the header, or nothing if the field is missing.
+  /// Returns the offset and length of a field's value in the header, or nothing if the field is missing.
   std::optional<std::pair<std::size_t, std::size_t>> find(const std::string& name) const {
     for (std::size_t place = 0; place + 4 <= header.size();) {
       std::uint32_t size = 0;
@@ -65,7 +66,7 @@ std::string bytes_of(Number value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};
 }
 
-/// Records iterates over the records of a bag whose lengths were checked.
+/// Records iterates over the records of a bag that passed check_ros1_bag.
 class Records {
  public:
   explicit Records(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
@@ -114,7 +115,7 @@ class Records {
   std::string magic_;
 };
 
-/// The new bag.
+/// Copy is the new bag that copy_ros1_bag writes.
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {}
@@ -150,7 +151,7 @@ std::string changed_chunk(RawRecord& record, std::string data, const std::functi
   Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
   change(chunk);
   record.header.clear();
-  // the field order is that of ROS
+  // The order of the header fields is that of ROS.
   append_field(record.header, "compression=" + chunk.compression);
   append_field(record.header, "op=" + std::string(1, static_cast<char>(ros1::kChunk)));
   append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));

@@ -6,31 +6,32 @@
 #include <functional>
 #include <string>
 
-/// Copies and decompresses chunks of ROS 1 bags. Used only within scenarios/recordings/bags.
+/// The functions in ros1_chunks.hpp copy ROS 1 bags and decompress their chunks.
 namespace tumble::scenarios {
 
-/// Ros1Chunk is a chunk as stored in the file.
+/// Ros1Chunk is a chunk of a bag as stored in the file.
 struct Ros1Chunk {
   std::string compression;           ///< "none", "lz4", "bz2"
   std::uint32_t unpacked_bytes = 0;  ///< uncompressed size of its data
   std::string data;
 };
 
-/// Returns true if any chunk has LZ4 compression. The bag must have passed `check_ros1_bag`.
+/// Returns whether any chunk of the bag has LZ4 compression. The bag must have passed `check_ros1_bag`.
 bool has_lz4_chunks(const std::filesystem::path& file);
 
-/// Returns the size of the bag after LZ4 chunks are decompressed to their stated sizes [bytes]. The bag must have
-/// passed `check_ros1_bag`.
+/// Returns the size that the bag will have after decompression of its LZ4 chunks [bytes]. The bag must have passed
+/// `check_ros1_bag`.
 std::uint64_t bytes_unpacked(const std::filesystem::path& file);
 
-/// Copies a bag that passed `check_ros1_bag`. `change` modifies each chunk; chunk positions and the index are updated.
-/// The cost is proportional to the number of bytes. Only one chunk is in memory at a time. Throws BadInput with the
-/// offset in `from`.
+/// Copies a bag that passed `check_ros1_bag`, and calls `change` for each chunk. The function `change` may modify the
+/// chunk; chunk positions and the index are then updated. The cost is proportional to the number of bytes. Only one
+/// chunk is in memory at a time. Throws BadInput, with the offset in `from`, if the bag is damaged.
 void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,
                    const std::function<void(Ros1Chunk&)>& change);
 
-/// Decompresses a chunk with any LZ4 frame (linked blocks, checksums, content size). The ROS 1 library only supports
-/// independent LZ4 blocks. Throws BadInput if the chunk is damaged or if its size differs from the stated size.
+/// Decompresses a chunk that contains any LZ4 frame (linked blocks, checksums, content size). The ROS 1 library
+/// supports only independent LZ4 blocks. Throws BadInput if the chunk is damaged or has another size than its header
+/// claims.
 void unpack_lz4(Ros1Chunk& chunk);
 
 }  // namespace tumble::scenarios

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-/// ros1_ops.hpp lists the kinds of records in a ROS 1 bag. The header field "op" states the kind of a record. Used only
-/// within scenarios/recordings/bags.
+/// The header ros1_ops.hpp lists the kinds of records in a ROS 1 bag. The field "op" in the header of a record is the
+/// kind of the record.
 namespace tumble::scenarios::ros1 {
 
 enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };

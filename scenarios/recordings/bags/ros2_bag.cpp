@@ -96,7 +96,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// Returns the id of a topic, and registers a new topic.
+  /// Returns the id of a topic in the database; a new topic is registered first.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -112,8 +112,8 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Stores the message definition for readers without ROS. The type hash may be empty, because readers accept an empty
-  /// hash.
+  /// Stores the definition of a message type, for readers without ROS. The type hash may be empty, because readers
+  /// accept an empty hash.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -148,8 +148,8 @@ class Ros2BagWriter : public BagWriter {
   std::set<std::string> defined_;  ///< types already defined
 };
 
-/// StoredBag contains the files of a bag in order, their storage ("sqlite3" or "mcap"), and their compression: "",
-/// "file" or "message".
+/// StoredBag contains the files of a ROS 2 bag in order, their storage ("sqlite3" or "mcap"), and their compression:
+/// "", "file" or "message".
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
@@ -173,7 +173,8 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
-/// Adds unlisted files of the folder that are named like the listed files except for their number.
+/// Adds the files in the folder that metadata.yaml does not list, but whose names differ from a listed file only by a
+/// number.
 void add_unlisted(const path& folder, StoredBag& bag) {
   const auto stem = [](const path& file) { return stem_of(file.extension() == ".zstd" ? file.stem() : file); };
   const path& listed = bag.files.front();
@@ -264,7 +265,7 @@ class Ros2BagReader : public BagReader {
   bool cdr(const std::string&) const override { return true; }
 
  private:
-  /// Sorts the files of the bag by their first messages.
+  /// Sorts the files of the bag by the times of their first messages.
   void sort_files() {
     std::map<path, std::int64_t> first_ns;
     for_files([&](const path& file, SQLite::Database& database) {

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Ros2Summary is the content of a ROS 2 bag's metadata.yaml. Used only within scenarios/recordings/bags.
+/// Ros2Summary contains the data for the metadata.yaml of a ROS 2 bag.
 struct Ros2Summary {
   struct Topic {
     BagTopic topic;
@@ -20,9 +20,9 @@ struct Ros2Summary {
   std::vector<Topic> topics = {};
   std::int64_t first_ns = 0, last_ns = 0;  ///< range of the messages' stamps
 
-  /// Returns the index of a topic; a new topic is appended.
+  /// Returns the index of a topic in the list; a new topic is appended.
   std::size_t place_of(const BagTopic& topic);
-  /// Counts a message.
+  /// Counts a message of a topic and extends the time range of the bag to its stamp.
   void count(const BagTopic& topic, std::int64_t stamp_ns);
 };
 

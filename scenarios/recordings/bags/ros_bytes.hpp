@@ -11,11 +11,10 @@
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
-/// Encodes and decodes messages in ROS 1's little-endian layout and ROS 2's CDR. Used only within
-/// scenarios/recordings/bags.
+/// The functions in ros_bytes.hpp encode and decode messages in ROS 1's little-endian layout and ROS 2's CDR format.
 namespace tumble::scenarios::ros {
 
-/// These functions encode and decode a message. Decoding throws BadMessage.
+/// Converts a message to bytes, or bytes to a message. Decoding throws BadMessage if the bytes are damaged.
 template <class Message>
 Bytes to_ros1(Message message) {
   Ros1Writer writer;

@@ -71,7 +71,8 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
 
 const SensorMountings::Placed* SensorMountings::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // drivers give all sensors of a device one frame, so equal frames do not relate two sensors
+    // Drivers give all sensors of a device one frame, so an equal frame does not determine the pose between two
+    // sensors.
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;

@@ -14,14 +14,14 @@ namespace tumble::scenarios {
 /// Removes the leading slash of ROS 1's frame names.
 std::string without_slash(const std::string& frame);
 
-/// StaticFrames is the tree of frames from /tf_static. Each frame of the tree has one parent. Used only within
-/// scenarios/recordings/bags.
+/// StaticFrames is the tree of sensor frames from the topic /tf_static. Each frame of the tree has one parent.
 class StaticFrames {
  public:
-  /// Adds a transform. For a repeated frame the last transform is used, and a changed parent is noted (`remarks`). An
-  /// invalid transform is noted with `where` and throws only when it is used, because bags contain frames unrelated to
-  /// the sensors. A transform is invalid if it has non-finite values, a translation above 1 km, or a frame that is its
-  /// own parent. A transform is also invalid if its quaternion norm differs from 1 by more than 1 %.
+  /// Adds a transform to the tree of frames. If a frame is repeated, the last transform is used, and a changed parent
+  /// gives a note (`remarks`). An invalid transform gives a note with `where`, and an exception only when it is used,
+  /// because bags contain frames unrelated to the sensors. A transform is invalid if it has non-finite values, a
+  /// translation above 1 km, or a frame as its own parent. A transform is also invalid if its quaternion norm differs
+  /// from 1 by more than 1 %.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   /// Throws BadInput, with a message that starts with `where`, if the frames form a cycle.
@@ -29,11 +29,11 @@ class StaticFrames {
 
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  /// Returns the name of the body's frame: "body", else "base_link", else "".
+  /// Returns the name of the body's frame: "body", or else "base_link", or else "".
   std::string body() const;
 
-  /// Returns T_AB if the two frames are connected, otherwise nothing. Throws BadInput, with a message that starts with
-  /// `where`, if a transform between the two frames is invalid or if the frames form a cycle.
+  /// Returns the pose T_AB of frame B in frame A if the tree connects them, otherwise nothing. Throws BadInput, with a
+  /// message that starts with `where`, if a transform between the two frames is invalid or if the frames form a cycle.
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 
@@ -43,7 +43,8 @@ class StaticFrames {
     Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
     std::string problem;         ///< why the transform is invalid; "" if valid
   };
-  /// Returns the frame and all its ancestors. Each returned FrameLink contains the pose of `frame` in one ancestor.
+  /// Returns the frame and all its ancestors, up to the root of the tree. Each returned FrameLink contains the pose of
+  /// `frame` in one ancestor.
   std::vector<FrameLink> path_to_root(const std::string& frame, const std::string& where) const;
   std::map<std::string, FrameLink> frames_;
   std::vector<std::string> remarks_;

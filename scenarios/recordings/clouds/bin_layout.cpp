@@ -14,23 +14,23 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kKitti = 4;
-/// Multiples of four represent doubles, or two rows of a point that is read as two points.
+/// The list omits multiples of four, which could be doubles, or two rows of a point read as two points.
 constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
 constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
-/// Numbers are sampled from kSections sections of the file, kInRow numbers in a row, so that a sweep in the order of
-/// its rings is sampled completely.
+/// The sample has kSections sections of the file with kInRow numbers in a row, so that a sweep in the order of its
+/// rings is sampled completely.
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// No coordinate in metres and no intensity is outside the limits kSmallest and kLargest. The smallest limit exists
-/// because sines of 180 degrees times a range are about 1e-16.
+/// Valid coordinates in metres and valid intensities are between kSmallest and kLargest. The smallest limit is low,
+/// because the sine of 180 degrees times a range is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// A larger number of columns is chosen only if the columns differ more by the factor kMultipleDiffers. For valid
-/// sweeps, the difference grows by at most 0.08, where every second ring looks down.
+/// A larger number of columns is chosen only if the columns differ more, by at least the factor kMultipleDiffers. In
+/// valid sweeps, the difference grows by at most 0.08, for a lidar in which every second ring looks down.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
-/// NumberSample contains sampled numbers of a file, and the position of each number in the file.
+/// NumberSample contains some numbers of a file, and the position of each number in the file.
 struct NumberSample {
   std::vector<double> values;
   std::vector<std::size_t> index;
@@ -105,9 +105,9 @@ struct ColumnFit {
   double differ = 0.0;
 };
 
-/// Returns the fewest columns whose distributions differ about as much as for any other number of columns, among
-/// numbers that divide the file. Multiples of the right number of columns differ somewhat more if the order of the
-/// points repeats.
+/// Returns the smallest number of columns, among divisors of the file's size, whose distributions differ about as much
+/// as for any other number. Multiples of the correct number of columns differ somewhat more if the order of the points
+/// repeats.
 template <std::size_t kCount>
 ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
                   const std::array<std::size_t, kCount>& candidates) {

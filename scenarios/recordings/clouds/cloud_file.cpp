@@ -36,7 +36,7 @@ void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vect
   }
 }
 
-/// Returns false for a type that is not a number.
+/// Appends the values of a field to `out`; returns false if the type of the field is not a number.
 bool take_field(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, std::vector<double>& out) {
   using Field = pcl::PCLPointField;
   switch (field.datatype) {
@@ -75,7 +75,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   out.points = points;
   for (const pcl::PCLPointField& field : cloud.fields) {
     std::vector<double> column(points);
-    // the reader skips fields of several numbers and padding ("_")
+    // The reader skips padding ("_") and fields that contain several numbers.
     if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
     out.names.push_back(plain_name(field.name));
     out.columns.push_back(std::move(column));
@@ -83,7 +83,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Returns whether the whole word is a number: "nan" and "inf" are numbers, "0,5" and "x" are not.
+/// Returns whether the whole word is a number for PCL: "nan" and "inf" are numbers, "0,5" and "x" are not.
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -91,8 +91,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// Checks that all words of a text file are numbers, and that each line has as many numbers as the header states. The
-/// check of the words is needed because PCL silently reads a prefix, or 0 or NaN.
+/// Checks that all words of a text file are numbers, and that each line has as many numbers as the header claims. PCL
+/// alone would silently read the start of a word, or 0, or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -136,7 +136,7 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   return out;
 }
 
-/// kBinTypes lists the types of the columns of a .bin file, named as NumPy writes them.
+/// kBinTypes lists the types of the columns of a .bin file by their NumPy names.
 constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f4", pcl::PCLPointField::FLOAT32},
                                                                              {"f8", pcl::PCLPointField::FLOAT64},
                                                                              {"u1", pcl::PCLPointField::UINT8},
@@ -148,7 +148,7 @@ constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f
                                                                              {"i4", pcl::PCLPointField::INT32},
                                                                              {"i8", pcl::PCLPointField::INT64}}};
 
-/// Appends one column, stated as "NAME" or "NAME:TYPE", after the existing fields.
+/// Appends one column, written as "NAME" or "NAME:TYPE", to the fields of the cloud.
 void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   const std::size_t colon = text.find(':');
   const std::string type = colon == std::string::npos ? "f4" : text.substr(colon + 1);
@@ -168,7 +168,7 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   cloud.fields.push_back(field);
 }
 
-/// Returns the fields of a point, without points.
+/// Returns a cloud with the fields in `columns`, without points.
 pcl::PCLPointCloud2 bin_fields(const std::string& columns) {
   pcl::PCLPointCloud2 cloud;
   std::istringstream stream(columns + ",");

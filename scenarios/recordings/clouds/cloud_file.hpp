@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Cloud contains the points of a file or message as uninterpreted named columns. A 64-bit integer keeps its 53 leading
-/// bits, so stamps since 1970 in nanoseconds are accurate to 256 ns.
+/// Cloud contains the points of a file or message as named columns of numbers, without interpretation. A 64-bit integer
+/// keeps only its 53 leading bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
 struct Cloud {
   std::vector<std::string> names;            ///< as written, without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
@@ -22,15 +22,14 @@ struct Cloud {
 
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
-/// Reads the points of a file; the extension selects the format. The formats are PLY and PCD of any encoding (by PCL),
-/// legacy VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. The
-/// reader checks the header against the file size before any allocation.
+/// Reads the points of a file, whose extension selects the format. The formats are PLY and PCD of any encoding (by
+/// PCL), legacy VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives a cloud without
+/// points. The reader compares the header with the file size before it allocates memory.
 ///
-/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a
-///                     NumPy type after a colon ("x:f8"); the name "_" skips bytes. An empty text means KITTI's
-///                     x y z intensity; the content must not contradict KITTI's layout (bin_layout.hpp).
-/// Throws BadInput with file and location if the file is missing or truncated, has another format, a damaged header,
-/// more than 2^26 points or impossible columns, or if its content contradicts KITTI's columns.
+/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
+///   type after a colon ("x:f8"); the name "_" skips bytes. An empty text selects KITTI's columns x y z intensity, if
+///   the content does not contradict them (bin_layout.hpp). Throws BadInput with file and location if the file is
+///   missing or damaged, has another format or more than 2^26 points, or if its columns are impossible.
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
 /// CloudHeader is the content of a PLY or PCD header.
@@ -44,7 +43,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// These functions read and check only the header of a point file. The header readers throw BadInput like read_cloud.
+/// Reads and checks the header of a point file, without the points. Both header readers throw BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

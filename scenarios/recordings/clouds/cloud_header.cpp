@@ -18,12 +18,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// LZF expands 3 bytes to at most 264 bytes.
+/// The compression LZF expands 3 bytes to at most 264 bytes.
 constexpr std::uint64_t kLzfMost = 88;
 /// A header longer than kCloudHeaderMax is invalid.
 constexpr std::size_t kCloudHeaderMax = 65536;
 
-/// HeaderLines contains the lines of a header with their locations.
+/// HeaderLines contains the lines of a header with their locations in the file.
 class HeaderLines {
  public:
   explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
@@ -44,7 +44,7 @@ class HeaderLines {
     return out;
   }
 
-  /// Returns whether the last header line is completely empty.
+  /// Returns whether the last header line that was read is empty.
   bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -59,13 +59,13 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Checks the stated number of points against the remaining file size; one byte of the file gives at most
+  /// Compares the number of points in the header with the remaining file size; one byte of the file gives at most
   /// `made_of_a_byte` bytes of points.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
     }
-    // a number in text needs at least a digit and a separator; the last number may lack the separator
+    // A number in text needs at least a digit and a separator; only the last number may lack the separator.
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
@@ -76,7 +76,7 @@ class HeaderLines {
     }
   }
 
-  /// Checks the two sizes before compressed points (compressed and uncompressed), which PCL does not check.
+  /// Checks the compressed size and the uncompressed size in front of compressed points, which PCL does not check.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -91,8 +91,8 @@ class HeaderLines {
     }
   }
 
-  /// PCL continues to read the header while lines start with a header word, are empty or are comments. Point data that
-  /// look like header lines would therefore change the header.
+  /// The library PCL reads the header of a point file up to the first line that is not empty, not a comment and starts
+  /// with no header word. Point data that look like header lines would therefore change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -114,7 +114,7 @@ class HeaderLines {
   std::uint64_t bytes_ = 0, bytes_in_file_ = 0;
 };
 
-/// Returns the bytes of a PLY type; 0 if unknown.
+/// Returns the number of bytes of a PLY type, or 0 for an unknown type.
 std::uint64_t ply_bytes(const std::string& type) {
   static const std::map<std::string, std::uint64_t> known = {
       {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
@@ -124,7 +124,7 @@ std::uint64_t ply_bytes(const std::string& type) {
   return found == known.end() ? 0 : found->second;
 }
 
-/// Reads a line of a PLY header that describes the points.
+/// Reads a line of a PLY header that describes a field of the points.
 void take_property(const HeaderLines& lines, const std::vector<std::string>& words, CloudHeader& header) {
   if (words.size() == 5 && words[1] == "list")
     lines.fail("the points have a list property; such files are not supported");
@@ -141,8 +141,8 @@ using Words = std::vector<std::string>;
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// Reads the lines of a PCD header by their first words. Each header word must occur once and in order, because PCL
-/// misreads unknown, repeated, misplaced or blank lines and does not check the result.
+/// Reads the lines of a PCD header, and returns them by their first words. Each header word must occur once and in
+/// order, because PCL misreads other headers without an error.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
@@ -175,7 +175,7 @@ std::uint64_t single(const HeaderLines& lines, const std::string& name, const Wo
   return value;
 }
 
-/// Returns the line VIEWPOINT x y z qw qx qy qz as written; "" if the viewpoint is the identity.
+/// Returns the line VIEWPOINT x y z qw qx qy qz as written in the file; "" if the viewpoint is the identity.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
   if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers; it must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};

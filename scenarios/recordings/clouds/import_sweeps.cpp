@@ -20,7 +20,7 @@ std::string ending_of(const std::string& format) {
   throw BadInput(fmt::format("the sweep format '{}' is not supported; supported: ply, pcd, vtk and kitti", format));
 }
 
-/// Returns the stamp file that the caller states, or a stamp file next to the sweeps, or nothing.
+/// Returns the file with time stamps that the caller chose, or a file with time stamps next to the sweeps, or nothing.
 path times_file(const SweepSource& source, const std::vector<path>& files) {
   if (!source.times.empty()) return source.times;
   for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
@@ -29,8 +29,8 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// Returns one time stamp per file, or an empty list if the time stamps are unknown. read_stamps explains the argument
-/// `disorder`.
+/// Returns one time stamp per file, or an empty list if the time stamps are unknown. The argument `disorder` is that of
+/// read_stamps.
 std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files,
                                     std::vector<std::string>& disorder) {
   const path file = times_file(source, files);

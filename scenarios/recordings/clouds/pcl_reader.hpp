@@ -15,10 +15,10 @@ enum class PclFormat : int { ply, pcd };
 extern "C" using PclRead = bool(const char* path, PclFormat format, pcl::PCLPointCloud2* cloud);
 inline constexpr const char* kPclRead = "tumble_pcl_read";  ///< its symbol name
 
-/// Reads a file with the module `pcl_reader_module.cpp`, which is loaded at first use and stays loaded. PCL's readers
-/// load VTK and more than sixty libraries, which would slow the start of every program. The module is in ../lib/tumble
-/// relative to the program's folder, or in the build folder. Throws BadInput if the module cannot be loaded. Used only
-/// within scenarios/recordings/clouds.
+/// Reads the points of a file with the module `pcl_reader_module.cpp`, which is loaded at first use. A module is needed
+/// because PCL's readers load VTK and more than sixty libraries, which would slow every start of the program. The
+/// module is in ../lib/tumble relative to the program's folder, or in the build folder. Throws BadInput if the module
+/// cannot be loaded.
 bool read_by_pcl(const std::filesystem::path& path, PclFormat format, pcl::PCLPointCloud2& cloud);
 
 }  // namespace tumble::scenarios

@@ -18,17 +18,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The point times of a sweep must cover a fraction of the period between kSpanMin (a sector of 7 degrees) and kSpanMax
-/// (some overlap). Time units differ by factors of 1000, so at most one unit fits. A shorter range of times, for
-/// example if times count from each packet, still fits exactly one unit.
+/// The point times of a sweep must cover a fraction of the sweep period between kSpanMin (a sector of 7 degrees) and
+/// kSpanMax (some overlap). Time units differ by factors of 1000, so at most one unit fits. A shorter range of times,
+/// for example if times restart with each packet, still fits exactly one unit.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Time stamps after 1973, in seconds, exceed kEpochMin_s.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with at least kPointsThatSpan points covers the sweep's period in time. A sweep with fewer points may cover
-/// a short part of the period, so its times do not contradict a stated unit.
+/// The points of a sweep with at least kPointsThatSpan points cover the whole sweep period. The points of a smaller
+/// sweep may cover a short part of the period, so their times do not contradict a time unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// Among kCloudsToCompare clouds with absolute times, at least two start more than two periods after time zero.
+/// If times are absolute, at least two of kCloudsToCompare clouds start more than two periods after time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
@@ -55,10 +55,10 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   return choice.field;
 }
 
-/// Point times farther from the median than kDamaged interquartile ranges are damaged.
+/// A point time is damaged if it is farther from the median than kDamaged interquartile ranges.
 constexpr double kDamaged = 20.0;
 
-/// Returns the first and last time of the valid points.
+/// Returns the first and last time of the valid points of a cloud.
 std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   std::pair<double, double> out(INFINITY, -INFINITY);
   const std::vector<double>* times = cloud.find(field);
@@ -90,7 +90,7 @@ std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   return fmt::format("{} % of the sweep period", text);
 }
 
-/// Rejects a time unit, stated by option or field name, that the numbers contradict.
+/// Throws BadInput if the numbers contradict the time unit from an option or a field name.
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
@@ -104,11 +104,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
                              share_of(span, *read, period_ns)));
 }
 
-/// Determines the time unit from the size of the numbers.
+/// Determines the time unit from the range and size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kTimeUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns, kShortSpanMin)) return unit.ns;
-    // For time stamps since 1970, the function returns the largest plausible unit.
+    // For times since 1970, the function returns the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }

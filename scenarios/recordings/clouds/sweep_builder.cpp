@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kProbe is the number of clouds that determine the time unit; a single cloud may be incomplete.
+/// The first kProbe clouds determine the time unit, because a single cloud may be incomplete.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
@@ -28,7 +28,7 @@ constexpr double kBeyond = 2.0;         // multiple of the data sheet's range
 constexpr double kFarthest_m = 500.0;   // default limit without a data sheet: beyond the range of robot lidars
 constexpr std::size_t kBackwards = 20;  // ratio of falling to rising point times, in the order of storage
 constexpr double kOverlapMost = 1.05;   // longest sweep relative to the time between sweeps
-/// kOffsetMax_ns is the longest point offset while the period is unknown.
+/// kOffsetMax_ns is the longest time offset of a point while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 using tumble::ros::kRingNames, tumble::ros::kIntensityNames;
@@ -68,14 +68,14 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-/// Describes how the point times were read.
+/// Describes how the time rule interprets the point times.
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return fmt::format("point times: field '{}', in {}{}", rule.field, unit,
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// Returns a time in the middle of a sweep; points farther from this time than the longest sweep are mistimed.
+/// Returns a time in the middle of a sweep; points farther from this time than the longest sweep have wrong times.
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
   std::vector<std::int64_t> known;
   for (const auto& time : times_ns) {
@@ -84,7 +84,7 @@ std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns)
   return upper_median(std::move(known));
 }
 
-/// Returns the ring numbers of the points. Throws BadInput for an invalid number.
+/// Returns the ring numbers of the points in `kept`. Throws BadInput for an invalid number.
 std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::size_t>& kept,
                                     const std::string& where) {
   const std::vector<double>* column = first_of(cloud, kRingNames);
@@ -123,7 +123,7 @@ void SweepBuilder::find_rule() {
   waiting_.clear();
 }
 
-/// Returns true if the absolute times of most of the first clouds are far from the clouds' stamps.
+/// Returns whether the absolute times of most of the first clouds are far from the clouds' stamps.
 bool SweepBuilder::has_other_clock() const {
   if (!rule_->absolute || reading_.assumed || period_ns_ <= 0) return false;
   std::size_t apart = 0, all = 0;
@@ -181,8 +181,8 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Returns the times of the points in the clock of the stamps, or the sweep's start for points without times. The
-/// function removes a few mistimed points from `kept`, and throws BadInput if there are many.
+/// Returns the times of the points in the clock of the stamps; points without times have the time of the sweep's start.
+/// A few points with wrong times are removed from `kept`; many such points throw BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)
@@ -234,7 +234,7 @@ std::int64_t SweepBuilder::longest_sweep_ns() const {
   return period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
 }
 
-/// Returns the start of the sweep, and moves times of another clock to the stamp.
+/// Returns the start of the sweep, and converts point times of another clock to the clock of the stamp.
 std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64_t>& times_ns) const {
   if (times_ns.empty()) return *sweep.stamp_ns;
   const std::int64_t first = *std::min_element(times_ns.begin(), times_ns.end()), bound = longest_sweep_ns();
@@ -258,7 +258,7 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   return start;
 }
 
-/// Returns whether most points are beyond twice the lidar's range, and counts such a cloud as dropped.
+/// Returns whether most points of a cloud are beyond twice the lidar's range, and counts such a cloud as skipped.
 bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   if (kept.empty()) return false;
   const std::vector<double>&x = *sweep.cloud.find("x"), &y = *sweep.cloud.find("y"), &z = *sweep.cloud.find("z");
@@ -306,7 +306,8 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Throws BadInput if ranges are probably in mm. Single points beyond the range of the data sheet are accepted.
+/// Throws BadInput if the coordinates are probably in mm. Single points beyond the range of the data sheet are
+/// accepted.
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;

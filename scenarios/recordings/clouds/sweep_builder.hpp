@@ -15,7 +15,8 @@
 
 namespace tumble::scenarios {
 
-/// SweepReading contains options for reading points. The options replace information that the file lacks.
+/// SweepReading contains the options for reading lidar sweeps. The options supply information that the sweep files
+/// lack.
 struct SweepReading {
   sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweeps' starts
   std::string time_field;    ///< "": a field with a usual name
@@ -23,11 +24,12 @@ struct SweepReading {
   bool not_skewed = false;   ///< the points were deskewed or measured at once; ignore their times
   double range_max_m = 0.0;  ///< from the data sheet; 0: unknown
   bool assumed = false;      ///< the stamps are a guess: absolute point times replace them
-  /// Folder for points on disk; if empty, points are kept in memory, which grows with each sweep.
+  /// If `scratch` is not empty, the points are stored on disk in the folder `scratch`; otherwise they are stored in
+  /// memory.
   std::filesystem::path scratch;
 };
 
-/// PointTimeRule is the name and unit of the point times in a series of clouds.
+/// PointTimeRule is the field and unit of the point times in a series of clouds.
 struct PointTimeRule {
   std::string field;        ///< "": the points have no times
   double unit_ns = 1.0;     ///< unit of the field [ns]
@@ -36,63 +38,62 @@ struct PointTimeRule {
   bool short_span = false;  ///< the times span only a small part of the sweep period
 };
 
-/// Finds the time field and its unit from the first clouds. The time field has one of these names (any case): t time
-/// timestamp timestamps time_stamp offset_time time_offset offset_ns. A suffix _s _ms _us _ns of the field name states
-/// the unit. If no name states the unit, the times of a sweep must cover 0.15 to 150 % of `period_ns` (median over the
-/// clouds) in the chosen unit. At most one time unit fits. If the period is unknown (0), the size of stamps since 1970
+/// Finds the time field and its unit from the clouds in `first`. The time field has one of these names (any case): t
+/// time timestamp timestamps time_stamp offset_time time_offset offset_ns. A suffix _s _ms _us _ns of the field name
+/// determines the unit. Without a suffix, the times of a sweep must cover 0.15 to 150 % of `period_ns` (median over the
+/// clouds) in the correct unit. At most one time unit fits. If the period is unknown (0), the size of times since 1970
 /// determines the unit. If all times of a sweep are equal, the points have no times.
 ///
-/// A stated unit is rejected if it does not fit, another unit fits, and the sweeps have at least 100 points. Point
-/// times are absolute if they start more than two periods from 0 in any cloud, or in two clouds if there are at least
-/// five clouds. If two fields have usual names, the field whose name states the unit is used. Throws BadInput, with a
+/// A unit from an option or suffix is rejected if it does not fit, another unit fits, and the sweeps have at least 100
+/// points. Point times are absolute if they start more than two periods from 0 in any cloud, or in two clouds if there
+/// are at least five clouds. If two fields have time names, the field with a suffix is used. Throws BadInput, with a
 /// message that starts with `where`, for a missing or ambiguous field, or if no unit fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
-/// BuiltSweeps is a lidar with its points. If the points are on disk, the record has no points.
+/// BuiltSweeps contains a lidar record and its points. If the points are on disk, the lidar record has no points.
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
-  /// Time of the last point of each added cloud, in the stamps' clock; the sweep's start for points without times;
-  /// empty if the cloud is left out.
+  /// For each cloud, `last_point_ns` is the time of the last point, or the sweep's start for points without times;
+  /// empty for a skipped cloud.
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
-/// SweepBuilder builds a lidar record from clouds that arrive in order of time. SweepBuilder keeps the first ten clouds
-/// in memory. Afterwards, memory holds one cloud at a time if points are on disk.
+/// SweepBuilder builds a lidar record from clouds that arrive in order of time. The first ten clouds are kept in
+/// memory. Later, memory contains one cloud at a time if the points are stored on disk.
 ///
-/// Points that are not finite, farther than 1000 km, or at the origin count as rays without a return. Intensities
-/// ("intensity", "reflectivity") up to 1 are unchanged. Intensities up to 255 are divided by 255, and larger
-/// intensities by the maximum. Ring numbers ("ring", "line", "channel") are integers up to 65535. A sweep starts at its
-/// stamp. If the first point of a sweep is earlier than the stamp, or later by a period, the sweep starts at the first
-/// point, so that no offset is negative. Only the columns x, y and z of a cloud are required.
+/// A lidar point counts as a ray without hit if it is not finite, farther than 1000 km, or at the origin. Intensities
+/// (column "intensity" or "reflectivity") up to 1 are unchanged. If intensities exceed 1, they are divided by 255, or
+/// by their maximum if it exceeds 255. Ring numbers (column "ring", "line" or "channel") are integers up to 65535. A
+/// sweep starts at its time stamp. If the first point of a sweep is before the stamp, or a period after it, the sweep
+/// starts at the first point. A cloud must have the columns x, y and z; other columns are optional.
 ///
-/// A few points with times outside the sweep are left out. A cloud is left out if it has a missing field, a start that
-/// does not increase, or an invalid ring. A cloud is also left out if many points have times outside the sweep, or if
-/// most points are beyond twice the lidar's range. If absolute point times and stamps belong to different clocks, the
-/// times count from the first point of each sweep. The first point of a sweep is then assumed to be measured at the
-/// stamp.
+/// A few points with times outside the sweep are skipped. A cloud is skipped if it lacks a field, has an invalid ring,
+/// or starts before the previous sweep. A cloud is also skipped if many points have times outside the sweep, or if most
+/// points are beyond twice the lidar's range. If absolute point times and stamps belong to different clocks, the point
+/// times count from the first point of each sweep. The stamp is then assumed to be the time of the first point.
 class SweepBuilder {
  public:
-  /// `period_ns` is the period for find_point_times: the stated period of the device, or the median step of the stamps.
-  /// `left_out` counts the clouds that the caller left out.
+  /// The parameter `period_ns` is the sweep period for find_point_times: the period of the device, or the median step
+  /// of the stamps. The parameter `left_out` counts the clouds that the caller skipped.
   SweepBuilder(SweepReading reading, std::int64_t period_ns, LeftOut left_out = LeftOut("clouds"))
       : reading_(std::move(reading)), period_ns_(period_ns), left_out_(std::move(left_out)) {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
   }
 
-  /// Adds a sweep to the record. Error messages start with `where`. Throws BadInput if the times of the first clouds
-  /// cannot be interpreted.
+  /// Adds a sweep to the lidar record. Error messages start with `where`. Throws BadInput if the times of the first
+  /// clouds cannot be interpreted.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
-  /// Returns the counts of clouds that are left out. The caller counts clouds that cannot be read.
+  /// Returns the counts of skipped clouds. The caller adds the clouds that cannot be read to the counts.
   LeftOut& left_out() { return left_out_; }
 
-  /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
-  /// stated period, the period is the median step of the stamps, or the latest point offset if it is larger. Throws
-  /// BadInput, with a message that starts with `where`, if too many clouds are left out or if there are no points.
-  /// Throws BadInput also if most points are beyond twice the range in the data sheet, or for a single sweep of unknown
-  /// length.
+  /// Returns the lidar record in the clock of the stamps, and adds notes, for example about the unit of point times. If
+  /// the device has no period, the period is the median step of the stamps, or the latest point offset if that is
+  /// larger. Throws BadInput, with a message that starts with `where`, if too many clouds were skipped or if there are
+  /// no points. Throws BadInput if most points are beyond twice the range in the data sheet, or for a single sweep of
+  /// unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

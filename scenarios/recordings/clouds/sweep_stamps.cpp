@@ -23,7 +23,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The comparison orders numbers in names by value.
+/// The comparison orders the numbers in two names by value.
 bool natural_less(const std::filesystem::path& left, const std::filesystem::path& right) {
   const std::string a = left.filename().string(), b = right.filename().string();
   std::size_t i = 0, j = 0;

@@ -29,7 +29,7 @@ class VtkWords {
     throw BadInput(name_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  /// Returns the rest of the line and skips it.
+  /// Returns the rest of the line and moves to the next line.
   std::string_view line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view out = std::string_view(text_).substr(at_, end - at_);
@@ -39,7 +39,7 @@ class VtkWords {
     return out;
   }
 
-  /// Returns the next word, or an empty text at the end of the file.
+  /// Returns the next word of the file, or an empty text at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -47,7 +47,7 @@ class VtkWords {
     return std::string_view(text_).substr(begin, at_ - begin);
   }
 
-  /// Returns the next word; throws BadInput at the end of the file.
+  /// Returns the next word of the file; throws BadInput at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
     if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
@@ -61,7 +61,7 @@ class VtkWords {
     return value;
   }
 
-  /// Accepts "nan" and "inf", which lidar drivers write for rays without a return.
+  /// Reads a number, which may be "nan" or "inf", as lidar drivers write for rays without a hit.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -71,7 +71,7 @@ class VtkWords {
     return value;
   }
 
-  /// Returns the number of remaining bytes; a number needs two bytes, a digit and a separator.
+  /// Returns the number of remaining bytes; each number needs two bytes, a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:
@@ -81,7 +81,7 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// Checks a stated number of values against the remaining file before any allocation.
+/// Compares the number of values that the file announces with the remaining file size, before any allocation.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
     words.fail(fmt::format("the file states {} points; at most {} can be read", count, kCloudPointsMax));
@@ -139,7 +139,7 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   cloud.columns.push_back(std::move(column));
 }
 
-/// Skips the data of NORMALS, VECTORS, TENSORS name type, and of COLOR_SCALARS name numbers.
+/// Skips the data of a section NORMALS, VECTORS or TENSORS (name, type), or COLOR_SCALARS (name, count).
 void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {

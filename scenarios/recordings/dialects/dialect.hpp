@@ -8,11 +8,10 @@
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
-/// dialect.hpp describes recording formats that published estimators expect. Used only within
-/// scenarios/recordings/dialects.
+/// The header dialect.hpp describes recording formats that published estimators expect.
 namespace tumble::scenarios {
 
-/// Source documents the recording format.
+/// Source is a reference that documents the recording format.
 struct Source {
   std::string repository, path, commit;
 };
@@ -31,8 +30,8 @@ struct Dialect {
   bool takes_empty = true;   ///< accepts sweeps without points; else empty sweeps are omitted
   ReaderNames (*names)(const SensorFacts&) = nullptr;
   SweepLayout (*sweeps)(const SensorFacts&) = nullptr;
-  /// Returns the configuration files of the published estimator with this recording's sensors. All other values of the
-  /// configuration are those of the estimator's authors.
+  /// Returns configuration files for the published estimator, with the properties of this recording's sensors. All
+  /// other values in the configuration files are those of the estimator's authors.
   std::vector<ConfigurationFile> (*configuration)(const SensorFacts&, const ReaderNames&) = nullptr;
   std::string run = {};                 ///< command that starts the published estimator on these files
   std::vector<std::string> notes = {};  ///< remarks for the user
@@ -50,14 +49,14 @@ Dialect norlab_dialect();
 
 std::span<const Dialect> all_dialects();
 
-/// These functions return a point layout with x y z and an intensity of 0 to 255, all float32, ring uint16, and the
-/// time since the sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds
-/// ("t", Ouster's driver).
+/// Returns a point layout with x y z and an intensity of 0 to 255 (float32), the ring (uint16), and the time since the
+/// sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's
+/// driver).
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 
-/// These functions return the names and the sweep layout for FAST-LIO and its derivatives. A Livox lidar has the topics
-/// of its driver, with CustomMsg. Any other lidar has the topics of a Velodyne lidar.
+/// Returns the names or the sweep layout for FAST-LIO and its derivatives. A Livox lidar has the topics and the message
+/// CustomMsg of its driver. Any other lidar has the topics of a Velodyne lidar.
 ReaderNames fast_lio_names(const SensorFacts& facts);
 SweepLayout fast_lio_layout(const SensorFacts& facts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DLIO (vectr-ucla/direct_lidar_inertial_odometry, MIT).
+// The file describes the recording format of DLIO (vectr-ucla/direct_lidar_inertial_odometry, MIT).
 #include <fmt/format.h>
 
 #include <algorithm>

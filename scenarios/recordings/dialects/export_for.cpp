@@ -32,7 +32,7 @@ const Dialect& dialect_of(const std::string& peer) {
                              near.empty() ? "" : fmt::format("; did you mean '{}'?", near), known));
 }
 
-/// Non-finite points are rejected, because they would give no range for the configuration.
+/// Points that are not finite are rejected, because the configuration needs the range of the points.
 void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
   for (std::size_t number = 0; number < lidar.sweep_start_ns.size(); ++number) {
     const sim::LidarRecord sweep = sweep_alone(lidar, &aside, number);
@@ -66,8 +66,8 @@ void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWri
   writers.at(dialect.bag_format)(sensors, writing, place);
 }
 
-/// Configures the bag to omit empty sweeps if the published estimator cannot read them, and adds the number of empty
-/// sweeps to the notes of the dialect. Returns the notes for the user.
+/// Excludes empty sweeps from the bag if the published estimator cannot read them, and adds their number to the notes.
+/// Returns the notes for the user.
 std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& lidar) {
   const std::size_t empty = lidar.empty_sweeps;
   if (dialect.takes_empty || empty == 0) return {};

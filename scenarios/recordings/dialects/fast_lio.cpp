@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// fast_lio.cpp describes FAST-LIO2 (hku-mars/FAST_LIO, GPL-2), with facts about the interface only and no text of the
-// sources.
+// The file describes FAST-LIO2 (hku-mars/FAST_LIO, GPL-2), with facts about the interface and no text of its sources.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// glim.cpp describes GLIM (koide3/glim and koide3/glim_ros2, MIT).
+// The file describes GLIM (koide3/glim and koide3/glim_ros2, MIT).
 #include <nlohmann/json.hpp>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
@@ -12,7 +12,7 @@ ReaderNames glim_names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
-/// Returns the noise density of the data sheet, or the authors' value if none is stated.
+/// Returns the noise density of the data sheet, or the value of the authors if the data sheet lacks it.
 double density(double stated, double authors) {
   return stated > 0.0 ? stated : authors;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// KISS-ICP (PRBonn/kiss-icp, MIT).
+// The file describes the recording format of KISS-ICP (PRBonn/kiss-icp, MIT).
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
@@ -26,8 +26,8 @@ data:
 }  // namespace
 
 Dialect kiss_icp_dialect() {
-  // KISS-ICP 1.3.0 reads ROS 1 bags, and ROS 2 bags with definitions, with packages from PyPI only. In MCAP files,
-  // mcap-ros2-support 0.5.7 and 0.6.0 cannot find the point fields.
+  // KISS-ICP 1.3.0 reads ROS 1 bags, and ROS 2 bags with message definitions, with packages from PyPI only. In MCAP
+  // files, mcap-ros2-support 0.5.7 and 0.6.0 cannot find the point fields.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
   out.takes_empty = false;

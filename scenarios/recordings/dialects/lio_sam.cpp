@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LIO-SAM (TixiaoShan/LIO-SAM, BSD-3).
+// The file describes the recording format of LIO-SAM (TixiaoShan/LIO-SAM, BSD-3).
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
@@ -13,7 +13,7 @@ ReaderNames lio_sam_names(const SensorFacts&) {
   return {"/imu_raw", "imu", "/points_raw", "lidar", "base_link", ""};
 }
 
-/// Returns the noise density of the data sheet, or the authors' value if none is stated.
+/// Returns the noise density of the data sheet, or the value of the authors if the data sheet lacks it.
 std::string density_text(double stated, const char* authors) {
   return stated > 0.0 ? decimal(stated) : authors;
 }

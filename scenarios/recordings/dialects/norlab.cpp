@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// norlab.cpp describes norlab_icp_mapper_ros (norlab-ulaval, BSD-3), the mapper by the authors of the published rig.
+// The file describes norlab_icp_mapper_ros (norlab-ulaval, BSD-3), the mapper by the authors of the published rig.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"

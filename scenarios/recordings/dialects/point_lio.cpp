@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// point_lio.cpp describes Point-LIO (hku-mars/Point-LIO, GPL-2), with facts about the interface only and no text of the
-// sources.
+// The file describes Point-LIO (hku-mars/Point-LIO, GPL-2), with facts about the interface and no text of its sources.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the saturation threshold for the published estimator. If the device exceeds the range of its data sheet, the
+/// Returns the saturation threshold for the published estimator. If a reading exceeds the range in the data sheet, the
 /// threshold is the largest reading.
 double rail(double stated, double largest) {
   return std::max(stated, largest);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rko_lio.cpp describes RKO-LIO (PRBonn/rko_lio, MIT), with its Python program.
+// The file describes RKO-LIO (PRBonn/rko_lio, MIT), with its Python program.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"

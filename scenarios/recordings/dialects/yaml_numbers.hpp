@@ -9,9 +9,8 @@
 
 #include "scenarios/recordings/number_text.hpp"
 
-/// yaml_numbers.hpp writes numbers that every YAML reader accepts as doubles. All numbers have a decimal point, which
-/// ROS 2 requires for a double and YAML 1.1 requires before an exponent. Used only within
-/// scenarios/recordings/dialects.
+/// The functions in yaml_numbers.hpp write numbers that every YAML reader accepts as doubles. All numbers have a
+/// decimal point: ROS 2 requires it for a double, and YAML 1.1 requires it before an exponent.
 namespace tumble::scenarios {
 
 inline std::string decimal(double value) {
@@ -33,20 +32,20 @@ inline std::string translation_of(const Eigen::Isometry3d& T) {
   return decimals({p.x(), p.y(), p.z()});
 }
 
-/// Returns the rotation matrix row by row.
+/// Returns the text of a rotation matrix, row by row.
 inline std::string rotation_of(const Eigen::Isometry3d& T) {
   const Eigen::Matrix3d R = T.linear();
   return decimals({R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)});
 }
 
-/// Returns the pose as qx qy qz qw x y z.
+/// Returns the text of a pose as qx qy qz qw x y z.
 inline std::string quaternion_first(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
   const Eigen::Vector3d p = T.translation();
   return decimals({q.x(), q.y(), q.z(), q.w(), p.x(), p.y(), p.z()});
 }
 
-/// Returns the range rounded up to whole metres.
+/// Rounds a range up to whole metres.
 inline double whole_metres(double range_m) {
   return std::max(1.0, std::ceil(range_m));
 }

@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the first line that is neither empty nor a comment, or the first line if every line is empty or a comment.
+/// Returns the first line that is neither empty nor a comment, or the first line of a file without such a line.
 std::string_view first_row(std::string_view text) {
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trimmed(rest.substr(0, rest.find('\n')));
@@ -43,8 +43,8 @@ char likely_separator(std::string_view text) {
   return line.find(most) == std::string_view::npos ? ' ' : most;
 }
 
-/// Throws BadInput unless the file is UTF-8 text with lines; this check comes before the check of columns, to give a
-/// better message.
+/// Throws BadInput unless the file is UTF-8 text with lines. The text is checked before the columns, which gives a
+/// better error message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
   if (mark == "\xFF\xFE" || mark == "\xFE\xFF")

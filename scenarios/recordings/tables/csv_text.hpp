@@ -7,29 +7,29 @@
 #include <string_view>
 #include <vector>
 
-/// csv_text.hpp reads text files with separated columns, line by line. Used only within scenarios/recordings.
+/// The class CsvText reads text files with separated columns, line by line.
 namespace tumble::scenarios {
 
-/// CsvLine is a line of a file with its location "FILE:12". The fields are views of the file's text without surrounding
-/// blanks or quotes.
+/// CsvLine is a line of a file, with its location "FILE:12" for error messages. Each field is a view of the file's
+/// text, without surrounding blanks or quotes.
 struct CsvLine {
   std::string where;
   std::vector<std::string_view> fields;
 };
 
-/// CsvText contains the lines of a file in memory. Windows line ends are accepted, and empty lines at the end are
+/// CsvText stores the lines of a file in memory. Windows line ends are accepted, and empty lines at the end are
 /// ignored.
 class CsvText {
  public:
-  /// Separates fields with the most frequent separator in the first line that is no comment: comma, semicolon or tab.
-  /// If the first line contains neither comma, semicolon nor tab, blanks separate the fields.
+  /// Opens a file; the separator is the comma, semicolon or tab that is most frequent in the first line that is no
+  /// comment. If the line contains no comma, semicolon or tab, blanks separate the fields.
   explicit CsvText(const std::filesystem::path& path);
-  /// Throws BadInput with the file if the file is missing or empty, or if the last line has no newline and may be
+  /// Opens a file; throws BadInput if the file is missing or empty, or if the last line has no newline and may be
   /// truncated.
   CsvText(const std::filesystem::path& path, char separator);
   /// Reads the next line; returns false at the end of the file.
   bool next(CsvLine& line);
-  /// Place is a position between two lines. The function `back_to` continues reading at a stored place.
+  /// Place is a position between two lines. The function `back_to` moves the reader to a stored place.
   struct Place {
     std::size_t at = 0;
     int lines = 0;
@@ -47,10 +47,11 @@ class CsvText {
 /// Returns whether a line begins with '#', '%' or '//'.
 bool is_comment(std::string_view line);
 
-/// Throws BadInput with the line's location and the message.
+/// Throws BadInput with the location of the line and the message `what`.
 [[noreturn]] void fail(const CsvLine& line, const std::string& what);
 
-/// Returns a finite number from a field. Throws BadInput with the location and `column`, the column's name or number.
+/// Parses field `index` of a line as a finite number. Throws BadInput with the location and `column`, the name or
+/// number of the column.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 
 /// Returns whether the whole field is a number, including NaN and infinities.

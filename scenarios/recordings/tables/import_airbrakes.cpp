@@ -63,7 +63,7 @@ void keep(std::vector<T>& rows, std::size_t first, std::size_t end) {
                         rows.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
-/// Keeps the longest segment without a gap, because logs start long before the flight with few samples.
+/// Keeps the longest part of the log without a gap, because logs start long before the flight with few samples.
 void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) {
   const std::size_t count = imu.time_ns.size();
   std::size_t first = 0, end = 0, gaps = 0;

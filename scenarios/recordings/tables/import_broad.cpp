@@ -24,9 +24,9 @@ constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-/// kSlopeReach is half of the time span for differentiating the reference: 70 ms. With kSlopeReach, the noise at rest
-/// stays below the thresholds that scores use for rest (measured: 0.022 rad/s at half of the span). A time span of 140
-/// ms blurs fast rotations.
+/// kSlopeReach is half of the time interval for differentiating the reference: 70 ms. The interval of 140 ms keeps the
+/// noise at rest below the thresholds that the scores use for rest (half the interval: 0.022 rad/s). The interval is
+/// too long for fast rotations, which it blurs.
 constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
@@ -38,14 +38,14 @@ sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
   if (root.has("imu_mag")) root.read("imu_mag", imu.magnetic_field_t);
   for (Eigen::Vector3d& field : imu.magnetic_field_t) field *= kTeslaPerMicrotesla;
   for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k) {
-    // the stamp is computed from the rate, because multiples of a rounded period would drift
+    // The time stamp is computed from the sample rate, because multiples of a rounded period would drift.
     imu.time_ns.push_back(std::llround(static_cast<double>(k) * 1e9 / rate_hz));
   }
   imu.clip_flags.assign(imu.time_ns.size(), 0);
   return imu;
 }
 
-/// Returns the attitudes as unit quaternions, with NaN where the cameras saw too few markers.
+/// Returns the reference attitudes as unit quaternions, with NaN where the cameras saw too few markers.
 std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   std::vector<Eigen::Vector4d> rows;
   root.read("opt_quat", rows);
@@ -64,7 +64,7 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   return q_WB;
 }
 
-/// Returns the known attitudes at the stamps of the samples.
+/// Returns the known reference attitudes with the time stamps of their samples.
 std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRecord& imu) {
   std::vector<ReferencePose> poses;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -73,7 +73,7 @@ std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRe
   return poses;
 }
 
-/// Reads the optical reference. The body axes are the IMU axes; the world axes are east, north, up.
+/// Reads the optical reference of a BROAD file. The body axes are the IMU axes; the world axes are east, north, up.
 std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::ImuRecord& imu) {
   if (!root.has("opt_quat") || !root.has("opt_pos")) return std::nullopt;
   sim::Truth truth;

@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the .csv files of a folder in the order of their names.
+/// Returns the .csv files of a folder, sorted by name.
 std::vector<std::filesystem::path> tables_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> tables_in(const std::filesystem::path& folder
   return files;
 }
 
-/// Returns why a table has no IMU readings, or "" if the columns of an IMU exist.
+/// Explains why a table has no IMU readings, or returns "" if the columns of an IMU exist.
 std::string imu_problem(const std::filesystem::path& file) {
   try {
     imu_columns(LoggedTable(file));

@@ -17,8 +17,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit in the column names, otherwise the unit that the caller states. Throws BadInput if a unit that the
-/// caller states contradicts the column names.
+/// Returns the unit in the column names, or else the unit that the caller chose. Throws BadInput if the unit of the
+/// caller contradicts the column names.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
@@ -52,8 +52,9 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// If a table contains several IMUs, their rows alternate. The function keeps the rows of the first IMU; it returns a
-/// note, or "" if the table has one IMU. A column with more than kImusMax different numbers counts rows, not IMUs.
+/// If a table contains several IMUs, the rows of the IMUs alternate. The function keeps only the rows of the first IMU,
+/// and returns a note, or "" if the table has one IMU. A column with more than kImusMax different numbers contains row
+/// numbers instead of IMU numbers.
 std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::map<std::string, std::size_t> rows;
@@ -75,7 +76,8 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
       first, others);
 }
 
-/// Reads the samples of the IMU columns and their places in the file. Faulty rows are counted in `left_out`.
+/// Reads the samples from the IMU columns of a table, with their lines in the file. The argument `left_out` counts
+/// faulty rows.
 sim::ImuRecord readings_of(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit, LeftOut& left_out, std::vector<std::string>& places) {
   sim::ImuRecord imu = without_readings(device);

@@ -32,11 +32,11 @@ constexpr const char* kRepoimuAttribution =
 
 constexpr double kBadNormShareMax = 0.2;
 constexpr double kRepoimuStampMax_s = 86400.0;
-/// kDigitsReach is the number of rows on either side that determine the precision of printed stamps.
+/// The kDigitsReach rows before and after a row determine the precision of its time stamp.
 constexpr std::size_t kDigitsReach = 50;
 constexpr double kCoarse = 0.02;  // fraction of a step above which coarse printing is noted
 
-/// RepoimuColumns contains the positions of the columns by group.
+/// RepoimuColumns contains the positions of the columns, by group.
 struct RepoimuColumns {
   std::size_t time = 0;
   std::array<std::size_t, 4> attitude{};  ///< w x y z
@@ -54,7 +54,7 @@ struct Log {
   LeftOut left_out{"readings"};
 };
 
-/// Returns column names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
+/// Returns column names such as "Vicon Orientation/W"; the name of a group is above the first column of the group.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
     fail(names, fmt::format("this line has {} columns, but the line above has {}; the numbers must be equal",
@@ -96,8 +96,8 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   return columns;
 }
 
-/// DecimalNumbers accepts a decimal comma, which one published file contains; between ';' separators, it is
-/// unambiguous.
+/// DecimalNumbers accepts a decimal comma, which one published file contains; with the separator ';', a decimal comma
+/// is unambiguous.
 class DecimalNumbers {
  public:
   DecimalNumbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
@@ -115,7 +115,7 @@ class DecimalNumbers {
   Eigen::Vector3d at(const std::array<std::size_t, 3>& columns, const char* name) {
     return {at(columns[0], name), at(columns[1], name), at(columns[2], name)};
   }
-  /// Returns NaN for missing values, which occur where the cameras saw no markers.
+  /// Returns the number in a column, or NaN for a missing value, which occurs where the cameras saw no markers.
   double or_unknown(std::size_t column, const char* name) {
     const std::string_view text = line_.fields[column];
     if (text.empty() || text == "NaN" || text == "nan") return kNaN;
@@ -127,13 +127,13 @@ class DecimalNumbers {
   std::size_t& commas_;
 };
 
-/// Returns the number of printed decimals.
+/// Returns the number of decimals in the text of a number.
 int decimals(std::string_view text) {
   const std::size_t point = text.find('.');
   return point == std::string_view::npos ? 0 : static_cast<int>(text.size() - point - 1);
 }
 
-/// Returns half of the last printed decimal of the stamps around each row.
+/// Returns the largest rounding error of the time stamp in each row: half of its last decimal, from the rows around it.
 std::vector<StampBounds> rounding_of(const std::vector<int>& decimals) {
   std::vector<StampBounds> bounds;
   for (std::size_t k = 0; k < decimals.size(); ++k) {
@@ -193,7 +193,7 @@ Log read_log(const std::filesystem::path& path) {
   return log;
 }
 
-/// Regularises the time stamps, with a note if they were printed coarsely.
+/// Replaces the time stamps by regular times, with a note if the file contains too few decimals.
 void steady(Log& log, std::vector<std::string>& notes) {
   const std::vector<std::int64_t> printed = log.readings.time_ns;
   log.readings.time_ns = steady_stamps(printed, log.rounding);
@@ -205,7 +205,7 @@ void steady(Log& log, std::vector<std::string>& notes) {
     if (k == 0) continue;
     const bool same = printed[k] == printed[k - 1];
     equal += same ? 1 : 0;
-    // precise stamps do not repeat because of rounding
+    // Time stamps with enough decimals do not repeat because of rounding.
     const bool coarse = 2 * (log.rounding[k].before_ns + log.rounding[k].after_ns) >= mean_step;
     if (time_ns <= log.readings.time_ns[k - 1] || (same && !coarse)) {
       throw BadInput(fmt::format("{}: Time must increase, but {:.9g} s occurs more often than its rounding explains",
@@ -235,7 +235,7 @@ void require_attitudes(const std::filesystem::path& path, const Log& log) {
                   log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
 }
 
-/// Describes errors of the reference's rates where all gyro axes are far from their extreme readings.
+/// Describes the errors of the reference rates at samples where all gyro axes are far from their extreme readings.
 std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::Vector3d>& rates) {
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& w : imu.gyro_rad_s) extreme = extreme.cwiseMax(w.cwiseAbs());
@@ -253,7 +253,7 @@ std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::
       kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
 }
 
-/// Adds the reference as the truth of the recording.
+/// Adds the optical reference as the truth of the recording.
 void add_reference(const std::filesystem::path& path, Log& log, bool align, Imported& out) {
   const sim::ImuRecord& imu = out.sensors.imus.front();
   const std::size_t samples = log.poses.size();
@@ -305,7 +305,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
   steady(log, out.notes);
-  // time 0 is the first printed stamp, not the regularised time of the first sample
+  // Time 0 is the first stamp in the file, instead of the corrected time of the first sample.
   const std::int64_t first_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= first_ns;
   for (ReferencePose& pose : log.poses) pose.time_ns -= first_ns;

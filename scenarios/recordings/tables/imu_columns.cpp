@@ -29,7 +29,7 @@ const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", 
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// Returns the only column that `fits` accepts; a second column would belong to another sensor.
+/// Returns the only column that the function `fits` accepts; a second such column would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
@@ -41,8 +41,7 @@ std::optional<std::size_t> find_column(const CsvLine& header, const std::string&
   return found;
 }
 
-/// Finds names that end in `name`, with points or slashes between the parts: "/imu/header/stamp",
-/// "field.header.stamp".
+/// Finds the column whose name ends in `name`, after a point or slash: "/imu/header/stamp", "field.header.stamp".
 std::optional<std::size_t> find_ending(const CsvLine& header, const std::string& name) {
   return find_column(header, name, [&](std::string_view field) {
     std::string parts(field);
@@ -51,7 +50,7 @@ std::optional<std::size_t> find_ending(const CsvLine& header, const std::string&
   });
 }
 
-/// Finds a column whose name has one of several endings.
+/// Finds the column whose name has one of several endings.
 std::optional<std::size_t> find_any_ending(const CsvLine& header, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (const auto found = find_ending(header, name)) return found;
@@ -65,7 +64,7 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// RequiredColumns collects the columns of a header that must all exist.
+/// RequiredColumns collects columns of a header that must all exist.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}
@@ -75,7 +74,7 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// Returns false if no required column exists; throws BadInput if only some exist.
+  /// Returns false if no required column exists; throws BadInput if only some of them exist.
   bool complete() const {
     if (found_ == 0) return false;
     if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
@@ -88,8 +87,9 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// Finds the stamp of a message's header. `rostopic echo -p` names it "field.header.stamp" and writes nanoseconds;
-/// other tools write seconds, or seconds and nanoseconds in two columns. Returns false if the header contains no stamp.
+/// Finds the column with the time stamp of a message header. The column "field.header.stamp" of `rostopic echo -p`
+/// contains nanoseconds; other tools write seconds, or seconds and nanoseconds in two columns. Returns false if the
+/// header contains no stamp.
 bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   const auto seconds = find_any_ending(header, {"header/stamp/sec", "header/stamp/secs"});
   const auto rest = find_any_ending(header, {"header/stamp/nsec", "header/stamp/nsecs", "header/stamp/nanosec"});
@@ -105,8 +105,8 @@ bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   return true;
 }
 
-/// Finds the columns of flattened ROS messages. The stamp of the message header takes precedence over the time of
-/// recording.
+/// Finds the IMU columns in a table of ROS messages. The time stamp of the message header takes precedence over the
+/// time of recording.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   if (!find_header_stamp(header, layout)) return std::nullopt;
@@ -119,8 +119,8 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Finds the columns "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s" with "stamp_ns"
-/// and similar names.
+/// Finds columns with the short names "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s"
+/// with "stamp_ns".
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -134,7 +134,7 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Throws BadInput unless a header with names of `export` has each of these names once and no other name.
+/// Throws BadInput unless a header of the command `export` has each column name once and no other name.
 void require_exported(const CsvLine& header) {
   for (const std::string_view field : header.fields) {
     const std::string name(field);
@@ -165,12 +165,12 @@ std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
   fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, line.fields[column]));
 }
 
-/// Returns whether seconds and nanoseconds are in separate columns.
+/// Returns whether the time stamp has separate columns for seconds and nanoseconds.
 bool has_split_stamp(const CsvLine& header) {
   return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
 }
 
-/// Returns true for a column name that only `export` writes.
+/// Returns whether only the command `export` writes this column name.
 bool is_own(std::string_view field) {
   return (field == "stamp_s" || field.ends_with("_rad_s") || field.ends_with("_m_s2")) &&
          std::find(kExported.begin(), kExported.end(), field) != kExported.end();

@@ -12,10 +12,10 @@
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/tables/logged_table.hpp"
 
-/// imu_columns.hpp finds the IMU columns of a table. Used only within scenarios/recordings.
+/// The header imu_columns.hpp finds the IMU columns of a table.
 namespace tumble::scenarios {
 
-/// StampForm is the format of time stamps.
+/// StampForm is the format of the time stamps in a table.
 enum class StampForm {
   split,   ///< whole seconds, and nanoseconds in another column
   decimal  ///< a decimal number in some unit
@@ -32,20 +32,21 @@ struct ImuColumns {
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Finds the IMU columns of a table. Column names take precedence over positions. The following names are known: names
-/// of tools that flatten ROS messages (".../angular_velocity/x", "field.angular_velocity.x"), names of `export` (each
-/// once and no other names), short forms of the export names (sec nsec wx.. fx..), and names of loggers
-/// (logger_columns.hpp). In a table without a header, the positions identify the columns. Throws BadInput with file and
-/// line for unknown, repeated or missing columns.
+/// Finds the IMU columns of a table by their names, or by their positions. Column names take precedence over positions.
+/// Four groups of names are accepted: ROS messages (".../angular_velocity/x", "field.angular_velocity.x"), the command
+/// `export` (each once and no other names), its short forms (sec nsec wx.. fx..), and loggers (logger_columns.hpp). In
+/// a table without a header, the positions identify the columns. Throws BadInput with file and line for unknown,
+/// repeated or missing columns.
 ImuColumns imu_columns(const LoggedTable& table);
 
-/// Returns a line's stamp in nanoseconds. Throws BadInput with file, line and column.
+/// Parses the time stamp of a line, in nanoseconds. Throws BadInput with file, line and column if the time stamp is
+/// invalid.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Infers the unit of stamps from up to a thousand steps, as a number of decimals. The unit is that of s, ms, us and ns
-/// which gives 10 to 1000 samples per second. At most one unit of time fits the stamps of a table. For other sample
-/// rates, the file must state the unit. The function reads the samples from the start. The error message starts with
-/// `file`. Throws BadInput if no unit fits.
+/// Infers the unit of the time stamps from up to a thousand time steps, and returns it as a number of decimals. The
+/// unit is the one of s, ms, us and ns that gives 10 to 1000 samples per second. At most one unit fits the time stamps
+/// of a table. For other sample rates, the file must contain the unit. The function reads samples from the start of the
+/// table. The error message starts with `file`. Throws BadInput if no unit fits the time steps.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

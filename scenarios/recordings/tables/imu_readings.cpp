@@ -18,15 +18,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// For a body at rest, rolling or hand-held, the median is near g in m/s^2; the median of readings in g, mg or raw
-/// counts is outside these limits.
+/// For a body at rest, rolling or hand-held, the median norm is near g in m/s^2; the limits exclude readings in g, in
+/// mg and in raw counts.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// Returns the unit in which the median would be close to gravity, or nothing for raw counts.
+/// Returns the unit in which the median specific force would be close to gravity, or nothing for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -54,15 +54,15 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// kSensorReadingMax limits the readings of both triads [rad/s, m/s^2], as in the estimator.
+/// kSensorReadingMax limits the readings of gyro and accelerometer [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
-/// Returns the largest absolute value of the triad, or a non-finite value if any axis is non-finite.
+/// Returns the largest absolute value of the three axes, or a non-finite value if any axis is non-finite.
 double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// The limits on the period are 0.5 Hz to 50 kHz, the range of IMU sample rates.
+/// The sample rate must be between 0.5 Hz and 50 kHz, the range of IMU sample rates.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
@@ -74,13 +74,13 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
-/// kLargestRate_rad_s is the largest plausible rate of a robot's device without a data sheet.
+/// kLargestRate_rad_s is the largest plausible rate of a robot's IMU without a data sheet.
 constexpr double kLargestRate_rad_s = 100.0;
 /// At most the fraction kBeyondShare of the samples may exceed the range; single samples beyond the range are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// Returns the fraction of samples whose largest axis, times `factor`, exceeds the limit.
+/// Returns the fraction of samples whose largest rate about one axis, times `factor`, exceeds the limit.
 double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
   const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
     return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
@@ -110,11 +110,11 @@ constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // rotation of t
                                                                 // one degree
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// A change of the gravity direction by kBriskRotation ends a brisk window.
+/// A short window (`brisk`) ends when the direction of gravity has changed by kBriskRotation.
 constexpr double kBriskRotation = 0.25;
 
-/// A time step within a burst is at most the fraction kBurstStep of the mean step. At least half of the time steps must
-/// be this short.
+/// Within a burst of readings, a time step is at most the fraction kBurstStep of the mean step. In a recording with
+/// bursts, at least the fraction kBurstShare of the time steps are within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
@@ -128,8 +128,8 @@ std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t
       times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 
-/// Distributes the readings of each burst evenly over the time since the previous burst; the last reading was just
-/// taken when the burst arrived. Returns a note, or "" without bursts.
+/// Distributes the readings of each burst evenly over the time since the previous burst; the last reading keeps its
+/// time. Returns a note, or "" if there are no bursts.
 std::string even_out_bursts(sim::ImuRecord& imu) {
   std::vector<std::int64_t>& times = imu.time_ns;
   if (times.size() < 2) return "";
@@ -198,14 +198,14 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kRotationWindow_s) {
       ++end;
-      // a sample is the mean over the averaging window that ends at its stamp
+      // A sample is the mean over the averaging window that ends at its time stamp.
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // Averages a quarter of the window at each end, so that noise does not appear as rotation.
+      // The force is averaged over a quarter of the window at each end, so that noise does not appear as rotation.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -235,11 +235,11 @@ bool has_sufficient_rotation(const GravityRotation& turn) {
 
 GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // brisk windows are used because a rolling sphere rotates too far in even windows
+  // The short windows (`brisk`) are used because a rolling sphere rotates too far in windows of equal length.
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
-/// Explains why the motion is insufficient for the check.
+/// Explains why the motion is insufficient to check the units with gravity.
 std::string undetermined_text(const GravityRotation& turn) {
   if (turn.windows < kLeastWindows)
     return "unit and axes are not checked, because gravity rotates too little in the accelerometer axes";

@@ -9,17 +9,17 @@
 
 #include "scenarios/recordings/tables/csv_text.hpp"
 
-/// logged_table.hpp reads text tables of loggers: IMU readings and poses. Used only within scenarios/recordings.
+/// The class LoggedTable reads text tables of loggers: IMU readings and poses.
 namespace tumble::scenarios {
 
-/// LoggedTable is a table of samples below an optional header. LoggedTable skips comments (csv_text.hpp), and an empty
-/// field after the last separator of a line. The header is the first line that is no comment and has fewer numbers than
-/// other texts. If the samples follow comments directly, the last comment is the header, provided that it has as many
+/// LoggedTable is a table of samples with an optional header line. LoggedTable skips comments (csv_text.hpp), and an
+/// empty field after the last separator of a line. The header is the first line that is no comment and contains fewer
+/// numbers than other texts. If the samples directly follow comments, the last comment is the header if it has as many
 /// fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is added to the
-/// names in brackets.
+/// column names, in brackets.
 class LoggedTable {
  public:
-  /// Throws BadInput like CsvText.
+  /// Opens a table; throws BadInput like CsvText.
   explicit LoggedTable(const std::filesystem::path& path);
   LoggedTable(const LoggedTable&) = delete;
   LoggedTable& operator=(const LoggedTable&) = delete;
@@ -31,9 +31,9 @@ class LoggedTable {
   /// Reads the next sample; returns false at the end of the table. Throws BadInput with file and line for a wrong
   /// number of fields.
   bool next(CsvLine& line);
-  /// Continues reading at the first sample.
+  /// Moves the reader back to the first sample.
   void restart() { text_.back_to(samples_); }
-  /// After this call, `next` only returns samples with the text `value` in the column.
+  /// After this call, `next` returns only samples with the text `value` in the column.
   void keep(std::size_t column, const std::string& value) { kept_ = {column, value}; }
 
  private:

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Name is a column name and its unit, both in lower case without separators.
+/// Name contains a column name and its unit, both in lower case without separators.
 struct Name {
   std::string quantity, unit;
 };
@@ -28,7 +28,7 @@ const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "tim
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
 constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
 
-/// Loggers write these times next to the stamp.
+/// Loggers write times with these names in addition to the time stamp.
 const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
 const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "gyroscope", "angularvelocity",
                                               "angularrate", "w",    "omega",  "angvel",    "rate",
@@ -36,7 +36,7 @@ const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "
 const std::vector<std::string_view> kForces = {
     "a", "acc",           "accel", "accelerometer", "acceleration",    "linearacceleration",
     "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
-/// Columns with these names number the IMUs of a table.
+/// Columns with these names contain the number of the IMU.
 const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
 const UnitNames<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
@@ -73,7 +73,8 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Splits names with the unit in brackets: "gx [deg/s]", "gx (deg/s)". An index in brackets is an axis: "gyro_rad[0]".
+/// Splits a column name with the unit in brackets: "gx [deg/s]", "gx (deg/s)". An index in brackets is an axis:
+/// "gyro_rad[0]".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
@@ -82,8 +83,8 @@ Name split_brackets(std::string_view field) {
   return {quantity, unit};
 }
 
-/// Splits names such as "time_ms" and "gyro_x_deg_s", with the unit after an underscore that follows the axis, and
-/// "TimeUS", with the unit directly after the quantity.
+/// Splits names such as "time_ms" and "gyro_x_deg_s", where the unit follows an underscore, and "TimeUS", where the
+/// unit follows the quantity directly.
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
@@ -100,7 +101,7 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   return name;
 }
 
-/// NamedAxis is an axis of a triad, with the number of the IMU in the name ("" if the name has none).
+/// NamedAxis is an axis of a gyro or accelerometer, with the number of the IMU in the name ("" without a number).
 struct NamedAxis {
   std::size_t axis = 0;
   std::string number;
@@ -116,7 +117,7 @@ std::string take_number(std::string_view& text, bool from_end) {
   return digits;
 }
 
-/// Returns the axis if the quantity is one of `names`, with or without the prefix "imu" and the number of an IMU.
+/// Returns the axis if the quantity has one of `names`, with or without the prefix "imu" and the number of an IMU.
 std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
   NamedAxis out;
   if (quantity.starts_with("imu")) {
@@ -132,7 +133,7 @@ std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std
   return is_one_of(names, quantity) ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the unit that a column name states, if any, for a quantity with any name.
+/// Returns the unit in a column name, if there is one, for a quantity with any name.
 template <class Value>
 std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& units) {
   if (const std::size_t open = field.find_first_of("[("); open != std::string_view::npos)
@@ -142,7 +143,7 @@ std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& uni
   return std::nullopt;
 }
 
-/// HeaderReader takes the columns of one quantity from a header.
+/// HeaderReader finds the columns of each quantity in a header.
 class HeaderReader {
  public:
   explicit HeaderReader(const CsvLine& header) : header_(header), taken_(header.fields.size(), false) {}
@@ -197,7 +198,7 @@ class HeaderReader {
     return stated[0];
   }
 
-  /// Returns false if only a time column is known; throws BadInput if a column is missing.
+  /// Returns false if no column of readings is known; throws BadInput if only some columns are missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty())
@@ -205,7 +206,7 @@ class HeaderReader {
                        missing_, kExample));
     return true;
   }
-  /// Finds the column that numbers the IMUs.
+  /// Finds the column with the number of the IMU.
   std::optional<std::size_t> id() {
     for (std::size_t i = 0; i < header_.fields.size(); ++i)
       if (is_one_of(kIds, letters(header_.fields[i]))) return i;
@@ -248,7 +249,7 @@ class HeaderReader {
   std::optional<std::string> number_;  ///< number of the IMU in the names of its columns
 };
 
-/// Splits "time=t,gyro=gx,gy,gz,accel=ax,ay,az" into the named columns of one quantity.
+/// Splits a text such as "time=t,gyro=gx,gy,gz,accel=ax,ay,az" and returns the columns of one quantity.
 std::vector<std::string> names_of(const std::string& choice, const std::string& quantity) {
   std::vector<std::string> names;
   std::string current;
@@ -267,7 +268,7 @@ std::vector<std::string> names_of(const std::string& choice, const std::string& 
   return names;
 }
 
-/// Returns the column with this name or, if there is none, at this position.
+/// Returns the column with the name `name`; if no column has this name, returns the column at the position `name`.
 std::size_t column_of(const LoggedTable& table, const std::string& name) {
   const std::vector<std::string_view>& fields = table.header().fields;
   const auto count = table.has_header() ? std::count(fields.begin(), fields.end(), name) : 0;

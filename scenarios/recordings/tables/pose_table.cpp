@@ -43,7 +43,7 @@ bool is_quaternion(const std::string& name, char axis) {
   return false;
 }
 
-/// PoseColumns contains the columns of a table of poses.
+/// PoseColumns contains the positions of the columns in a table of poses.
 struct PoseColumns {
   std::size_t time = 0;
   std::optional<std::size_t> nanoseconds;  ///< if the stamp is seconds and nanoseconds
@@ -52,7 +52,7 @@ struct PoseColumns {
   std::array<std::size_t, 4> quaternion{};  ///< x y z w
 };
 
-/// PoseHeader finds the columns of a header and collects missing ones.
+/// PoseHeader finds the columns of a header, and collects the names of missing columns.
 class PoseHeader {
  public:
   explicit PoseHeader(const CsvLine& header) : header_(header) {
@@ -116,7 +116,7 @@ class PoseHeader {
   std::string missing_;
 };
 
-/// Returns the columns; `missing` names absent columns.
+/// Finds the columns of a table of poses; the list `missing` receives the names of absent columns.
 PoseColumns columns_of(const CsvLine& header, std::string& missing) {
   PoseColumns columns;
   PoseHeader names(header);
@@ -189,7 +189,7 @@ std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bo
       pose.p_WA_m[i] = number_of(line, columns.position[static_cast<std::size_t>(i)]);
     for (Eigen::Index i = 0; i < 4; ++i)
       pose.q_WA.coeffs()[i] = number_of(line, columns.quaternion[static_cast<std::size_t>(i)]);
-    // the command `export` writes unknown poses of a reference as NaN
+    // The command `export` writes unknown poses of a reference as NaN.
     if (pose.p_WA_m.array().isNaN().all() && pose.q_WA.coeffs().array().isNaN().all()) continue;
     const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
     if (!problem.empty()) fail(line, problem);

@@ -12,16 +12,16 @@ namespace {
 
 constexpr std::size_t kLineReach = 10;
 constexpr double kGapSteps = 1.3;
-/// Smaller differences between a line and a raster of stamps are rounding.
+/// Smaller differences between a line and a grid of time stamps are rounding errors.
 constexpr std::int64_t kSame_ns = 1000;
 
-/// Fits a line to the samples `first` to `last`; returns the line's offset from `stamps[k]` at k.
+/// Fits a line to the time stamps `first` to `last`, and returns the difference between the line and `stamps[k]` at k.
 double line_offset_ns(std::span<const std::int64_t> stamps, std::span<const StampBounds> bounds, std::size_t first,
                       std::size_t last, std::size_t k) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (std::size_t i = first; i <= last; ++i) {
     const double u = static_cast<double>(i) - static_cast<double>(k);
-    // middle of the interval that contains the true time
+    // The variable `middle` is the middle of the interval that contains the true time.
     const double middle = 0.5 * static_cast<double>(bounds[i].after_ns - bounds[i].before_ns);
     const double v = static_cast<double>(stamps[i] - stamps[k]) + middle;
     n += 1.0, x += u, y += v, xx += u * u, xy += u * v;

@@ -5,19 +5,18 @@
 #include <span>
 #include <vector>
 
-/// steady_stamps.hpp restores stamps that were rounded to a raster coarser than the sample period. Used only within
-/// scenarios/recordings.
+/// The function steady_stamps restores time stamps that were rounded to a grid coarser than the sample period.
 namespace tumble::scenarios {
 
-/// StampBounds contains the limits of the true time before and after a stamp.
+/// StampBounds contains how far the true time may be before and after a time stamp.
 struct StampBounds {
   std::int64_t before_ns = 0, after_ns = 0;
 };
 
-/// Regularises the time stamps of a series. Each stamp moves to a line through ten neighbours on either side in its
-/// segment, limited by the stamp's bounds. A gap is a step longer than 1.3 times the median step plus the width of both
-/// stamps' bounds. The method assumes a constant period over twenty samples; jitter larger than the bounds remains.
-/// `bounds` is parallel to `stamps_ns`, which must not decrease. Cost: O(N).
+/// Returns regular time stamps for a series of samples. Each time stamp is moved, within its bounds, to a line through
+/// ten neighbours on either side, up to the next gap. A gap is a step that exceeds 1.3 times the median step plus the
+/// bounds of both time stamps. The method assumes a constant period over twenty samples; jitter beyond the bounds
+/// remains. The list `bounds` is parallel to `stamps_ns`, which must not decrease. The cost is O(N).
 std::vector<std::int64_t> steady_stamps(std::span<const std::int64_t> stamps_ns, std::span<const StampBounds> bounds);
 
 }  // namespace tumble::scenarios

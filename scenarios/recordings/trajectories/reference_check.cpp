@@ -12,17 +12,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kContradicts and kReferenceAgrees limit the rotation difference as a fraction of the rotation: a larger difference
-/// contradicts the gyro, a smaller one agrees.
+/// The reference contradicts the gyro if their rotation difference exceeds kContradicts (a fraction of the rotation),
+/// and agrees if it is below kReferenceAgrees.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A difference beyond kExplained is a fault of the file if another order or direction of the quaternions leaves less
-/// than the fraction kExplanationLeaves of the difference.
+/// A difference above kExplained is a fault of the file if another quaternion convention reduces it below the fraction
+/// kExplanationLeaves.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
-/// In valid recordings, filters of the IMU cause a delay of about 0.02 s.
+/// In valid recordings, the filters of the IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// Returns the candidate frames with the stated frame first, so that poses that fit this frame are never assigned to
-/// another frame.
+/// Returns the frames to which the poses may belong. The frame that the user chose is first, so that it is kept if the
+/// poses fit it.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
@@ -94,7 +94,7 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
          (check.order_known ? "" : "; this motion does not reveal whether the quaternions have w first");
 }
 
-/// Returns whether the reference differs from the gyro only by a delay, which may be accepted.
+/// Returns whether the reference differs from the gyro only by a delay, which may be small enough.
 bool fits_as_stated(const TurningCheck& check) {
   const TurningFit& fit = check.reading.likely();
   return fit.written == QuaternionConvention::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
@@ -106,7 +106,7 @@ bool fits_as_stated(const TurningCheck& check) {
                  fmt::format(", but only by {} after a correction", share_text(corrected)) + remedies);
 }
 
-/// Throws BadInput if the gyro contradicts the order or direction of the quaternions, or their clock.
+/// Throws BadInput if the gyro contradicts the quaternion convention or the clock of the poses.
 void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const TurningFit& fit = check.reading.likely();
   if (fit.difference >= kReferenceAgrees) return;
@@ -117,7 +117,7 @@ void require_reading_as_stated(const TurningCheck& check, const std::string& imu
            remedy(rewritten ? fit.written : QuaternionConvention::as_stated, fit.delay_s));
 }
 
-/// Throws BadInput if the gyro contradicts the clock of a reference whose mounting differs from the stated mounting.
+/// Throws BadInput if the gyro contradicts the clock of a reference whose mounting differs from the given mounting.
 void require_clock(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const MountingFit& fit = check.mounting.likely();
   if (fit.difference < kReferenceAgrees && is_delayed(fit.delay_s))

@@ -33,8 +33,7 @@ std::vector<double> step_rates_rad_s(const std::vector<ReferencePose>& poses) {
   return rates;
 }
 
-/// Returns the lower median of up to four steps; if there is no step at an end of the recording, the body counts as
-/// resting.
+/// Returns the lower median of up to four steps; at an end of the recording without steps, the body counts as resting.
 double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdiff_t direction) {
   std::vector<double> side;
   for (auto i = static_cast<std::ptrdiff_t>(kNear); i <= static_cast<std::ptrdiff_t>(kFar); ++i) {
@@ -88,7 +87,7 @@ void exclude_frozen(std::vector<ReferencePose>& poses, GlitchReport& report) {
   for (std::size_t first = 0; first < poses.size();) {
     std::size_t last = first;
     while (last + 1 < poses.size() && poses[last + 1].q_WA.coeffs() == poses[first].q_WA.coeffs()) ++last;
-    // at rest, rounded attitudes may repeat without a later jump
+    // At rest, rounded attitudes may repeat without a later jump.
     const bool thaws = last > first && last + 2 < poses.size();
     const double thaw_rad = thaws ? rotation_rad(poses[last], poses[last + 1]) : 0.0;
     if (thaws && thaw_rad > kThaw_rad && thaw_rad > kCatchUp * rotation_rad(poses[last + 1], poses[last + 2])) {

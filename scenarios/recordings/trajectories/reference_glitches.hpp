@@ -6,11 +6,10 @@
 
 #include "scenarios/recordings/trajectories/reference.hpp"
 
-/// reference_glitches.hpp removes errors of an optical reference: confused markers and repeated attitudes. Used only
-/// within scenarios/recordings.
+/// The function leave_out_glitches removes errors of an optical reference: confused markers and repeated attitudes.
 namespace tumble::scenarios {
 
-/// GlitchReport contains the numbers of removed samples, by cause.
+/// GlitchReport contains the number of removed samples for each cause.
 struct GlitchReport {
   std::size_t unknown = 0;           ///< not finite
   std::size_t bad_norm = 0;          ///< norm off by more than 1 %: an average of two attitudes
@@ -21,14 +20,13 @@ struct GlitchReport {
   std::string text(std::size_t samples) const;
 };
 
-/// Removes errors from `poses`, using only attitudes. The stamps of the poses must increase. A jump is a step whose
-/// rate exceeds that of the steps before and after by more than 10 rad/s. The compared rates are medians of four steps
-/// before and of four steps after, three to six steps away. The threshold assumes that no recorded body rotates 10
-/// rad/s faster for only 30 ms. The three samples on either side of a jump are also removed.
+/// Removes erroneous samples from `poses`, judged by their attitudes alone. The time stamps in `poses` must increase. A
+/// jump is a step whose rate exceeds the rates before and after by more than 10 rad/s. The rates before and after are
+/// medians of four steps, three to six steps away from the jump. The threshold of 10 rad/s assumes that no recorded
+/// body rotates this much faster for only 30 ms. The three samples on either side of a jump are also removed.
 ///
-/// Jumps less than 0.5 s apart form a pair, and the samples between the two jumps are removed. After a jump without a
-/// return jump, the attitude is uncertain; the function only counts this jump in `leaps`. The function uses no other
-/// sensor. Cost: O(N).
+/// Two jumps less than 0.5 s apart form a pair, and the samples between them are removed. After a jump without a second
+/// jump, the attitude is uncertain; the function only counts this jump in `leaps`. The cost is O(N).
 GlitchReport leave_out_glitches(std::vector<ReferencePose>& poses);
 
 }  // namespace tumble::scenarios

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// KITTI's matrices have seven digits.
+/// The matrices in KITTI files have seven digits.
 constexpr double kRotationTolerance = 1e-3;
 
 [[noreturn]] void fail(const Table& table, const Table::Row& row, const std::string& what) {
@@ -64,7 +64,7 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
     return fmt::format("the quaternion's norm is {:f}; it must be 1 within 1 %", norm);
-  // quaternions that are normalised up to rounding stay unchanged
+  // A quaternion that is normalised up to rounding is not changed.
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t kLeastPoses = 3;
 
-/// Fits a parabola to the poses `first` to `last` and returns its derivative at the requested time.
+/// Fits a parabola to the poses `first` to `last`, and returns its derivative at the requested time.
 Eigen::Vector3d slope_rad_s(const std::vector<ReferencePose>& poses, std::size_t first, std::size_t last,
                             std::int64_t time_ns) {
   std::size_t nearest = first;
   for (std::size_t k = first; k <= last; ++k) {
     if (std::abs(poses[k].time_ns - time_ns) < std::abs(poses[nearest].time_ns - time_ns)) nearest = k;
   }
-  // time is normalised by the window for good conditioning
+  // The length of the window normalises the time, for good conditioning.
   const double unit_s = 0.5e-9 * static_cast<double>(poses[last].time_ns - poses[first].time_ns);
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero(), b = Eigen::Matrix3d::Zero();
   for (std::size_t k = first; k <= last; ++k) {
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& p
   std::vector<std::int64_t> stamps;
   for (const ReferencePose& pose : poses) stamps.push_back(pose.time_ns);
   const auto step = static_cast<double>(median_step_ns(stamps));
-  // the window is enlarged slightly, so that rounding does not add or drop a sample at its edge
+  // The window is slightly enlarged, so that rounding does not add or drop a sample at its edge.
   const auto reach = std::llround(1.01 * std::max(static_cast<double>(kRateWindow_ns), kRateSteps * step));
   const auto gap = std::llround(2.5 * step);
   std::vector<Eigen::Vector3d> rates(times_ns.size(),
@@ -54,7 +54,7 @@ std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& p
     for (; end < poses.size() && poses[end].time_ns <= time + reach; ++end)
       whole = whole && (end == first || poses[end].time_ns - poses[end - 1].time_ns <= gap);
     if (end < first + kLeastPoses || !whole) continue;
-    // a pose is needed on both sides of the requested time
+    // The window must contain a pose on both sides of the requested time.
     const bool around = poses[first].time_ns <= time - reach + gap / 2 &&
                         poses[end - 1].time_ns >= time + reach - gap / 2 && poses[first].time_ns < time &&
                         poses[end - 1].time_ns > time;

@@ -20,20 +20,20 @@ namespace {
 constexpr std::int64_t kTurnShortest_ns = 50'000'000, kTurnLongest_ns = 1'000'000'000;
 constexpr std::int64_t kReadingHole_ns = 100'000'000;
 constexpr double kLeast_rad = 0.02, kMost_rad = 2.5;
-/// A pair of attitudes extends until it has rotated by kEnough_rad, so that noise of the attitudes is a small fraction
-/// of the rotation.
+/// A pair of attitudes extends until the body has rotated by kEnough_rad, so that the attitude noise is a small
+/// fraction of the rotation.
 constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
 constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
-/// A delay of kShown_s is detectable if it multiplies the rotation difference by kShows.
+/// A delay of kShown_s is detectable if it increases the rotation difference by at least the factor kShows.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// Other interpretations are considered only if the attitudes as stated differ from the gyro by less than
+/// Other interpretations of a file are tried only if the attitudes as written differ from the gyro by less than
 /// kAgreesAsStated, a fraction of the rotation.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 
-/// GyroIntegral integrates the gyro's rotation since the first sample.
+/// GyroIntegral integrates the rotation from the gyro since the first sample.
 class GyroIntegral {
  public:
   explicit GyroIntegral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -49,7 +49,8 @@ class GyroIntegral {
     }
   }
 
-  /// Returns nothing beyond the readings, across a gap, or if a reading is saturated.
+  /// Returns the rotation between two times, or nothing outside the readings, across a gap, or if a reading is
+  /// saturated.
   std::optional<Eigen::Quaterniond> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const std::size_t first = sample_at(from_ns), last = sample_at(to_ns);
     if (last == imu_.time_ns.size() || from_ns < imu_.time_ns.front()) return std::nullopt;
@@ -79,8 +80,8 @@ double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return 2.0 * std::acos(std::min(std::abs(a.dot(b)), 1.0));
 }
 
-/// Returns a pair from `first` to the first attitude with sufficient rotation, otherwise to the last attitude within
-/// the time limit.
+/// Returns a pair from attitude `first` to the first later attitude with sufficient rotation, or else to the last
+/// attitude within the time limit.
 std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, std::size_t first) {
   std::optional<AttitudePair> out;
   for (std::size_t k = first + 1; k < attitudes.size(); ++k) {
@@ -95,8 +96,8 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs of attitudes begin 50 ms apart and may overlap. Pairs with too little rotation only count if there are few
-/// other pairs, because pairs at rest show only the noise of the attitudes.
+/// Pairs of attitudes begin 50 ms apart and may overlap. Pairs with little rotation count only if there are few other
+/// pairs, because pairs at rest contain only attitude noise.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -122,7 +123,8 @@ Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, QuaternionConvention
                                                                                                       : q;
 }
 
-/// TurningComparison compares the rotations of attitude pairs under one interpretation with the gyro's rotations.
+/// TurningComparison compares the rotations of attitude pairs, under one interpretation of the file, with the rotations
+/// from the gyro.
 class TurningComparison {
  public:
   TurningComparison(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
@@ -134,7 +136,7 @@ class TurningComparison {
     }
   }
 
-  /// Sets the delay of the gyro's rotations; returns false if the gyro then has readings for too few pairs.
+  /// Sets the delay of the gyro's rotations; returns false if the gyro readings then cover too few pairs.
   bool set_delay(double delay_s, std::size_t least) {
     const auto delay_ns = std::llround(1e9 * delay_s);
     measured_.clear();
@@ -158,7 +160,7 @@ class TurningComparison {
             share([&](const Measured& said) { return angle_rad(each.seen_I[said.pair], said.turn); })};
   }
 
-  /// Returns the best fit over all interpretations; among equal fits, the interpretation as stated comes first.
+  /// Returns the best fit over all interpretations; among equal fits, the interpretation as written comes first.
   TurningFit best() const {
     TurningFit out = fit(0);
     for (std::size_t k = 1; k < readings_.size(); ++k) {
@@ -167,8 +169,8 @@ class TurningComparison {
     return out;
   }
 
-  /// Returns the mean specific force in the world of the attitudes under the interpretation of `fit`; the force points
-  /// up and has about the size of gravity.
+  /// Returns the mean specific force in the world of the attitudes, under the interpretation of `fit`; for a correct
+  /// interpretation, it points up and has about the size of gravity.
   Eigen::Vector3d force(const TurningFit& fit, const sim::ImuRecord& imu) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Measured& said : measured_) {
@@ -181,8 +183,8 @@ class TurningComparison {
     return sum / std::max(static_cast<double>(measured_.size()), 1.0);
   }
 
-  /// Returns the interpretations in the frame of `fitted` that fit about equally well, which occurs in a motion about
-  /// one axis. If the interpretation as stated is among the results, it comes first.
+  /// Returns the interpretations in the frame of `fitted` that fit about equally well, as in a motion about a single
+  /// axis. The interpretation as written comes first, if it is one of them.
   std::vector<TurningFit> alike(const TurningFit& fitted) const {
     std::vector<TurningFit> out;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
@@ -192,7 +194,7 @@ class TurningComparison {
     return out;
   }
 
-  /// Solves Wahba's problem (1965) by singular values.
+  /// Computes the mounting of the IMU that fits best, by Wahba's problem (1965) with singular values.
   MountingFit mounting() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const Measured& said : measured_) sum += seen_A(said.pair) * so3::log(said.turn).transpose();
@@ -253,7 +255,7 @@ void take_better(const Fit& found, Fit& best) {
   if (found.difference < best.difference) best = found;
 }
 
-/// Searches the best delay coarsely over all delays, then finely around the best coarse delay.
+/// Searches for the best delay, first coarsely over all delays, then finely around the best coarse delay.
 template <class Fit, class FitNow>
 void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t least, FitNow&& fit_now, Fit& best) {
   const auto search = [&](double centre_s, double reach_s, double step_s) {
@@ -276,8 +278,8 @@ double uprightness(const TurningComparison& comparison, const sim::ImuRecord& im
   return up.norm() < kUpMin_m_s2 ? 0.0 : up.z() / up.norm();
 }
 
-/// If the rotations do not determine the order and direction of the quaternions, gravity may decide. The comparison
-/// with gravity uses the delay of `fit`.
+/// If the rotations do not determine the quaternion convention, gravity may decide. The attitudes are compared with
+/// gravity at the delay of `fit`.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);
@@ -333,7 +335,7 @@ TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::
   compare_with_gravity(comparison, imu, out);
   prefer_upright(comparison, imu, out.reading.undelayed);
   out.reading.delayed = out.reading.undelayed;
-  // a delay that leaves few of the pairs fits them by chance
+  // A delay that leaves only few of the pairs fits by chance.
   const std::size_t least = std::max(kDelayPairsMin, out.pairs / 2);
   if (delay_max_s <= 0.0 || out.pairs < least) return out;
   out.clock_known = clock_shows(comparison, out.stated.difference, least);
