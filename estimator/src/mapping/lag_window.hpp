@@ -14,11 +14,12 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// WindowSweep is a sweep that later sweeps still refine. The unknowns of a WindowSweep refer to the start of the
+/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. Its unknowns refer to the start of the
 /// sweep.
 struct WindowSweep {
   Estimated predicted;
-  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();  ///< derivative by the previous sweep
+  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();  ///< derivative of the unknowns with
+                                                                              ///< respect to the previous sweep's
   Estimated filtered, smoothed;
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
@@ -34,7 +35,7 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep to the lag window. If the lag window is full, its oldest sweep leaves.
+  /// Adds an empty sweep to the lag window. If the lag window is full, the function first removes the oldest sweep.
   WindowSweep& enter();
   /// Returns whether the oldest sweep of the lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
@@ -42,7 +43,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Makes the positions of all inserted points final, because the map's point indices have changed.
+  /// Clears the lists of inserted points after the point indices of the map have changed. The points then keep their
+  /// positions.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.
