@@ -171,8 +171,7 @@ void HandHeldStream::predict_newest(State& state) const {
   }
 }
 
-// Adds a sample to the window. After missing samples, the averaging window of the next reading still has the usual
-// length.
+// Adds a sample to the window. The averaging window of a reading after missing samples has the usual length.
 void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -194,8 +193,7 @@ void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State
   ++state.samples;
 }
 
-// Updates the clipped axes of the samples and the sensing directions. Returns whether a sample in the window has
-// changed.
+// Updates the clipped axes and the sensing directions. Returns whether a sample in the window has changed.
 bool HandHeldStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -256,8 +254,7 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Returns the standard deviations of the readings. If the log repeats readings, the deviations apply to the gyro's
-// longer period.
+// Returns the noise of the readings. If the log repeats readings, the noise is that of the gyro's longer period.
 hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)

@@ -119,8 +119,7 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Levels the initial attitude by the mean specific force. If the robot moves, the covariance grows, because the mean
-/// force differs from gravity.
+/// Levels the initial attitude by the mean specific force. The covariance is larger if the robot moves.
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, track.samples(), levelled);
   if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_for_motion(levelled);
