@@ -11,8 +11,8 @@
 
 namespace tumble::sim {
 
-/// Parameter is a number that a component of a situation takes, with default, limits, unit and meaning. Switches are
-/// numbers: 0 is off, 1 is on.
+/// Parameter is a number that a component of a situation takes, with default, limits, unit and meaning. A switch is
+/// also a number: 0 is off, 1 is on.
 struct Parameter {
   std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
   double default_value;
@@ -32,14 +32,15 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
   return all;
 }
 
-/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component. The error message
-/// states place, value and limit.
+/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component. Its message states
+/// place, value and limit.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Values contains numbers by name; `resolve` returns a set that is complete and within limits.
+/// Values contains the values of parameters by name. resolve() returns Values that are complete and within their
+/// limits.
 class Values {
  public:
   void set(const std::string& name, double value) { numbers_[name] = value; }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// sensors.hpp defines the sensor data, which is all that an estimator receives. Frames and units are as in
+/// sensors.hpp defines the sensor data, which are the complete input of an estimator. Frames and units are as in
 /// docs/design.md: B body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds
 /// from the start.
 namespace tumble::sim {
@@ -31,7 +31,7 @@ struct ImuRecord {
                                                               ///< unknown
 };
 
-/// PointTimes states what is known about the time of points within a sweep.
+/// PointTimes states whether the times of the points within a sweep are known.
 enum class PointTimes : std::uint8_t {
   measured,    ///< each point has its own time in offset_ns
   not_skewed,  ///< all points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed;
@@ -39,7 +39,7 @@ enum class PointTimes : std::uint8_t {
   unknown      ///< the sweep is skewed in an unknown way; offset_ns is 0
 };
 
-/// LidarRecord contains the returns of one lidar, sweep after sweep; a firing without a hit has no point.
+/// LidarRecord contains the returns of one lidar, sweep after sweep. A firing without a hit gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;

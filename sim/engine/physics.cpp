@@ -146,8 +146,8 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
     ContactTruth truth;
     truth.time_ns = time_ns;
     truth.point_W_m = vector(contact.pos);
-    truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);  // MuJoCo's normal is from the first geom to
-                                                                           // the second
+    truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);  // MuJoCo's normal points from the first geom
+                                                                           // to the second
     const Eigen::Vector3d v_W = now.v_WB_m_s + w_W.cross(truth.point_W_m - now.p_WB_m);
     truth.slip_velocity_W_m_s = v_W - v_W.dot(truth.normal_W) * truth.normal_W;
     truth.normal_force_n = force[0];

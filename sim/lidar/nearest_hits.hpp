@@ -5,7 +5,7 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// NearestHits stores the nearest hits found so far for a packet of rays.
+/// nearest_hits.hpp finds the nearest of several hits for each ray of a packet.
 namespace tumble::sim {
 
 /// NearestHits computes the nearest hit of each lane with arithmetic that is identical on every CPU. Among hits at
@@ -14,7 +14,7 @@ class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
 
-  /// Starts without hits, and ignores hits beyond the maximum ranges of the rays.
+  /// Constructs without hits. NearestHits ignores hits beyond the maximum range of a ray.
   explicit NearestHits(const RayPacket& packet);
 
   bool is_replaced(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {
@@ -34,7 +34,9 @@ class NearestHits {
     primitive_[lane] = primitive;
   }
 
-  unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< kNone: no hit
+  unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< number of the hit
+                                                                                               ///< geometry; kNone: no
+                                                                                               ///< hit
   unsigned int primitive(int lane) const { return primitive_[static_cast<std::size_t>(lane)]; }
   /// Writes ranges and cosines of lanes with hits; lanes without a hit are unchanged.
   void write(RayPacket& packet) const;

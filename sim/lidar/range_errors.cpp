@@ -8,9 +8,9 @@ namespace tumble::sim {
 
 namespace {
 
-// kSure gives two limits of the signal that avoid the power function for most returns. If the uniform random number is
-// below kSure, a return is kept from the signal sure_signal_ on. From the signal certain_signal_ on, a return is always
-// kept, because the loss probability is below the resolution of the random numbers.
+// Two signal limits avoid the power function for most returns. Above sure_signal_, a return is kept if its uniform
+// random number is below kSure. Above certain_signal_, a return is always kept, because its loss probability is below
+// the resolution of the random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
@@ -44,7 +44,7 @@ bool RangeErrors::is_detected(float signal, double uniform) const {
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);
-  // the odds overflow to infinity for a return that cannot be missed
+  // the odds overflow to infinity for a return that is never lost
   return u < 1.0 - 1.0 / (1.0 + odds);
 }
 

@@ -7,8 +7,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the rotation vector from one attitude to another. The rotation vector has equal coordinates in the axes of
-/// both attitudes.
+/// Returns the rotation vector from one attitude to another. Its coordinates are equal in the axes of both attitudes.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   const Eigen::AngleAxisd turned(from.conjugate() * to);
   return turned.angle() * turned.axis();
@@ -18,7 +17,7 @@ Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
 
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path) {
-  constexpr double kDifference_s = 1e-3;     // interval of the numerical derivatives of the path
+  constexpr double kDifference_s = 1e-3;     // time step of the numerical derivatives of the path
   constexpr double kFrequency_rad_s = 60.0;  // natural frequency of spring and damper; high, because the hand's tremor
                                              // is part of the path
   constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;

@@ -23,7 +23,7 @@ constexpr std::array kPendulumParameters = {
 };
 
 constexpr double kBarHalfThickness_m = 0.02;  // half thickness of a bar with its load, for the moment of inertia about
-                                              // its length
+                                              // the bar's length
 constexpr int kSegments = 3;
 
 mjsJoint* joint(mjSpec* spec, const std::string& name) {

@@ -30,7 +30,7 @@ struct Rock {
 /// Places rocks on the ground, uniformly over the area; rocks may overlap. Throws InvalidSituation if the clear disc
 /// leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
-/// Adds the rocks as surfaces "rock_0", "rock_1", ...
+/// Adds the rocks to the world as surfaces "rock_0", "rock_1" and so on.
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);
 
 }  // namespace tumble::sim
