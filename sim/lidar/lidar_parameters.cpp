@@ -14,8 +14,8 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
   return {name, value_rad, -kRightAngle_rad, kRightAngle_rad, "rad", "elevation of this channel, in firing order"};
 }
 
-// Parameters that all lidars have, for example of the range errors. The default values are from the RS-16 and the
-// Mid-100.
+// Parameters that all lidars have, for example of the range errors. The default values are those of the lidars RS-16
+// and Mid-100.
 constexpr Parameter kRangeNoise{
     "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, independent from point to point; 0: off"};
 constexpr Parameter kReferenceReflectivity{"detection_reflectivity",

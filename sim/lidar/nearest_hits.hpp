@@ -34,9 +34,7 @@ class NearestHits {
     primitive_[lane] = primitive;
   }
 
-  unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< number of the hit
-                                                                                               ///< geometry; kNone: no
-                                                                                               ///< hit
+  unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< kNone: no hit
   unsigned int primitive(int lane) const { return primitive_[static_cast<std::size_t>(lane)]; }
   /// Writes ranges and cosines of lanes with hits; lanes without a hit are unchanged.
   void write(RayPacket& packet) const;

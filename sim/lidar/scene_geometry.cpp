@@ -42,8 +42,8 @@ class HeightField {
   const float* data_;
 };
 
-/// Returns the upper surface of a height field. Each cell is two triangles, cut along the diagonal from (row, column)
-/// to (row + 1, column + 1), as in MuJoCo.
+/// Returns the upper surface of a height field. Each cell of the grid consists of two triangles, cut along the diagonal
+/// from (row, column) to (row + 1, column + 1), as in MuJoCo.
 TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) {
   TriangleMesh mesh;
   mesh.vertices_F_m.reserve(static_cast<std::size_t>(field.rows()) * field.columns());

@@ -15,7 +15,7 @@ constexpr double kMovingRateMin_rad_s = 1.0, kCorrelationMin = 0.6, kDelaySigmaR
 constexpr double kCorrelatedImpactsMin = 30.0;
 // `kImpactForceMin_m_s2` is the minimum specific force of an impact. `kFlightForceMax_m_s2` is the maximum specific
 // force of free flight. `kFlightFractionMin` is the minimum fraction of the time in flight. A body with impacts but
-// without flight is hand-held.
+// without flight counts as hand-held.
 constexpr double kImpactForceMin_m_s2 = 30.0, kFlightForceMax_m_s2 = 5.0, kFlightFractionMin = 0.1;
 constexpr double kImpactsMin = 10.0;
 

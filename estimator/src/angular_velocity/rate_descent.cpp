@@ -85,9 +85,9 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
   return true;
 }
 
-// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). Of two local
-// minima, the better one has the larger result. `share` receives the fraction of flight samples among the samples with
-// an unmeasured rate.
+// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). Among several
+// local minima of the optimisation, the best has the largest result. `share` receives the fraction of flight samples
+// among the samples with an unmeasured rate.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;

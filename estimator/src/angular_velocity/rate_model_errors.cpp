@@ -49,8 +49,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
-  // Averaging adds half of the force's second derivative times the variance of the window: rate_smoother.md (R13). The
-  // derivatives of this small term are neglected.
+  // Averaging over the window changes the force in proportion to its second time derivative: rate_smoother.md (R13).
+  // The derivatives of this small term are neglected.
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }

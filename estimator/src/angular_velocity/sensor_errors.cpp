@@ -27,7 +27,7 @@ constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}
 constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
-// minimum standard deviation, which makes each prior covariance invertible
+// minimum prior standard deviation of a sensor error, so that each prior covariance is invertible
 constexpr double kLeast = 1e-9;
 
 double between(double sheet, double unknown, double share) {
@@ -57,8 +57,7 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 constexpr double kPlain = 0.05;
 
 // Weight of the readings' information in the covariance of the sensor errors. The weight is below 1, because errors of
-// the flight model last longer than a sample. The likelihood of the hypotheses about the standard deviations has full
-// weight.
+// the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {

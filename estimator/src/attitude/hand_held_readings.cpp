@@ -155,7 +155,7 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
 // (C12). The corrected centre is the middle of its possible range. The returned standard deviations cover the change of
-// the force within this range.
+// the force over the possible range of the centre.
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);

@@ -61,7 +61,7 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
-  /// Completes the current segment of motion. A segment counts if it has at least half of the nominal length.
+  /// Completes the current segment of motion. A segment that is shorter than half of the nominal length is discarded.
   void close() {
     if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_min_rad) take();
     sums_ = {};

@@ -37,8 +37,8 @@ ClipSigns signs_of(const RateObservation& observation) {
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rates of RateStream and HandHeldStream; `share` is the weight of HandHeldStream. The source of a suspect
-// reading is `bounded_only`.
+// Combines the rates of RateStream and HandHeldStream; `share` is the weight of HandHeldStream. The rate at a suspect
+// reading has the source `bounded_only`.
 RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
   RateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;

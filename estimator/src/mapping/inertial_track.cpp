@@ -74,7 +74,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // the first window after a gap is as long as the window before the gap
+  // the first averaging window after a gap is as long as the last window before the gap
   if (after_gap && newest_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;

@@ -25,7 +25,7 @@ struct SweepToInsert {
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool has_ring_numbers;
-  bool pose_certain;  ///< the pose is certain, so the sweep's free space may remove map points
+  bool pose_certain;  ///< the pose is certain, so the sweep's free space may contradict map points
 };
 
 /// LocalMap is the map around the sensor: points, their scan lines, and the sensor position at each observation.
@@ -71,7 +71,7 @@ class LocalMap {
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// Compares each map point with the free space that a sweep observed, and removes points that sweeps saw through.
+  /// Counts for each map point how many sweeps saw through it, according to the free space that a sweep observed.
   void check_free_space(const FreeSpaceGrid& sight);
 
   VoxelMap map_;

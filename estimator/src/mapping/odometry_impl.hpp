@@ -57,7 +57,7 @@ struct LidarInertialOdometry::Impl {
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// Registers a sweep to the map. On entry, `trajectory` is the IMU's predicted motion from the start of the sweep on.
-  /// On return, `trajectory` is the aligned motion, or the motion of a failed attempt.
+  /// On return, `trajectory` is the registered motion, or the motion of a failed attempt.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);

@@ -31,8 +31,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
-  // The initial trajectory is the inertial prediction from the end of the last sweep. The registration then refines the
-  // trajectory.
+  // The initial trajectory, which the registration refines, is the inertial prediction from the end of the last sweep.
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -346,9 +345,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since the
-/// relocalisation, and continues from the inertial prediction. The relocalised pose remains an initial pose of the
-/// search.
+/// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since, and
+/// continues from the inertial prediction. The relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
   map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
   std::swap(boundary, other->boundary);

@@ -7,7 +7,7 @@
 
 /// node_rows.hpp computes the measurements of a node one number at a time, for the filter and for the smoother.
 /// `take(row, measured, variance)` processes one measurement: measurement = row x + noise. `row` is a Row, or the index
-/// of a single state. A call of `take` may change the state `x` and its covariance `P`, from which the next row
+/// of a single state. A call of `take` may change the state `x` and its covariance `P`, from which the next measurement
 /// follows.
 namespace tumble::rolling {
 

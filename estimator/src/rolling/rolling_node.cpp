@@ -25,11 +25,9 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 
 constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference between the force and gravity without an impact
 constexpr double kImuOffset_m = 0.02;        // distance of an IMU from the centre that explains forces in fast rotation
-constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // fractions of the accelerometer's range between
-                                                                  // which saturation within a sample becomes possible
+constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;  // a force levels the attitude if the tilt has a larger standard
-                                                  // deviation
+constexpr double kLostTilt_rad = kForceTilt_rad;  // a force levels a tilt with a larger standard deviation
 constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
 // If the force differs from gravity by a larger fraction, the sphere is pushed or rotates fast.
@@ -39,13 +37,12 @@ constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a r
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap. The
-// angular acceleration in such a gap is kGapStill_rad_s2.
+// If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
+// kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown change of velocity in a gap, as a fraction of the rolling velocity's change
-constexpr double kGapTimeSigmaRatio = 0.15;  // standard deviation of the time of a rate change within a gap, as a
-                                             // fraction of the gap
+constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
 
@@ -84,8 +81,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // While a sphere is pushed, the force is not gravity, so the tilt is uncertain. A rotating sphere may slip with its
-  // full rolling speed, so the velocity is uncertain.
+  // While a sphere is pushed, the force is not gravity. A rotating sphere may slip with its full rolling speed.
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // the initial heading defines the world's x axis, so its prior variance is 0
@@ -222,14 +218,12 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // During a gap of duration T, an angular acceleration a bends the rate, which changes the rotation angle by a T^3 /
-  // 12: rolling.md (R31).
+  // A parabola between the rates before and after a gap of duration T has the integral a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
   uncertainty.rate_variance_rad2_s =
-      squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); common to all pieces of the gap, hence a
-                                                     // factor gap_s
+      squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); common to all pieces, hence a factor gap_s
   uncertainty.speed_variance_m2_s2 =
       squared(kGapVelocityChangeRatio * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
@@ -294,8 +288,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // With the IMU's velocity v, the rate w, the lever arm from the centre to the IMU and the floor's normal n, the
-  // contact velocity is u = v + w x (-arm - r n).
+  // With the IMU's velocity v and the lever arm from the IMU to the contact point, u = v + w x (-arm - r n).
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
@@ -331,8 +324,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is too uncertain, and otherwise
-/// nothing: rolling.md (R20).
+/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is too uncertain: rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -376,8 +368,7 @@ bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool 
   P.leftCols<6>().setZero();
   const double tilt_sigma_rad = at_rest ? std::max(params.expert.prior.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
-  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, but small enough for the
-                                                              // linearisation
+  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, but small enough for linearisation
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;
