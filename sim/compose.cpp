@@ -133,8 +133,8 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;
-  spec->option.integrator = mjINT_RK4;  // of MuJoCo's integrators, only this one preserves energy and momentum of a
-                                        // tumbling body
+  // of MuJoCo's integrators, only this one preserves energy and momentum of a tumbling body
+  spec->option.integrator = mjINT_RK4;
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), situation->robot.values, world);
   world_type.build(spec.get(), situation->world.values, situation->seed, world);

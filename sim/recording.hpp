@@ -21,9 +21,9 @@ enum class ContactLabel : std::uint8_t { air, grip, slip, slide };
 struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
-  Eigen::Vector3d normal_W;             ///< unit vector, into the robot
-  Eigen::Vector3d slip_velocity_W_m_s;  ///< tangential velocity of the robot's surface at the contact, relative to the
-                                        ///< world
+  Eigen::Vector3d normal_W;  ///< unit vector, into the robot
+  /// tangential velocity of the robot's surface at the contact, relative to the world
+  Eigen::Vector3d slip_velocity_W_m_s;
   double normal_force_n = 0;
   std::int32_t surface_id = -1;
 };

@@ -38,12 +38,12 @@ struct World {
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
   std::vector<int> surface_geom;      ///< surface id -> geom id; static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
-  double half_extent_m = 0;                                ///< the robot has left the world beyond this |x| or |y|
-  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();     ///< point on the ground where a robot starts; the robot
-                                                           ///< moves along +x
-  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();  ///< true centre of mass in the robot's design frame, in B
-                                                           ///< axes
-  double sphere_radius_m = 0;                              ///< 0 if the robot is not a sphere
+  double half_extent_m = 0;  ///< the robot has left the world beyond this |x| or |y|
+  /// point on the ground where a robot starts; the robot moves along +x
+  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
+  /// true centre of mass in the robot's design frame, in B axes
+  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
+  double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };
 
 /// Copies the world together with its model, for changes of the physics (friction of a floor), trials and pictures.

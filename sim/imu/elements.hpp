@@ -26,10 +26,10 @@ namespace tumble::sim {
 class Elements {
  public:
   struct Params {
-    double misalignment = 0.0;  ///< standard deviation of each entry off M's diagonal [1], truncated at three standard
-                                ///< deviations
-    double scale = 0.0;         ///< standard deviation of each entry on the diagonal, about 1
-    double offset = 0.0;        ///< standard deviation of each element's offset o [unit of the signal]
+    /// standard deviation of each entry off M's diagonal [1], truncated at three standard deviations
+    double misalignment = 0.0;
+    double scale = 0.0;   ///< standard deviation of each entry on the diagonal, about 1
+    double offset = 0.0;  ///< standard deviation of each element's offset o [unit of the signal]
   };
   static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 

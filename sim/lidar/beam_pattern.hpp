@@ -23,8 +23,8 @@ struct ChannelFirings {
 /// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. All kLanes lanes
 /// are filled, including lanes beyond `slots`.
 struct FiringBlock {
-  std::int64_t first_slot = 0;  ///< number of the slot since the start of the recording, from which the random numbers
-                                ///< follow
+  /// number of the slot since the start of the recording, from which the random numbers follow
+  std::int64_t first_slot = 0;
   int slots = 0;
   std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording
   std::array<std::uint32_t, kLanes> reported_ns{};  ///< reported start of the slot since the start of the sweep

@@ -10,8 +10,8 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-constexpr double kFullTremor_m_s = 0.1;  // a waiting hand is steady; above this speed, the tremor has its full
-                                         // amplitude
+// a waiting hand is steady; above this speed, the tremor has its full amplitude
+constexpr double kFullTremor_m_s = 0.1;
 
 /// Returns the smallest rotation that turns the unit vector `from` up; a half turn about x if `from` points straight
 /// down. The function is used instead of Eigen's setFromTwoVectors, which takes 6 s to compile.

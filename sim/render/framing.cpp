@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNear_m = 1.0;  // paths within this distance plus a quarter of the robots' extent are kept in the
-                                 // picture
+// paths within this distance plus a quarter of the robots' extent are kept in the picture
+constexpr double kNear_m = 1.0;
 
 struct Ball {
   Vector3d centre_W_m;

@@ -168,8 +168,8 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      engine::reach(world, T_WB, *data);  // starts from the previous pose, because neighbouring poses of a film strip
-                                          // are similar
+      // starts from the previous pose, because neighbouring poses of a film strip are similar
+      engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }
     return;

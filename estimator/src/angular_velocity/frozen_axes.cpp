@@ -15,12 +15,12 @@ constexpr std::array<const char*, 6> kQuantities = {
     "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
     "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
 
-constexpr double kMinRepetitionRatio = 10.0;  // minimum duration of a repetition, as a multiple of the longest earlier
-                                              // repetition
-constexpr double kPossibleRailRatio = 0.9;    // fraction of the stated range above which a reading may be saturated
-constexpr double kExtremeRatio = 0.5;      // the same fraction for the extreme reading of an axis
-constexpr double kMotionQuanta = 50.0;     // minimum change of another axis, in quantisation steps; 2 % cross-axis
-                                           // sensitivity causes one step
+// minimum duration of a repetition, as a multiple of the longest earlier repetition
+constexpr double kMinRepetitionRatio = 10.0;
+constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
+constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis
+// minimum change of another axis, in quantisation steps; 2 % cross-axis sensitivity causes one step
+constexpr double kMotionQuanta = 50.0;
 constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
 constexpr double kChanging =

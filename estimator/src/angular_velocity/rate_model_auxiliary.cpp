@@ -10,8 +10,8 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // derivative of a residual with respect to rate and scaled angular
-                                                   // acceleration
+// derivative of a residual with respect to rate and scaled angular acceleration
+using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
   const double information = 1.0 / (sigma * sigma);

@@ -298,7 +298,7 @@ Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observat
 }
 
 // Returns the prior standard deviations of the sensor errors. If the readings clearly contradict the data sheet, the
-// function returns those of an uncalibrated device, and drops corrections that the readings hardly determine.
+// function returns those of an uncalibrated device, and increases the covariance of the estimated errors.
 SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open = rounds.is_delay_unknown() &&
                     (contradicts_data_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -347,8 +347,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // The next run uses the same device, so the same sensor errors affect it. The saved covariance therefore excludes
-  // their uncertainty, which the next run adds again.
+  // The next run uses the same device, so the same sensor errors affect it. The saved covariance of the calibration
+  // therefore includes the uncertainty of the sensor errors.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance +=
       fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();

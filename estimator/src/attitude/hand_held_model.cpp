@@ -16,12 +16,12 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using so3::hat;
 
-using GyroRow = Eigen::Matrix<double, 1, 6>;              // derivative of a residual with respect to rate and angular
-                                                          // acceleration
-using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;  // derivative of a residual with respect to the calibration
-                                                          // constants
-using ForceState = Eigen::Matrix<double, 3, 12>;          // derivative with respect to attitude, rate, and both
-                                                          // accelerations
+// derivative of a residual with respect to rate and angular acceleration
+using GyroRow = Eigen::Matrix<double, 1, 6>;
+// derivative of a residual with respect to the calibration constants
+using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
+// derivative with respect to attitude, rate, and both accelerations
+using ForceState = Eigen::Matrix<double, 3, 12>;
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
 // Returns phi(u)/Phi(u), the slope of log Phi(u) for the normal distribution: carried.md (C14). In the tail, phi and

@@ -13,9 +13,9 @@ namespace tumble::hand_held {
 
 namespace {
 
-constexpr double kCostChange = 0.2;  // convergence limit: largest change of the cost; a change by 0.2 corresponds to
-                                     // odds of 1.1
-constexpr int kStepsMax = 30;        // maximum number of iterations
+// convergence limit: largest change of the cost; a change by 0.2 corresponds to odds of 1.1
+constexpr double kCostChange = 0.2;
+constexpr int kStepsMax = 30;  // maximum number of iterations
 
 Message message(const Node& about, const System::Block& block) {
   return {about, block.diagonal, block.gradient};

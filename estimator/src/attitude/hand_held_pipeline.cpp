@@ -45,8 +45,8 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   state.repeat_state = repeat_state;
   state.levels_changed = clipping_finder_.observe(sample, state.rails);
   clipping_finder_.axis_aligned_rails().classify(sample,
-                                                 state.rails.known.axis_aligned_rails);  // remembers the current
-                                                                                         // saturation levels
+                                                 // remembers the current saturation levels
+                                                 state.rails.known.axis_aligned_rails);
   return status;
 }
 

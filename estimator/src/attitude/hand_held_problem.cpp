@@ -11,15 +11,15 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRotationMax_rad = 0.8;  // largest change of an attitude in one step; beyond it, the linearisation is
-                                          // invalid
+// largest change of an attitude in one step; beyond it, the linearisation is invalid
+constexpr double kRotationMax_rad = 0.8;
 constexpr double kConvergenceTolerance = 1e-3;  // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
 constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
-constexpr int kLastAdaptIteration = 8;          // iterations after which the estimated density is constant, for
-                                                // convergence
-constexpr double kHandAveraging_s = 0.25;       // averaging time of the hand's acceleration
-constexpr int kHalvings = 4;                    // maximum number of times that a step is halved if the cost increases
-constexpr double kCostRiseMax = 0.2;            // tolerated increase of the cost, corresponding to odds of 1.1
+// iterations after which the estimated density is constant, for convergence
+constexpr int kLastAdaptIteration = 8;
+constexpr double kHandAveraging_s = 0.25;  // averaging time of the hand's acceleration
+constexpr int kHalvings = 4;               // maximum number of times that a step is halved if the cost increases
+constexpr double kCostRiseMax = 0.2;       // tolerated increase of the cost, corresponding to odds of 1.1
 constexpr ErrorCode kLost = ErrorCode::diverged;
 
 }  // namespace

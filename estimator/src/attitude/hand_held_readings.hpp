@@ -64,8 +64,8 @@ std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix
 /// saturation level and kFillRatioMax times the level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
-inline constexpr double kFillRatioMax = 2.5;  ///< heuristic bound of the initial rates, as a multiple of the saturation
-                                              ///< level
+/// heuristic bound of the initial rates, as a multiple of the saturation level
+inline constexpr double kFillRatioMax = 2.5;
 
 /// While no sample in its window is clipped, HandHeldStream makes one optimisation step per kFreeNodes nodes.
 inline constexpr int kFreeNodes = 5;

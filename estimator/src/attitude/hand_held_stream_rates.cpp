@@ -17,8 +17,8 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-constexpr double kNear_s = 0.1;           // covariances use the inflated jerk density up to this time from clipped
-                                          // nodes
+// covariances use the inflated jerk density up to this time from clipped nodes
+constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
   std::uint8_t axes = 0;

@@ -22,15 +22,15 @@ constexpr int kMinImusForRecovery = 3;  // minimum number of IMUs for recovering
 constexpr double kUnsaturatedForceRatio =
     0.8;  // fraction of the accelerometer's range up to which errors are estimated
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-constexpr double kArmSquareMin_m2_s3 = 1.0;  // minimum squared lever arm effect; 1 m/s^2 for a second: a bias of 0.05
-                                             // m/s^2 changes the result by 0.05
+// minimum squared lever arm effect; 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
+constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-constexpr double kSuspect_s = 0.04;              // duration of a suspicion after an impact: impacts come in groups, and
-                                                 // filters prolong an impact
-constexpr double kAccelerationSigmaRatio = 0.3;  // uncertainty of an angular acceleration, as a fraction of its change
-                                                 // per sample
+// duration of a suspicion after an impact: impacts come in groups, and filters prolong an impact
+constexpr double kSuspect_s = 0.04;
+// uncertainty of an angular acceleration, as a fraction of its change per sample
+constexpr double kAccelerationSigmaRatio = 0.3;
 
 }  // namespace
 

@@ -21,8 +21,8 @@ constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
-constexpr double kClearLogRatio = 0.4;     // minimum logarithm of the ratio of two squared residuals for a clear
-                                           // decision
+// minimum logarithm of the ratio of two squared residuals for a clear decision
+constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 

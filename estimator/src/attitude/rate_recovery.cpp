@@ -152,8 +152,8 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
 /// Predicts rate, angular acceleration and specific force: imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a force that is constant in the world
-                                                                           // rotates in C
+  // a force that is constant in the world rotates in C
+  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
   F.block<3, 3>(kForce, kForce) = turn;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kAccelerationSpan_s =
     0.01;  // time base of the angular acceleration, equal to model_error_s of the rate model
-constexpr double kResetFraction = 0.5;  // fraction of the solver steps within a lag that must reset the calibration,
-                                        // for a finding
+// fraction of the solver steps within a lag that must reset the calibration, for a finding
+constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
   HandHeldStream::Params out = params.hand_held;

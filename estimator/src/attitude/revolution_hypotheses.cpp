@@ -21,14 +21,14 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kExcessMin = 3.0;         // the test skips segments whose mean rate is further above the saturation
-                                           // level
+// the test skips segments whose mean rate is further above the saturation level
+constexpr double kExcessMin = 3.0;
 constexpr double kRevolutionCost = 100.0;  // largest jerk cost of an additional revolution: ten standard deviations
 constexpr double kSurroundings_s = 0.3;    // time before and after a segment that is solved together with it
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change, because the cost neglects model errors
 constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
-constexpr int kRounds = 3;                 // maximum number of rounds; each round tests all segments and solves the
-                                           // whole problem
+// maximum number of rounds; each round tests all segments and solves the whole problem
+constexpr int kRounds = 3;
 
 /// Segment is a range of nodes [first, last] in which a sensing element was saturated and had no unsaturated reading.
 struct Segment {

@@ -5,9 +5,9 @@
 
 namespace tumble::hand_held {
 
-inline constexpr double kAngleShare = 1.0 / 3.0;  ///< tested if the integrated standard deviation of the rate reaches
-                                                  ///< this fraction of pi (a revolution is six sigma)
-inline constexpr double kLogOdds = 6.9;           ///< log odds of 1 to 1000: less probable alternatives are ignored
+/// tested if the integrated standard deviation of the rate reaches this fraction of pi (a revolution is six sigma)
+inline constexpr double kAngleShare = 1.0 / 3.0;
+inline constexpr double kLogOdds = 6.9;  ///< log odds of 1 to 1000: less probable alternatives are ignored
 
 /// Returns the minimum cost of an additional revolution within a time T between fixed ends, for white jerk of the given
 /// root density [rad/s^3 sqrt(s)]. The additional rate is 2 pi / T 30 u^2 (1 - u)^2, with u from 0 to 1, see carried.md

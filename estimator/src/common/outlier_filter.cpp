@@ -23,8 +23,8 @@ constexpr double kLever_m = 10.0;                     // largest force of a robo
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
 constexpr double kNear_s = 0.1;                       // neighbours further away than this are not compared
-constexpr double kStampStepMax_periods = 1.75;  // after a longer step of the stamps, the sample is delayed, because the
-                                                // next stamp may be earlier
+// after a longer step of the stamps, the sample is delayed, because the next stamp may be earlier
+constexpr double kStampStepMax_periods = 1.75;
 
 // A reading may be saturated if it is above the fraction kAtRange of the stated range, or large and repeated.
 constexpr double kAtRange = 0.95;

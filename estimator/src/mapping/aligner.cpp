@@ -14,8 +14,8 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-constexpr double kCoarseReach = 2.0;  // maximum distance of matched map points in the coarse stage, as a multiple of
-                                      // the matching distance
+// maximum distance of matched map points in the coarse stage, as a multiple of the matching distance
+constexpr double kCoarseReach = 2.0;
 
 /// Returns the parameters of a coarse registration. A coarse registration has wider limits, and its result only needs
 /// to be near the solution.

@@ -137,8 +137,8 @@ StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate&
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // derivative of velocity and gravity with
-                                                                        // respect to the errors of the motion
+  // derivative of velocity and gravity with respect to the errors of the motion
+  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();
   const bool free_gravity = params.expert.gravity_sigma_m_s2 > 0.0;

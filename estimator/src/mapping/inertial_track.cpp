@@ -16,8 +16,8 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longest bridged flight; no flight lasts longer
-constexpr double kArcOff_rad_s = 0.5;           // additional tolerance of the rate after a flight; impacts change the
-                                                // rate by more
+// additional tolerance of the rate after a flight; impacts change the rate by more
+constexpr double kArcOff_rad_s = 0.5;
 
 WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};

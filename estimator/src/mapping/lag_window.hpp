@@ -18,8 +18,8 @@ struct Estimated {
 /// sweep.
 struct WindowSweep {
   Estimated predicted;
-  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();  ///< derivative of the unknowns with
-                                                                              ///< respect to the previous sweep's
+  /// derivative of the unknowns with respect to the previous sweep's
+  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();
   Estimated filtered, smoothed;
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;

@@ -20,8 +20,8 @@ constexpr double kMinCoveredRatio = 0.4;   // minimum fraction of surface points
 constexpr int kAcceptSweeps = 3;           // number of successive sweeps that accept a pose
 constexpr int kRejectSweeps = 2;           // number of successive sweeps that reject a pose
 constexpr int kSearchSweeps = 5;           // number of sweeps between two searches
-constexpr double kSigmas = 3.0;            // half size of the search region about an approximate pose, in standard
-                                           // deviations
+// half size of the search region about an approximate pose, in standard deviations
+constexpr double kSigmas = 3.0;
 constexpr double kMinReach_m = 1.0, kMinReach_rad = 0.15;
 
 /// Returns the relative entropy of two Bernoulli distributions with the probabilities `share` and `chance`.

@@ -10,10 +10,10 @@ namespace tumble::mapping {
 
 /// SweepBoundary is the state at the boundary between two sweeps, with all data that the next sweep needs.
 struct SweepBoundary {
-  StateEstimate state_estimate;                                                ///< estimate of the unknowns at the
-                                                                               ///< boundary
-  Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();  ///< derivative with respect to the
-                                                                               ///< unknowns at the last sweep's start
+  /// estimate of the unknowns at the boundary
+  StateEstimate state_estimate;
+  /// derivative with respect to the unknowns at the last sweep's start
+  Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
   /// Magnitude |s_j| of the saturation deficit's factor, mapping.md (R8), at the end of the last sweep; 0 for
   /// unsaturated axes and without registration.
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
@@ -34,9 +34,8 @@ struct MotionWindow {
 /// Prediction contains the predicted unknowns of the next sweep.
 struct Prediction {
   Registration::Prior prior;
-  Registration::Matrix jacobian_boundary =
-      Registration::Matrix::Identity();                        ///< derivative with respect to the unknowns at the
-                                                               ///< boundary
+  /// derivative with respect to the unknowns at the boundary
+  Registration::Matrix jacobian_boundary = Registration::Matrix::Identity();
   Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
   Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 

@@ -27,8 +27,8 @@ constexpr std::size_t kCoarsePoints = 240;  // number of surface points for a co
 constexpr std::size_t kKept = 4000, kRefined = 96;
 constexpr float kApart_m = 1.0f;  // minimum distance of two distinct poses
 constexpr double kApart_rad = 0.12;
-constexpr float kNormalZ = 0.3f;  // largest difference between the vertical components of an anchor's normal and a
-                                  // cell's normal
+// largest difference between the vertical components of an anchor's normal and a cell's normal
+constexpr float kNormalZ = 0.3f;
 
 constexpr float kCovered_m = 1.0f;  // a point is covered if the prior map has a surface within this distance
 constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 0.7f;

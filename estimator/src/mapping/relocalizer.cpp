@@ -19,9 +19,9 @@ using Params = LidarInertialOdometry::Params;
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // larger deficits, in standard deviations, are not tried
 
-constexpr int kStartsPerRound = 12;   // number of initial poses per round: six axes, two directions
-constexpr double kStartSigmas = 1.5;  // distance of an initial pose from the prior, in standard deviations, up to the
-                                      // limit of the round
+constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
+// distance of an initial pose from the prior, in standard deviations, up to the limit of the round
+constexpr double kStartSigmas = 1.5;
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;

@@ -11,10 +11,10 @@ namespace tumble {
 
 namespace {
 
-constexpr int kExtraPassesMax = 3;              // maximum number of additional passes until the calibration has
-                                                // converged
-constexpr std::size_t kSweepsPerRejection = 5;  // if more than one in this many sweeps is rejected, the pass does not
-                                                // determine the calibration
+// maximum number of additional passes until the calibration has converged
+constexpr int kExtraPassesMax = 3;
+// if more than one in this many sweeps is rejected, the pass does not determine the calibration
+constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Cuts the last sweep at the end of the IMU data if most of the sweep remains. Otherwise a small clock offset would
 /// make the whole sweep unusable.

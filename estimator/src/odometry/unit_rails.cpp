@@ -7,8 +7,8 @@ namespace tumble {
 
 namespace {
 
-constexpr int kReadings = 512;               // stored readings per gyro or accelerometer, enough for some seconds near
-                                             // the extremes
+// stored readings per gyro or accelerometer, enough for some seconds near the extremes
+constexpr int kReadings = 512;
 constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores a stated range above this rate
 
 StreamingClippingFinder::Params clipping_finder_params(const ImuSheet& sheet) {
@@ -53,8 +53,8 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     StreamingClippingFinder::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
     units_[k].watch.axis_aligned_rails().classify(samples[k],
-                                                  rails.known.axis_aligned_rails);  // remembers the current saturation
-                                                                                    // levels
+                                                  // remembers the current saturation levels
+                                                  rails.known.axis_aligned_rails);
     state[k].before = samples[k];
   }
 }

@@ -87,8 +87,8 @@ class LastPass {
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  Reported distance_correction_ = Reported::Zero();  ///< correction of the nominal trajectory due to the measured
-                                                     ///< distance
+  /// correction of the nominal trajectory due to the measured distance
+  Reported distance_correction_ = Reported::Zero();
 };
 
 }  // namespace tumble::rolling

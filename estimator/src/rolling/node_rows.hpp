@@ -35,8 +35,8 @@ void rest_rows(const RollingParams& params, const RollingIntegrals& sums, const 
   for (int axis = 0; axis < 3; ++axis) {
     take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.rest_velocity_sigma_m_s));
     if (spins_in_place) continue;
-    const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_s;  // mean rate, without the subtraction of
-                                                                             // the nominal bias
+    // mean rate, without the subtraction of the nominal bias
+    const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_s;
     take(kGyroBias + axis, bias_rad_s, squared(params.expert.contact.rest_rate_sigma_rad_s));
   }
 }

@@ -29,17 +29,18 @@ constexpr double kModeAgeMax_s = 1.0;  // a mode that is older counts as equally
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
-                 kRollOverFraction = 0.7;  // vertical change of the contact velocity on a bump [m/s], with the weight
-                                           // of a sphere that rolls over it
+                 // vertical change of the contact velocity on a bump [m/s], with the weight of a sphere that rolls over
+                 // it
+    kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
 // At least kMinDissentingHypotheses hypotheses are kept that do not share the last mode change of the best hypothesis.
 // A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
 // correct one.
 constexpr std::size_t kMinDissentingHypotheses = 6;
-constexpr double kRoughCost = 0.2;         // cost of a rough floor per node, between the residuals of a slope and of
-                                           // grip on a plane
-constexpr double kInclineAfterBump = 4.0;  // factor on the probability of a slope after a bump, because the foot of a
-                                           // ramp is a bump
+// cost of a rough floor per node, between the residuals of a slope and of grip on a plane
+constexpr double kRoughCost = 0.2;
+// factor on the probability of a slope after a bump, because the foot of a ramp is a bump
+constexpr double kInclineAfterBump = 4.0;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::rough};
 static_assert(std::size(kModes) == kRollingModes);

@@ -18,8 +18,8 @@ struct PathNode {
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
-inline constexpr int kReported = 12;  ///< number of states that determine a pose: attitude, velocity, position, lever
-                                      ///< arm
+/// number of states that determine a pose: attitude, velocity, position, lever arm
+inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
 /// NodeRecord is a node of the final pass, with all data that the backward pass needs.

@@ -50,10 +50,10 @@ class FlightSignCheck {
     double run_s = 0.02;                    ///< minimum duration of agreement
     double alternative_flight_min_s = 0.1;  ///< minimum total flight time of an alternative sensor
     double half_scale_flight_min_s = 0.3;   ///< minimum total flight time of a half-scale gyro
-    double alternative_ratio_min = 4.0;     ///< minimum flight time of an alternative divided by that of the true
-                                            ///< sensor
-    double thrown_ratio_min = 2.0;          ///< minimum of the same ratio for a body that is not hand-held
-    double gap_max_s = 0.1;                 ///< a longer gap resets the current run
+    /// minimum flight time of an alternative divided by that of the true sensor
+    double alternative_ratio_min = 4.0;
+    double thrown_ratio_min = 2.0;  ///< minimum of the same ratio for a body that is not hand-held
+    double gap_max_s = 0.1;         ///< a longer gap resets the current run
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>

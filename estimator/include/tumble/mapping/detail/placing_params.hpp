@@ -55,9 +55,9 @@ struct MatchingParams {
 /// RegistrationStagesParams defines the stages of a registration. The stages are iterations with all points, further
 /// iterations with a subsample, and a coarse stage for starting poses far from the prior.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< number of iterations with all points, before iterations with a subsample
-  std::size_t subsample_points = 1000;  ///< number of points of the subsample, which decides whether a starting pose
-                                        ///< converges
+  int full_iterations = 8;  ///< number of iterations with all points, before iterations with a subsample
+  /// number of points of the subsample, which decides whether a starting pose converges
+  std::size_t subsample_points = 1000;
   int coarse_iterations = 15;           ///< number of iterations for a starting pose far from the prior
   std::size_t coarse_points = 300;      ///< number of points in the coarse stage
   std::size_t coarse_matches_min = 50;  ///< minimum number of matches in the coarse stage
