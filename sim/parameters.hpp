@@ -32,8 +32,8 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
   return all;
 }
 
-/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component. Its message states
-/// place, value and limit.
+/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component. The error message
+/// states place, value and limit.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

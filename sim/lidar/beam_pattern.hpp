@@ -20,8 +20,8 @@ struct ChannelFirings {
 };
 
 /// FiringBlock contains the firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast
-/// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. All kLanes lanes
-/// are filled, including lanes beyond `slots`.
+/// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. Lanes beyond the
+/// number of slots are also filled.
 struct FiringBlock {
   /// number of the slot since the start of the recording, from which the random numbers follow
   std::int64_t first_slot = 0;
@@ -85,7 +85,7 @@ class SpinningPattern final : public BeamPattern {
 
  private:
   std::uint32_t reported_start_ns(std::int64_t sweep, std::int64_t slot) const;
-  /// Fills in the firings of all channels from the azimuth at the start of each lane's slot.
+  /// Fills in the firings of all channels. `azimuth_rad` is the azimuth at the start of each slot.
   void aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const;
 
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;

@@ -13,8 +13,8 @@ struct Share {
   int ray;
 };
 
-/// Echo is the strongest echo of a beam. Its rays are `first` to `last` - 1 in order of range. Of two echoes with equal
-/// energy, the nearer counts.
+/// Echo is the strongest echo of a beam. The echo consists of the rays `first` to `last` - 1 in order of range. Of two
+/// echoes with equal energy, the nearer counts.
 struct Echo {
   int first = 0, last = 0;
   float energy = 0.0f;

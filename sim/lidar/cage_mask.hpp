@@ -11,8 +11,8 @@ namespace tumble::sim {
 
 /// CageMask precomputes which firings of a repeating pattern may hit the robot's own cage. The cage is rigidly attached
 /// to the lidar, and most firings miss it, so the mask saves time. The mask contains every firing that hits the cage.
-/// It tests the beam at the middle of each direction cell against shapes that are enlarged by the largest distance of
-/// another beam in the cell.
+/// The mask tests the beam at the middle of each direction cell against enlarged shapes, which cover all other beams of
+/// the cell.
 class CageMask {
  public:
   /// `cage` is in the axes of the lidar frame L. For a pattern that does not repeat, every firing may hit the cage.

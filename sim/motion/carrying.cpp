@@ -7,7 +7,8 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the rotation vector from one attitude to another. Its coordinates are equal in the axes of both attitudes.
+/// Returns the rotation vector from one attitude to another. The rotation vector has equal coordinates in the axes of
+/// both attitudes.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   const Eigen::AngleAxisd turned(from.conjugate() * to);
   return turned.angle() * turned.axis();

@@ -67,7 +67,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   for (int ring = 0; ring < rings; ++ring) {
     for (int step = 0; step < kSteps; ++step) {
       const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
-      // pictures show the side of a face whose corners are anticlockwise: the inner side
+      // pictures show only one side of a face, the side on which the corners are anticlockwise: here the inner side
       const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
       for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
     }

@@ -37,8 +37,8 @@ double rise_above_plateau(double count, double entered, double left) {
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// Returns the magnitude of the angular rate about the axes other than `axis`. On a tilted saturation plane, the reading
-// changes with the rate about the other axes, multiplied by the tilt.
+// Returns the magnitude of the angular rate about the axes other than `axis`. On a tilted saturation plane, the
+// saturated reading changes by the tilt times the change of the rate about the other axes.
 double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }

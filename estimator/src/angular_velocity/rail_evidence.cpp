@@ -21,14 +21,14 @@ using Eigen::Vector3d;
 constexpr double kConstantRateFraction = 0.05;
 // A flat segment counts as saturated only if `bend` in SegmentShape is at least kBendRatioMin times `flat`.
 constexpr double kBendRatioMin = 3.0;
-// Constant rates are assumed within this range below the axis' largest reading, as a fraction of that reading.
+// kLevelRangeFraction is the assumed range of constant rates, as a fraction of the axis' largest reading.
 constexpr double kLevelRangeFraction = 0.2;
 // The noise estimate uses the residuals of a parabola fit in windows of kNoiseWindow readings. The window at the
 // quantile `kNoiseQuantile` of the residuals determines the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// kMaxKinkLogLikelihood limits the evidence from one kink: a segment's end where the clipped axis bends and the other
-// axes move smoothly.
+// kMaxKinkLogLikelihood is the largest log-likelihood of one kink. A kink is an end of a segment at which the clipped
+// axis bends and the other axes move smoothly.
 constexpr double kMaxKinkLogLikelihood = 2.5;
 // A kink at the end of a segment counts only if the other axes change there by at least kMotionSigmasMin standard
 // deviations.

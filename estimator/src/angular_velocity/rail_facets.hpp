@@ -43,7 +43,7 @@ inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double
   return sign * y[axis] + steepest * others(y, axis).lpNorm<1>();
 }
 
-/// Extreme contains the samples close to the largest reading of one sign of an axis.
+/// Extreme contains the samples close to the largest reading of an axis, for one sign.
 struct Extreme {
   int axis = 0, sign = 1;
   double slab = 0.0;

@@ -118,9 +118,8 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = unsaturated_neighbour(std::abs(reading), *rail, j, before, after,
                                                    [&](const Vector3d& beside) { return sign * beside[j]; });
-    if (neighbour > std::abs(reading))
-      // a dip within a run of saturated readings: the saturation deficit is unknown
-      continue;
+    // a dip within a run of saturated readings: the saturation deficit is unknown
+    if (neighbour > std::abs(reading)) continue;
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);

@@ -156,7 +156,8 @@ SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   return sizes;
 }
 
-// Converts the sensor errors of an earlier run to information about the errors relative to those stated for this run.
+// Converts the sensor errors of an earlier run to information about the differences from the errors stated for this
+// run.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
                                                const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
@@ -164,7 +165,7 @@ SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownS
 }
 
 // Estimates sensor errors relative to the errors that the caller states. `learnt` is the estimate of an earlier run,
-// relative to the same stated errors.
+// also relative to the errors that the caller states.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -208,7 +209,7 @@ Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& kn
 }
 
 // Start contains the initial values of one optimisation. The first optimisation starts from the assumed sensor errors.
-// If its calibration must be fixed, a second optimisation starts from another accelerometer delay.
+// If the first optimisation must fix the calibration, a second optimisation starts from another accelerometer delay.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;

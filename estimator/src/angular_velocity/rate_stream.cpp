@@ -36,8 +36,8 @@ void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// Adds the prior from samples that have left the window. Its gradient is moved to the current linearisation point:
-// rate_stream.md (R91).
+// Adds the prior from samples that have left the window. The gradient of the prior is moved to the current
+// linearisation point: rate_stream.md (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;

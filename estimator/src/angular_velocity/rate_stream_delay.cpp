@@ -22,8 +22,8 @@ constexpr double kDelayChangeMin_s = 3e-4;
 // sheet. A delay from impacts replaces the current delay if both differ by more than `kGuessSigmasMax` standard
 // deviations.
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// An estimated delay needs at least `kIntervalsMin` intervals between readings. Its correlation must exceed that of the
-// stated delay by `kCorrelationGainMin`, because the first few impacts correlate by chance.
+// An estimated delay needs at least `kIntervalsMin` intervals between readings. The correlation at the estimated delay
+// must exceed that at the stated delay by `kCorrelationGainMin`, because the first few impacts correlate by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
 // Maximum delay, as a multiple of the prior standard deviation for an uncalibrated device.
 constexpr double kReach = 3.0;
@@ -70,8 +70,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
-// Stores in sample k the specific force at the time of the sample, or the closest force in the window. The remaining
-// delay between force and sample is stored too: rate_stream.md (R105).
+// Stores in sample k the specific force at the time of the sample, or the closest force in the window. The function
+// also stores the remaining delay between the force and the sample: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -86,7 +86,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
 }
 
-// Gives the force of the newest sample to those samples in the window that the force is closest to in time.
+// Updates the forces of those samples for which the newest sample contains a force that is closer in time.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.applied_delay_s == prior_delay_s_ && force_shift(state) == 0) return newest;

@@ -62,8 +62,8 @@ struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Returns the samples with the gyro readings before and after the reading of sample k. All samples that repeat one
-// reading have equal results.
+// Returns the samples with the gyro readings before and after the reading of sample k. The result is the same for all
+// samples that repeat one reading.
 Beside neighbour_readings(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);

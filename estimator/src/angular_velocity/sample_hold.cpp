@@ -27,7 +27,8 @@ struct Clock {
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-// Returns the number of samples whose repetitions contradict a clock. Counting stops at `most` + 1.
+// Returns the number of samples whose repetitions contradict a clock. The function stops counting at `most` + 1
+// samples.
 std::size_t count_misses(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                          std::size_t most) {
   std::size_t misses = 0;
@@ -75,7 +76,7 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
 }
 
 // Returns the middle one of the clocks near `first` that explain the most samples. Equally good clocks form an area in
-// period and phase. In the middle of this area, the run of adjacent phases is longest.
+// period and phase. In the middle of the area of equally good clocks, the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   PhaseRun best{moving.size()};

@@ -29,10 +29,10 @@ struct RepeatedReadings {
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings in a recording. Cost: O(N) for each of about 5000 clocks, on at most 1000 samples. Returns
-/// nothing if less than a twentieth of the samples in motion (above 0.3 rad/s, at least 30 samples) repeat the previous
-/// reading. Period and phase are those of the regular clock that best explains the repetitions. Ages and window lag
-/// follow from this clock, or are zero if no clock explains 90 % of the samples.
+/// Detects repeated readings in a recording. Cost: O(N), plus tests of about 5000 clocks on at most 1000 samples.
+/// Returns nothing if less than a twentieth of the samples in motion (above 0.3 rad/s, at least 30 samples) repeat the
+/// previous reading. Period and phase are those of the regular clock that best explains the repetitions. Ages and
+/// window lag are zero if no regular clock explains 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 /// Neighbours points to the nearest earlier and later samples with a different reading, or null.

@@ -134,8 +134,8 @@ double cost(const TriadReadings& accel, std::span<const RotationSample> instants
   return sum;
 }
 
-// ForceIntegral integrates the norm of the specific force over time, starting at the first reading. Between readings,
-// the norm is linear. After the last reading, the norm is constant.
+// ForceIntegral integrates the norm of the specific force over time, starting at the first reading. Between two
+// readings, the norm of the force is linear. After the last reading, the norm is constant.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)

@@ -84,9 +84,8 @@ void ForceErrors::update(State& state) const {
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
-      if (squared(innovation) > squared(params_.gate_sigmas) * s)
-        // an impact within the samples causes a large innovation
-        continue;
+      // an impact within the samples causes a large innovation
+      if (squared(innovation) > squared(params_.gate_sigmas) * s) continue;
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
     }

@@ -29,8 +29,8 @@ struct Reach {
 };
 
 // Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). White jerk
-// of density q gives the second difference of means over three adjacent windows P a variance of 11/20 q P^3. Noise adds
-// six times its variance.
+// of density q gives the second difference of means over three adjacent windows P a variance of 11/20 q P^3. The noise
+// of the readings adds six times the noise variance.
 void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                              std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);

@@ -47,8 +47,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// GyroRows contains derivatives with respect to the errors of a node's state. `value` is the derivative of one sensing
-// element's rate, and `slope` that of its angular acceleration.
+// GyroRows contains derivatives of one sensing element's rate with respect to the errors of a node's state. `value` is
+// the derivative of one sensing element's rate, and `slope` that of its angular acceleration.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -67,8 +67,8 @@ GyroRows predict_gyro(const Eigen::RowVector3d& m, const Node& node, const Const
   return rows;
 }
 
-// Returns the sum over all sensing elements except `except` of the estimated rate minus the reading, for clipped and
-// unusable elements. For a clipped sensing element, this difference is the saturation deficit.
+// Sums the difference between estimated rate and reading over the clipped and unusable sensing elements, except element
+// `except`. For a clipped sensing element, this difference is the saturation deficit.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {

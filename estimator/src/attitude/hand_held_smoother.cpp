@@ -111,7 +111,7 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
     // A reading is the mean over its averaging window, so the reported rate is that at the window's centre. The
-    // reported attitude is that at the time stamp.
+    // reported attitude is the attitude at the time stamp of the reading.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

@@ -150,8 +150,8 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. Only resets
-// within RateStream's lag count, because they affect the reported rate.
+// Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. The function
+// counts only resets within the lag of RateStream, because these resets affect the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);

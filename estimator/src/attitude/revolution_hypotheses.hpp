@@ -5,7 +5,8 @@
 
 namespace tumble::hand_held {
 
-/// tested if the integrated standard deviation of the rate reaches this fraction of pi (a revolution is six sigma)
+/// A segment is tested if the integrated standard deviation of the rate reaches this fraction of pi (a revolution is
+/// six sigma).
 inline constexpr double kAngleShare = 1.0 / 3.0;
 inline constexpr double kLogOdds = 6.9;  ///< log odds of 1 to 1000: less probable alternatives are ignored
 
@@ -19,10 +20,10 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 ///
 /// Data after a clipped segment determine the rotation during the segment only up to whole revolutions. The
 /// optimisation finds the number of revolutions that is closest to its initial values. The function tests a clipped
-/// segment if the integrated standard deviation of the rate reaches a third of pi. This integral is an upper bound of
-/// the angle's standard deviation. The function also tests a segment whose estimated rate stays at the saturation
-/// level, if it is long enough for a revolution. In such a segment, the optimisation may have stopped with too few
-/// revolutions.
+/// segment if the integrated standard deviation of the rate reaches a third of pi. The integral of the rate's standard
+/// deviation is an upper bound of the angle's standard deviation. The function also tests a segment whose estimated
+/// rate stays at the saturation level, if it is long enough for a revolution. In a segment whose rate stays at the
+/// saturation level, the optimisation may have stopped with too few revolutions.
 ///
 /// The function solves the segment and its surroundings again with one revolution more and less, and with two if
 /// possible. All other nodes act as a prior on the ends of the tested part. The function selects the solution with the

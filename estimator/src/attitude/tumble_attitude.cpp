@@ -339,8 +339,8 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
-/// Returns the horizontal velocity of the IMU that follows from the body's rotation: attitude.md (A11). This velocity
-/// is the sum of the centre's rolling velocity and the IMU's velocity about the centre.
+/// Returns the horizontal velocity of the IMU that follows from the body's rotation: attitude.md (A11). The IMU's
+/// velocity is the sum of the centre's rolling velocity and the IMU's velocity about the centre.
 Eigen::Vector2d TumbleAttitude::velocity_from_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();

@@ -18,12 +18,13 @@
 /// function `others(Self& p, Visitor& visit)` visits the members of a `Params` structure that are not Fields.
 namespace tumble {
 
-/// StateVisitor visits the members of an estimator's state. A derived class must define these members: The function
-/// numbers(name, data, count) processes contiguous numbers. The function length(name, count) processes the size of a
-/// sequence or an optional (0 or 1), and returns the size to use. The function bounded(name, value, low, high) checks a
-/// number against its bounds. The function going() returns false to stop the visit. The optional function whole(name,
-/// value) processes a member that serialises itself. The constant kReads is true if the visitor overwrites the members.
-/// The constant kDescribes is true if a sequence is visited as one element in its initial state.
+/// StateVisitor visits the members of an estimator's state. A derived class must define the following members. The
+/// function numbers(name, data, count) processes contiguous numbers. The function length(name, count) processes the
+/// size of a sequence or an optional (0 or 1), and returns the size to use. The function bounded(name, value, low,
+/// high) checks a number against its bounds. The function going() returns false to stop the visit. The optional
+/// function whole(name, value) processes a member that serialises itself. The constant kReads is true if the visitor
+/// overwrites the members. The constant kDescribes is true if a sequence is visited as one element in its initial
+/// state.
 template <class Derived>
 class StateVisitor {
  public:

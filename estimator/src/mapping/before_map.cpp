@@ -129,8 +129,8 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in the frame of the map, in which the IMU's attitude has no error. This frame is rotated
-/// by the tilt error φ of the IMU, so velocity v and gravity g have the errors δv + v × φ and g × φ.
+/// Returns the state estimate in the frame of the map, in which the IMU's attitude has no error. The frame of the map
+/// is rotated by the IMU's tilt error φ, so velocity v and gravity g have the errors δv + v × φ and g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

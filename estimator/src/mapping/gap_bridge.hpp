@@ -9,7 +9,8 @@
 
 namespace tumble::mapping {
 
-/// A longer time between two IMU samples is a gap, because the reading does not describe the motion within the window.
+/// If the time between two IMU samples exceeds kGap_ns, the reading does not describe the motion in between, so the
+/// time is a gap.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 /// WindowRate is the mean angular rate over the averaging window of one IMU sample, with its standard deviation.

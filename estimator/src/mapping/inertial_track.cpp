@@ -182,7 +182,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A rest of this length has already determined the gyro bias. Its first samples may have been deleted.
+  // A rest of this length has already determined the gyro bias. The first samples of the rest may have been deleted.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

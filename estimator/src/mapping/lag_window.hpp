@@ -14,8 +14,8 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. Its unknowns refer to the start of the
-/// sweep.
+/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. The unknowns of a WindowSweep refer to
+/// the start of the sweep.
 struct WindowSweep {
   Estimated predicted;
   /// derivative of the unknowns with respect to the previous sweep's
@@ -43,8 +43,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Clears the lists of inserted points after the point indices of the map have changed. The points then keep their
-  /// positions.
+  /// Clears the lists of inserted points after the point indices of the map have changed. Smoothing then no longer
+  /// moves the points.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

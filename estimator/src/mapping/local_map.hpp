@@ -13,7 +13,7 @@
 
 namespace tumble::mapping {
 
-/// InsertedPoint identifies a point of a sweep that is in the map.
+/// InsertedPoint identifies a map point that was inserted from a sweep.
 struct InsertedPoint {
   std::uint32_t index;  ///< index of the point in the map
   SweepPoint point;     ///< point with the calibration at insertion

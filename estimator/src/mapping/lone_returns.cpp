@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 // kMinSurfaceSine is sin 10 deg. Two neighbouring returns belong to one surface if the angle between their connecting
-// line and the beam is larger (Bogoslavskyi, Stachniss).
+// line and the beam exceeds 10 deg (Bogoslavskyi, Stachniss).
 constexpr float kMinSurfaceSine = 0.17365f;
 // kGrazingSine is sin 2 deg. At a smaller angle between a beam and its surface, the surface counts as an edge. For
 // example, a lidar 0.5 m above the ground sees the ground at 2 deg in a distance of 14 m.

@@ -11,8 +11,8 @@ namespace {
 // At a wrong pose, a surface point near the prior map's surfaces agrees with them by chance, with at most the
 // probability kChanceAgreementMax.
 constexpr double kChanceAgreementMax = 0.8;
-// The second best pose of a search shows how many points agree with the prior map by chance. For sampling errors, the
-// fraction kChanceMargin of its disagreeing points counts as agreeing.
+// The second best pose of a search shows how many points agree with the prior map by chance. As a margin for sampling
+// errors, the fraction kChanceMargin of the second pose's disagreeing points also counts as agreeing.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search

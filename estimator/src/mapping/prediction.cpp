@@ -122,8 +122,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force that saturates late in a sweep hardly affects its registration, so the next sweep also includes the
-  // variance of the velocity.
+  // A force that saturates late in a sweep hardly affects the registration of the sweep, so the next sweep also
+  // includes the variance of the velocity.
   u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
   u::block(within, u::velocity) += clipped_force_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -156,8 +156,8 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the matrix that converts errors of the prior to errors after the registration: mapping.md (R52). A separate
-/// function limits the use of the stack.
+/// Computes the matrix that converts errors of the prior to errors after the registration: mapping.md (R52).
+/// prior_error_gain() is a separate function, which limits the use of the stack.
 [[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
                                         Registration::Matrix& out) {
   // noise of the surface normals carries no information about the motion
@@ -169,8 +169,9 @@ namespace {
 
 }  // namespace
 
-/// Computes the errors of the unknowns after the registration: mapping.md (R52). These errors come from the prior and
-/// from the matched surfaces. `score_covariance` is the measured covariance of the surfaces' part of the gradient.
+/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors after the registration come
+/// from the prior and from the matched surfaces. `score_covariance` is the measured covariance of the surfaces' part of
+/// the gradient.
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

@@ -218,9 +218,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 }
 
 /// NormalNoise is the part of the normal matrix that noise of the surface normals causes, for all free unknowns:
-/// mapping.md (R28), (R29). The noise must cover all free unknowns, not only the motion. Otherwise it seems to
-/// determine combinations that surfaces cannot determine, such as attitude with mounting rotation, whose covariance
-/// (R52) would then grow without bound.
+/// mapping.md (R28), (R29). The noise must cover all free unknowns, not only the motion. Otherwise the noise would seem
+/// to determine combinations of unknowns that surfaces cannot determine, for example attitude with mounting rotation.
+/// The covariance (R52) of such combinations would then grow without bound.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;

@@ -7,7 +7,7 @@
 
 namespace tumble::mapping {
 
-/// StateEstimate is the estimate of all unknowns at one time. Its covariances `weight` and `error` are C and E of
+/// StateEstimate is the estimate of all unknowns at one time. The covariances `weight` and `error` are C and E of
 /// mapping.md (section 6).
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`

@@ -171,7 +171,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 
 std::uint32_t VoxelMap::store_point(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep,
                                     std::uint32_t line) {
-  // The newest chunk of a cell comes first, and is the only chunk with free slots.
+  // The newest chunk (block of points) of a cell comes first, and is the only chunk with unused slots.
   std::uint32_t& first = first_chunk_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kPointsPerChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];

@@ -5,9 +5,9 @@
 
 namespace tumble::mapping {
 
-/// WorldCovariance is the covariance of the map relative to the world. Its parts are mounting, initial tilt, scale,
-/// pose errors of inserted sweeps, and drift in unconstrained directions. The first pose of the IMU defines the world
-/// frame.
+/// WorldCovariance is the covariance of the map relative to the world. The covariance includes errors of mounting,
+/// initial tilt, scale, pose errors of inserted sweeps, and drift in unconstrained directions. The first pose of the
+/// IMU defines the world frame.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;

@@ -25,8 +25,8 @@ inline void remove_heading_effect(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
 
-/// Returns the change of the direction in state space that is a rotation of the run about the vertical. A correction
-/// `x` of the nominal trajectory causes the change, rolling.md (R36).
+/// Returns how a correction `x` of the nominal trajectory changes the effect of a rotation about the vertical on the
+/// error state, rolling.md (R36).
 inline Vector heading_effect(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();

@@ -93,8 +93,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // A rough floor lasts for many nodes. Its density is normalised with the smaller width of grip, so that its larger
-    // width does not cost weight in each node.
+    // A rough floor lasts for many nodes. The density of a rough floor is normalised with the smaller width of grip,
+    // which avoids a penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -229,7 +229,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // each remaining copy belongs to a cycle of slots
+  // the remaining copies form cycles of slots
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

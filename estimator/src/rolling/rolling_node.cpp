@@ -309,7 +309,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_ratio * r * w_W.norm());
-  // A clip flag counts even if the rate is below the stated range, because saturation may occur there.
+  // A clip flag indicates saturation even if the rate is below the stated range.
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {

@@ -42,7 +42,8 @@ struct Contact {
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Returns the variance of the contact velocity in a contact mode. For slip, only the vertical component is valid.
+/// Returns the variance of the contact velocity in a contact mode. For slip, only the vertical component of the
+/// variance is valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
