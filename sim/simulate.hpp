@@ -9,8 +9,8 @@
 
 namespace tumble::sim {
 
-/// SimulationFailure is thrown for a simulated run that is rejected. The error message states the reason and the
-/// simulated time. A simulated run is rejected for any of these reasons:
+/// SimulationFailure is thrown for a simulated run that is rejected. The error message of SimulationFailure states the
+/// reason and the simulated time. A simulated run is rejected for any of these reasons:
 /// - a warning of MuJoCo, or a state that is not finite;
 /// - a speed above 5 mm/s after the second of settling before the start;
 /// - a position beyond the half extent of the world, or 60 m below the world's origin;

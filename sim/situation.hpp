@@ -19,8 +19,8 @@ struct SensorSpec {
   std::string device;  ///< data sheet from which the values come ("mti30"); for information
   std::string site;    ///< site of the robot's MJCF at which the sensor is mounted
   Values values;       ///< numbers of the device (data sheet with the scenario's changes)
-  /// Error of the mounting in the calibration: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes).
-  /// An offset of the centre of mass adds to the error.
+  /// Error of the sensor's mounting in the calibration that an estimator receives: x_m y_m z_m (B axes), roll_rad
+  /// pitch_rad yaw_rad (small angles, I axes). An offset of the centre of mass adds to the error.
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };

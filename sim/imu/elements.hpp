@@ -18,11 +18,11 @@ namespace tumble::sim {
 /// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturated
 ///   readings are on a tilted plane, which differs for the two signs.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
-///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i. Measured devices show planes
-///   tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of RepoIMU;
-///   scenarios/certificate/real_rails.cpp has the values). Noise and quantisation act in the device's axes, not in
-///   those of the elements. The model excludes compensation errors that differ at saturation, and offsets that drift
-///   within a recording.
+///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i.
+/// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of
+/// RepoIMU; scenarios/certificate/real_rails.cpp has the values). In the model, noise and quantisation act in the axes
+/// of the device. The model excludes compensation errors that differ at saturation, and offsets that drift within a
+/// recording.
 class Elements {
  public:
   struct Params {

@@ -27,11 +27,12 @@ struct GivenElements {
 /// active range, sensing elements, saturation, compensation of the elements (elements.hpp), quantum, digital low-pass,
 /// mean over the window (imu_chain.hpp), stamps and losses (time_stamps.hpp); magnetometer.hpp for the magnetic field.
 /// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. `sensor.values` must be
-/// resolved; `T_BI` is the true mounting. Clip flags mark windows in which an element saturated at any moment. A
-/// saturated tilted element also makes the readings of unflagged axes wrong. If the device loses a sample, the sample
-/// is also missing in the truth. The elements in `given` do not change the random numbers of the other stages. Throws
-/// InvalidSituation if the output period is not a whole number of physics steps, or if parameters contradict each
-/// other. The IMU model excludes temperature, vibration rectification and bending of the mount.
+/// complete (see resolve()); `T_BI` is the true mounting of the IMU. Clip flags mark windows in which an element
+/// saturated at any moment. A saturated tilted element also makes the readings of unflagged axes wrong. If the device
+/// loses a sample, the sample is also missing in the truth. The elements in `given` do not change the random numbers of
+/// the other stages. Throws InvalidSituation if the output period is not a whole number of physics steps, or if
+/// parameters contradict each other. The IMU model excludes temperature, vibration rectification and bending of the
+/// mount.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 

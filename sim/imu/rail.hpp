@@ -15,8 +15,8 @@ namespace tumble::sim {
 ///   level after the signal has fallen below 90 % of the level.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
-///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`. The
-///   model excludes saturation levels that depend on temperature, and devices that stop after saturation.
+///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
+/// The model excludes saturation levels that depend on temperature, and devices that stop after saturation.
 class Rail {
  public:
   struct Params {

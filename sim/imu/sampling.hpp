@@ -28,8 +28,8 @@ class Sampling {
   /// `stream` if the device has a separate update rate.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns whether the device averages over its window instead of integrating between outputs. If on() is false, the
-  /// other members must not be called.
+  /// Returns whether the device averages over a separate window, instead of integrating between outputs. If on() is
+  /// false, the other members must not be called.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
   /// Returns the current output. Cost: O(window) for a device without a separate update rate.

@@ -60,7 +60,7 @@ Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misa
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}
-  /// Selects the part of the device for each axis by the signal before noise and saturation.
+  /// Selects the precise or the coarse part for each axis, from the signal before noise and saturation.
   void update(const Eigen::Vector3d& signal);
   /// Returns `coarse` or `precise` for each axis, according to the selected part.
   Eigen::Vector3d pick(double coarse, double precise) const;

@@ -108,10 +108,9 @@ class ColumnPattern final : public BeamPattern {
 };
 
 /// RosettePattern is the pattern of a rosette lidar with one or several units in different directions. In each unit,
-/// two prisms that rotate at constant rates deflect the beam. With y/x and z/x of the beam, y/x + i z/x = A exp(i w1 t)
-/// + B exp(i w2 t) + C exp(i (2 w1
-/// - w2) t), where t is the time since the start of the recording. The ring number is the number of the unit, from
-/// right (negative yaw) to left. All units share the origin of L.
+/// two prisms that rotate at constant rates deflect the beam. At the time t since the start of the recording, the
+/// direction (x, y, z) of the beam satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The
+/// ring number is the number of the unit, from right (negative yaw) to left. All units share the origin of L.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);

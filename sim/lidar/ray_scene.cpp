@@ -147,7 +147,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Intersects eight rays with one shape. Embree always passes eight rays, of which some may be inactive.
+/// Intersects eight rays with one shape. Embree always passes eight rays; some rays may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);

@@ -13,8 +13,8 @@ constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
 // a waiting hand is steady; above this speed, the tremor has its full amplitude
 constexpr double kFullTremor_m_s = 0.1;
 
-/// Returns the smallest rotation that turns the unit vector `from` up; a half turn about x if `from` points straight
-/// down. The function is used instead of Eigen's setFromTwoVectors, which takes 6 s to compile.
+/// Returns the smallest rotation that turns the unit vector `from` upwards. If `from` points downwards, the result is a
+/// half turn about x. The function is used instead of Eigen's setFromTwoVectors, which takes 6 s to compile.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};

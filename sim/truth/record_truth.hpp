@@ -30,9 +30,10 @@ Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 /// - `grip`: mean slip speed, weighted by normal force, below 0.02 m/s.
 /// - `slip`: the rotation is too fast for the motion of the geometric centre (mean difference of the rotation's and the
 ///   centre's speed along the ground, weighted by normal force).
-/// - `slide`: the rotation is too slow for the motion of the geometric centre. The labels therefore show touchdown 10
-///   ms too early and take-off 10 ms too late. The boundary between slide and grip agrees with Coulomb's law within 4
-///   ms. For a body other than a sphere, the labels refer to the centre of mass instead of the geometric centre.
+/// - `slide`: the rotation is too slow for the motion of the geometric centre.
+/// The labels show touchdown 10 ms too early and take-off 10 ms too late. The boundary between slide and grip agrees
+/// with Coulomb's law within 4 ms. For a body other than a sphere, the labels refer to the centre of mass instead of
+/// the geometric centre.
 std::vector<ContactLabel> label_contacts(const Truth& truth);
 
 }  // namespace tumble::sim

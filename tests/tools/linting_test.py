@@ -1,5 +1,5 @@
-#!/ usr / bin / env python3
-#SPDX - License - Identifier : BSD - 3 - Clause
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Tests the parts of tools/lint other than clang-format and clang-tidy: missing includes, and joint texts of many
 sources.
 

@@ -55,7 +55,8 @@ bool has_unequal_levels(const RailPlane& rail) {
 }
 
 // Returns two finders of saturation planes, with and without a stated range. The first finder uses the range of the
-// data sheet. If the data sheet states no range, the first finder uses the saturation levels of single axes.
+// data sheet. If the data sheet states no range, the first finder uses the saturation levels that were detected for
+// single axes.
 std::array<RailPlaneFinder, 2> finders_with_and_without_range(RailPlaneFinder::Params params,
                                                               const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;

@@ -23,7 +23,7 @@ struct RateReadings {
 };
 
 /// Finds clipped elements, partly saturated axes, suspect axes, rest and repeated readings in at least two samples.
-/// Cost: O(N). `health` receives saturation levels, the check of units and the repetitions.
+/// Cost: O(N). The function stores saturation levels, suspect units and repetitions in `health`.
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -19,8 +19,8 @@ constexpr double kMemory = 2000.0;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;
 // If the odds of a synchronous gyro and accelerometer are below `kContradictionOdds`, impacts contradict the data
-// sheet. A delay from impacts replaces the current delay if both differ by more than `kGuessSigmasMax` standard
-// deviations.
+// sheet. A delay estimated from impacts replaces the current delay if they differ by more than `kGuessSigmasMax`
+// standard deviations.
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
 // An estimated delay needs at least `kIntervalsMin` intervals between readings. The correlation at the estimated delay
 // must exceed that at the stated delay by `kCorrelationGainMin`, because the first few impacts correlate by chance.

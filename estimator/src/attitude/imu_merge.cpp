@@ -233,8 +233,8 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// Returns the measured force differences between the IMUs divided by those that the lever arms should cause:
-/// imu_merge.md (I8).
+/// Returns the ratio of the measured force differences between the IMUs to the differences that the lever arms should
+/// cause: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;

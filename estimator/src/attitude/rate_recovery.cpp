@@ -26,7 +26,8 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
 }
 
 // Seen contains the readings of one gyro or accelerometer. If a sensing element clips, the readings are the components
-// along the sensing directions: rails.md (R52). Otherwise the readings are the components along the axes of the IMU.
+// along the sensing directions: rails.md (R52). If no sensing element clips, the readings are the components along the
+// axes of the IMU.
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();

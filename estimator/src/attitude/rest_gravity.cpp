@@ -22,8 +22,9 @@ RestDetector::Params without_force_limits(RestDetector::Params rests) {
   return rests;
 }
 
-/// Returns parameters of the rest detector for forces in mg, cm/s^2 or counts, whose noise has larger numbers. Readings
-/// far above gravity at rest prove a wrong unit, because no robot stands still at ten times gravity.
+/// Returns parameters of the rest detector for forces in mg, cm/s^2 or counts, whose numbers (also of the noise) are
+/// larger than in m/s^2. Readings far above gravity at rest prove a wrong unit, because no robot stands still at ten
+/// times gravity.
 RestDetector::Params scaled_to_larger_units(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;

@@ -78,8 +78,8 @@ const char* to_string(Kind kind) {
   return meaning(kind).name;
 }
 
-/// Estimates after the end of an attitude, vertical or localisation failure are correct. During the failure, the
-/// covariance or the frame marks the states. A tracking failure makes all later poses wrong.
+/// Estimates after the end of an attitude, vertical or localisation failure are correct. The covariance or the frame of
+/// an estimate marks estimates during the failure. A tracking failure makes all later poses wrong.
 bool HealthFinding::invalidates_estimate() const {
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown || kind == Kind::not_localised;
   return meaning(kind).invalidates && !(ended && recovers);

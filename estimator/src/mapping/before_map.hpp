@@ -23,8 +23,8 @@ StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estim
 StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
 /// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. Without a
-/// map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity over
-/// minutes of motion.
+/// map, measurements do not determine origin and yaw. A weak prior on the speed bounds the errors of tilt and velocity
+/// over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the first sweep

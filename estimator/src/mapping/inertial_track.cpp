@@ -36,8 +36,8 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // The parameter `rate_rad_s` limits the norm of the rate at rest, and the rest detector limits each axis, so the
-  // parameter is divided by sqrt(3).
+  // The parameter `rate_rad_s` limits the norm of the rate at rest, but the rest detector limits each axis. The
+  // parameter is therefore divided by sqrt(3).
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -182,7 +182,8 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A rest of this length has already determined the gyro bias. The first samples of the rest may have been deleted.
+  // A rest of at least `lasted_s` has already determined the gyro bias. The first samples of the rest may have been
+  // deleted.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

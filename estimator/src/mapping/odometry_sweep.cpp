@@ -345,7 +345,7 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since, and
+/// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since then, and
 /// continues from the inertial prediction. The relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
   map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers

@@ -51,7 +51,7 @@ class PriorScene {
   /// map) for a search in the whole map, about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position, about which poses are refined
-  /// @param attempt the search anchors the local map at another surface point for each attempt
+  /// @param attempt     the search anchors the local map at another surface point for each attempt
   /// @param region      limits of the search; null: the whole map
   /// @param tried       number of poses that the search compared
   std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// Unknowns lists the unknowns that a registration estimates. Sums contains rows for these free unknowns only.
+/// Unknowns lists the free unknowns, which a registration estimates. Sums contains rows for these free unknowns only.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< indices of the free unknowns, ascending
   int count = 0;

@@ -19,7 +19,7 @@ struct Attempt {
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State that follows from a contradicted relocalisation, as an initial pose of the search; null if there is none.
+  /// State that follows from a contradicted relocalisation, as an initial pose of the search; or null.
   const MotionState* contradicted = nullptr;
 };
 
@@ -40,7 +40,7 @@ struct Placed {
 
 /// Sets the verdict of `placed`, the result of registering a sweep with `points` points. `placed` must contain the
 /// registration, and whether it agrees with the prediction. If the map has too few points, or after enough failed
-/// searches, inertial prediction continues the motion with verdict `degenerate`.
+/// searches, the verdict is `degenerate`, and the inertial prediction continues the motion.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 

@@ -14,8 +14,9 @@ namespace {
 // the size of the checked bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// A map point counts as no longer present if all returns in its direction are this far behind it. The distance covers
-// errors of the relative pose of two sweeps, noise of a return, and slope of the ground within a bin.
+// A map point counts as no longer present if all returns in its direction are farther away by at least this distance.
+// The distance covers errors of the relative pose of two sweeps, noise of a return, and slope of the ground within a
+// bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 

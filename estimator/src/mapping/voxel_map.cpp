@@ -123,7 +123,7 @@ class VoxelMap::Rows {
   std::array<std::uint32_t, kAcross * kAcross * kAcross> groups_;
 };
 
-/// Returns the index of a cell's first chunk of points as a reference, and marks the cell as occupied.
+/// Returns a reference to the index of a cell's first chunk (block of points), and marks the cell as occupied.
 std::uint32_t& VoxelMap::first_chunk_of(const Eigen::Vector3i& cell) {
   const std::uint32_t group =
       group_index_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));

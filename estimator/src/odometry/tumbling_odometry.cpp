@@ -220,8 +220,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
 }
 
 /// Returns whether a sweep that ends at `end_ns` would be older than lag_s when the next sample arrives. The newest
-/// sample must also be at least the lag minus 1.5 periods later than the sweep's end. After a gap, the second condition
-/// delays the sweep.
+/// sample must also be later than the sweep's end by at least the lag minus 1.5 periods. The condition on the newest
+/// sample delays a sweep after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;

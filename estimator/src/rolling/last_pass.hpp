@@ -17,7 +17,7 @@ namespace tumble::rolling {
 /// The backward pass needs more than 10 KiB per node. LastPass therefore divides the nodes into segments, and stores
 /// only the filter at each segment's start and the adjoint at its end. LastPass computes the data of one segment again
 /// when needed, bit for bit. A window of one segment needs one run of the filter, and a longer window needs three. A
-/// LastPass contains four filters of 13 KiB, so do not put it on the stack.
+/// LastPass contains four filters of 13 KiB, so do not create a LastPass on the stack.
 class LastPass {
  public:
   static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; 1.6 MiB of data for the backward pass

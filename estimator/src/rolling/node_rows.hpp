@@ -11,8 +11,8 @@
 /// follows.
 namespace tumble::rolling {
 
-/// Applies the rolling constraint: the contact point is at rest, or moves along the floor during slip. If the velocity
-/// is unknown, it is assumed to be small, see rolling.md (R17), (R20).
+/// Applies the rolling constraint: the contact point is at rest, or moves along the floor during slip. An unknown
+/// velocity is assumed to be small, see rolling.md (R17), (R20).
 template <class EstimateCallback>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {

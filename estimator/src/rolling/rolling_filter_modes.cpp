@@ -177,8 +177,8 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
   return {out.data(), total};
 }
 
-/// Returns the rounded start node of a contact mode. Mode starts that are close in time are rounded to one node, more
-/// coarsely the older they are.
+/// Returns the start node of a contact mode, rounded so that similar starts are equal. Mode starts that are close in
+/// time are rounded to one node, more coarsely the older they are.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
