@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Shares contains the elapsed fraction of an interval at each lane, and the resulting weights of the interval's
-/// rotations.
+/// Shares contains for each lane the elapsed fraction of an interval of the motion, and the weights for interpolating
+/// the pose.
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
   alignas(64) double within[kLanes];  ///< 1 from the first lane of the interval on, 0 before

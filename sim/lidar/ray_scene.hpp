@@ -18,7 +18,7 @@ struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
-  /// Input: maximum range of the ray. Output: range of the hit; unchanged without a hit.
+  /// Input: maximum range of the ray. Output: range of the hit; without a hit, the range is unchanged.
   alignas(64) float range[kLanes];
   alignas(64) float cosine[kLanes];  ///< cosine of the angle of incidence, 0..1
   alignas(64) float reflectivity[kLanes];

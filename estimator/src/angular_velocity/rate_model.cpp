@@ -304,7 +304,7 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // During model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the change
-  // is proportionally smaller: rate_smoother.md (R5).
+  // of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
   const double change =
       params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;

@@ -193,7 +193,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
-    // If the calibration is implausible, the stream mistook contact for flight. The reset discards calibration and
+    // An implausible calibration means that RateStream mistook contact for flight. The reset discards calibration and
     // motion.
     reset_rig(state);
     ++state.rig_resets;

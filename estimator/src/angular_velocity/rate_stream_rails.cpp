@@ -233,7 +233,7 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   }
 }
 
-// Returns the growth of the gyro's reading before the newest sample, per sample. The growth is the smaller of two
+// Returns the increase of the gyro's reading per sample, before the newest sample. The growth is the smaller of two
 // steps, because an impact causes a single step. A constant spin after an impact is not saturation.
 Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);

@@ -216,7 +216,6 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, 
   dense::decompose(scaled, values, vectors);
   // if the variance along a direction equals the prior variance, the earlier run contains no information about the
   // direction
-  // direction
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -13,7 +13,7 @@ namespace tumble::hand_held {
 
 namespace {
 
-// convergence limit: largest change of the cost; a change by 0.2 corresponds to odds of 1.1
+// the iteration has converged if the cost changes by less; a change by 0.2 corresponds to odds of 1.1
 constexpr double kCostChange = 0.2;
 constexpr int kStepsMax = 30;  // maximum number of iterations
 

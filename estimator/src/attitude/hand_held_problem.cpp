@@ -15,7 +15,7 @@ namespace {
 constexpr double kRotationMax_rad = 0.8;
 constexpr double kConvergenceTolerance = 1e-3;  // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
 constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
-// iterations after which the estimated density is constant, for convergence
+// after this many iterations, the estimated density remains constant, for convergence
 constexpr int kLastAdaptIteration = 8;
 constexpr double kHandAveraging_s = 0.25;  // averaging time of the hand's acceleration
 constexpr int kHalvings = 4;               // maximum number of times that a step is halved if the cost increases
@@ -54,7 +54,7 @@ namespace {
 
 // Returns the reading noise for computing covariances. For covariances, a lower bound does not limit how far the rate
 // exceeds the bound. The mean of the rate over a window P differs from the rate at the window's centre. For white jerk
-// of density q, this difference has the variance q P^3/320: carried.md (C26).
+// of density q, the difference between mean and centre has the variance q P^3/320: carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);

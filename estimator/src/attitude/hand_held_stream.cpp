@@ -293,7 +293,7 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
   if (knot.readings.force_count > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// Returns the factor on the density of the hand's acceleration, adapted to recent motion: carried.md (C41).
+// Returns the factor by which recent motion changes the density of the hand's acceleration: carried.md (C41).
 double HandHeldStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_noise_floor_ratio,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));

@@ -29,7 +29,7 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// possible. All other nodes act as a prior on the ends of the tested part. The function selects the solution with the
 /// lowest cost; the widths of the cost minima hardly differ. If an alternative has odds above 1 to 1000, the
 /// covariances of the nodes become those of the mixture of both solutions. If a number of revolutions changes, the
-/// function solves the whole problem again. If the whole problem cannot be solved, the previous solution remains, and
+/// function solves the whole problem again. If the whole problem has no solution, the previous solution remains, and
 /// the alternatives increase the covariances. The problem is unchanged if no segment is tested.
 ///
 /// The caller must have computed the covariances of `problem`. The function sets the counters of `report`. The test

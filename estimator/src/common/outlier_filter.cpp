@@ -107,8 +107,8 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns how far a reading is above, or below, both neighbouring readings on the axis where this difference is
-/// largest: outliers.md (O1).
+/// Returns how far a reading is above or below both neighbouring readings, on the axis with the largest difference:
+/// outliers.md (O1).
 double distance_from_neighbours(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
   for (int axis = 0; axis < 3; ++axis) {

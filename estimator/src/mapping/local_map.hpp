@@ -52,7 +52,8 @@ class LocalMap {
   /// `T_MW` is given, the function also keeps the points of the replaced map, transformed to the prior map's frame.
   void start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
-  /// Returns the number of sweeps that have added points to the map. Each map point stores the number of its sweep.
+  /// Returns the number of sweeps that have added points to the map. Each map point stores the number of the sweep that
+  /// added the point.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
   /// Removes the points of `first_sweep` and of all later sweeps from the map. Cost: O(number of points). The removal
   /// changes the indices of map points.

@@ -12,7 +12,7 @@ namespace {
 // probability kChanceAgreementMax.
 constexpr double kChanceAgreementMax = 0.8;
 // The second best pose of a search shows how many points agree with the prior map by chance. As a margin for sampling
-// errors, the fraction kChanceMargin of the second pose's disagreeing points also counts as agreeing.
+// errors, the fraction kChanceMargin of the points that disagree at the second pose also counts as agreeing.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search

@@ -26,9 +26,9 @@ struct KnownVelocity {
   double sigma_m_s = 0.0;
 };
 
-/// ConstantVelocity assumes a constant velocity, with the uncertainty of impacts, if the accelerometer is absent or
-/// always saturated. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples like those of a gap
-/// (InertialTrack::exclude_accelerometer), so it has neither `apply_velocity_prior` nor `weigh`.
+/// ConstantVelocity is for an absent or always saturated accelerometer. ConstantVelocity assumes a constant velocity,
+/// with the uncertainty that impacts cause. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples
+/// like those of a gap (InertialTrack::exclude_accelerometer), so it has neither `apply_velocity_prior` nor `weigh`.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// Unknowns lists the free unknowns, which a registration estimates. Sums contains rows for these free unknowns only.
+/// Unknowns lists the free unknowns, which a registration estimates. Sums contains rows only for the free unknowns.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< indices of the free unknowns, ascending
   int count = 0;

@@ -24,8 +24,8 @@ struct SearchContext {
 };
 
 /// Registers a sweep to the map, by tracking or by a search of initial poses, depending on the tracking state.
-/// `trajectory` is the aligned motion, or that of a failed attempt. `alignment` refers to the start of the sweep, and
-/// is empty if no alignment was found.
+/// `trajectory` is the aligned motion, or that of a failed attempt. `alignment` is the registration at the start of the
+/// sweep, and is empty if no registration succeeded.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 

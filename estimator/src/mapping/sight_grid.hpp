@@ -9,8 +9,8 @@ namespace tumble::mapping {
 
 /// FreeSpaceGrid is the free space that a sweep observed. Bins on the faces of a cube around the sensor contain the
 /// nearest return in each direction. A map point that is closer than all returns around its direction is no longer
-/// present, see mapping.md (R65). FreeSpaceGrid makes no statement about directions with few returns, and directions at
-/// an edge of this cube.
+/// present, see mapping.md (R65). FreeSpaceGrid makes no statement about directions with few returns, and about
+/// directions at an edge of the cube.
 class FreeSpaceGrid {
  public:
   /// Sets the ray origin of the following points, and how far the sensor moved around this origin during the sweep.

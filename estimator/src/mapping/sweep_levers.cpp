@@ -40,7 +40,7 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 
 }  // namespace
 
-/// Evaluates the position of each point on the trajectory, without the parts due to start state and gravity: mapping.md
+/// Computes the world position of each point of a sweep, without the parts due to start state and gravity: mapping.md
 /// (R2), (R4), (R6).
 void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
                                         std::span<Eigen::Vector3f> levers_W_m) const {

@@ -25,7 +25,7 @@ constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
 constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration, from accelerometer bias and tilt
 constexpr double kMemory_s = 60.0;   // age up to which a change is compared, so that a finding ends
-// width of the robust kernel in standard deviations; standard deviation per median absolute deviation
+// width of the robust kernel in standard deviations; ratio of standard deviation to median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
 using Change = SweepScaleEstimator::Change;

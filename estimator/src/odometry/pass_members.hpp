@@ -34,7 +34,7 @@ void visit_estimated(Self& p, Visitor& visit) {
 
 }  // namespace odometry
 
-/// Visits those samples of a queue that are still in use.
+/// Visits the samples of a queue that are still in use.
 template <class Self, class Visitor>
 void OdometryPass::Queue::members(Self& s, Visitor& visit) {
   if constexpr (std::is_const_v<Self>) {

@@ -150,8 +150,8 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // Near the end of the buffer, fewer samples remain than the lag needs. The second pass then reports the last rates
-  // before the lag is full.
+  // Near the end of the buffer, fewer samples remain than the lag of the rate estimation needs. The second pass then
+  // reports the last rates before the lag is full.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {

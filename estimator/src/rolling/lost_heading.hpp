@@ -42,7 +42,7 @@ inline void move_errors(const Vector& turned, Covariance& P) {
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();
 }
 
-/// Transforms one error x to the corrected nominal trajectory.
+/// Transforms one error x, relative to the old nominal trajectory, to the corrected nominal trajectory.
 inline void move_error(const Vector& turned, Vector& x) {
   x += x[kAttitude + 2] * turned;
 }

@@ -64,7 +64,8 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::process_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // The next reading closes a node, because the rate at the node's end is interpolated between two readings.
+  // A node is closed when the next reading arrives, because the rate at the node's end is interpolated between two
+  // readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     complete_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -237,8 +238,8 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable contact mode over all hypotheses. Hypotheses with a different past may have the same
-/// current mode, so their weights are added.
+/// Returns the most probable contact mode over all hypotheses. Several hypotheses with a different past may have the
+/// same current mode, so the function adds their weights.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

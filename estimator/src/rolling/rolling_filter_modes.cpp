@@ -212,8 +212,8 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces the first `count` hypotheses by copies of the hypotheses in `from`. The function copies in place, because a
-/// second array would need 420 KiB of stack.
+/// Replaces the first `count` hypotheses by copies of the hypotheses that `from` lists. The function copies in place,
+/// because a second array would need 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending copies that read from each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
