@@ -44,9 +44,8 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   if (!status.ok()) return status;
   state.repeat_state = repeat_state;
   state.levels_changed = clipping_finder_.observe(sample, state.rails);
-  clipping_finder_.axis_aligned_rails().classify(sample,
-                                                 // remembers the current saturation levels
-                                                 state.rails.known.axis_aligned_rails);
+  // this call of classify() updates the hysteresis of the clipped axes
+  clipping_finder_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
   return status;
 }
 

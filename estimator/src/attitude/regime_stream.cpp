@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAccelerationSpan_s =
     0.01;  // time base of the angular acceleration, equal to model_error_s of the rate model
-// fraction of the solver steps within a lag that must reset the calibration, for a finding
+// the calibration is unstable if more than this fraction of the solver steps within a lag reset it
 constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {

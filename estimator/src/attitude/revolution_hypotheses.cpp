@@ -21,7 +21,8 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-// the test skips segments whose mean rate is further above the saturation level
+// a segment stays at the saturation level if its mean rate is less far above the level, in standard deviations of the
+// level
 constexpr double kExcessMin = 3.0;
 constexpr double kRevolutionCost = 100.0;  // largest jerk cost of an additional revolution: ten standard deviations
 constexpr double kSurroundings_s = 0.3;    // time before and after a segment that is solved together with it

@@ -52,9 +52,8 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     if (!check_sample(samples[k]).ok()) continue;
     StreamingClippingFinder::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
-    units_[k].watch.axis_aligned_rails().classify(samples[k],
-                                                  // remembers the current saturation levels
-                                                  rails.known.axis_aligned_rails);
+    // this call of classify() updates the hysteresis of the clipped axes
+    units_[k].watch.axis_aligned_rails().classify(samples[k], rails.known.axis_aligned_rails);
     state[k].before = samples[k];
   }
 }
