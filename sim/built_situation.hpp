@@ -13,18 +13,18 @@ struct World;
 }
 
 /// BuiltSituation is a situation whose world and robot are compiled to one MuJoCo model. Simulation, start pose, true
-/// surface and pictures all use this compiled model. The compiled model is constant: code that steps or modifies the
-/// model uses a copy. Copies of a BuiltSituation share the compiled model, and several threads may use them.
+/// surface and pictures all use this model. The model is constant; code that changes a model works on a copy. Copies of
+/// a BuiltSituation share the compiled model, and several threads may use them.
 class BuiltSituation {
  public:
-  /// Reads the robot's MJCF from the folder `models` and composes the world around the robot. The composition takes
+  /// Reads the robot's MJCF from the folder `models` and composes the world around the robot. Construction takes
   /// milliseconds for a floor and tenths of a second for a hill. Throws InvalidSituation with the message of MuJoCo's
   /// model compiler.
   BuiltSituation(ResolvedSituation situation, const std::filesystem::path& models);
 
   const ResolvedSituation& situation() const;
 
-  /// Only code in the folder sim can use the type engine::World.
+  /// Returns the compiled world, for code in the folder sim.
   const engine::World& world() const;
 
  private:

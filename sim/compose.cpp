@@ -23,13 +23,14 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// Throws std::bad_alloc for a lack of memory, because a larger machine may be able to simulate the situation.
+/// Throws std::bad_alloc if MuJoCo's error message reports a lack of memory, because a larger machine may be able to
+/// simulate the situation.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Installs error handlers; otherwise MuJoCo would write a log file and end the process on an error. MuJoCo counts its
-/// warnings in mjData; the class Physics checks the counters after every step.
+/// Installs error handlers for MuJoCo, which would otherwise write a log file and end the process on an error. Physics
+/// separately checks MuJoCo's counters of warnings after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -56,9 +57,8 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Returns whether the robot has one geom, and MuJoCo's bounding-volume tree gives the contacts in the order of a test
-/// of every pair. The bounding-volume tree sorts contacts by the first geom of a pair. The first geom of a pair is the
-/// one with the lower type number.
+/// Returns whether the robot has a single geom, and MuJoCo's bounding-volume tree keeps the order of contacts. The tree
+/// sorts contacts by the first geom of a pair, which is the geom with the lower type number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -77,7 +77,7 @@ bool sorts_as_asked(const mjModel& model) {
   return true;
 }
 
-/// Returns whether only gravity, contacts and the motion's wrench act on the moving bodies.
+/// Returns whether the moving bodies are subject only to gravity, contacts and the wrench that the motion applies.
 bool moves_freely(const mjModel& model) {
   const auto none = [](const mjtNum* numbers, int count) {
     return std::all_of(numbers, numbers + count, [](mjtNum number) { return number == 0.0; });
@@ -88,18 +88,18 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// Disables computations of MuJoCo whose results are unused; the motion stays bit-identical. Sleeping is enabled
-/// because MuJoCo then places static bodies once instead of at every stage of a step. The robot is always awake.
+/// Disables computations of MuJoCo whose results are unused; the motion stays bit-identical. With sleeping enabled,
+/// MuJoCo computes the poses of static bodies once instead of at every stage of a step. The robot is always awake.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
-  model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
-  // the bounding boxes of height fields are skipped, because a height field is below every strut; planes have no box
+  model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island of connected bodies
+  // tests of bounding boxes are disabled for height fields, which are below every strut; planes have no box
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // with few pairs, the tree over the world's geoms costs more than it saves unless it contains only geoms near the
+  // with few pairs of geoms, the tree over the world's geoms saves time only if it contains just the geoms near the
   // robot
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;
@@ -133,8 +133,8 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;
-  spec->option.integrator = mjINT_RK4;  // the only integrator here that preserves energy and momentum of a tumbling
-                                        // body
+  // of MuJoCo's integrators, only this one preserves energy and momentum of a tumbling body
+  spec->option.integrator = mjINT_RK4;
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), situation->robot.values, world);
   world_type.build(spec.get(), situation->world.values, situation->seed, world);

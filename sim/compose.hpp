@@ -5,7 +5,7 @@
 
 #include "sim/engine/model.hpp"
 
-/// Worlds and robots add elements to a model description, which MuJoCo then compiles.
+/// compose.hpp combines a world and a robot to one model description, which MuJoCo compiles.
 namespace tumble::sim::engine {
 
 /// Composes world and robot in memory (mjSpec) and compiles them to one model. Outside of tests, only BuiltSituation

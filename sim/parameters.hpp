@@ -11,8 +11,8 @@
 
 namespace tumble::sim {
 
-/// Parameter is a number that a component of a situation takes, with default, limits, unit and meaning. Switches are
-/// numbers: 0 is off, 1 is on.
+/// Parameter is a number that a component of a situation takes, with default, limits, unit and meaning. A switch is
+/// also a number: 0 is off, 1 is on.
 struct Parameter {
   std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
   double default_value;
@@ -39,7 +39,8 @@ class InvalidSituation : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Values contains numbers by name; `resolve` returns a set that is complete and within limits.
+/// Values contains the values of parameters by name. resolve() returns Values that are complete and within their
+/// limits.
 class Values {
  public:
   void set(const std::string& name, double value) { numbers_[name] = value; }

@@ -14,20 +14,21 @@
 /// sphere's geometric centre; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
-/// ContactLabel is the state of contact, over a window that bridges short interruptions.
+/// ContactLabel is the state of contact at one time, see label_contacts().
 enum class ContactLabel : std::uint8_t { air, grip, slip, slide };
 
 /// ContactTruth is one contact at one instant of the true motion.
 struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
-  Eigen::Vector3d normal_W;             ///< unit vector, into the robot
-  Eigen::Vector3d slip_velocity_W_m_s;  ///< tangential velocity of the robot's material point relative to the world
+  Eigen::Vector3d normal_W;  ///< unit vector, into the robot
+  /// tangential velocity of the robot's surface at the contact, relative to the world
+  Eigen::Vector3d slip_velocity_W_m_s;
   double normal_force_n = 0;
   std::int32_t surface_id = -1;
 };
 
-/// ImuTruth contains the true quantities at one IMU, for the averaging windows and time stamps of the readings.
+/// ImuTruth contains the true quantities at one IMU. Each entry is for the averaging window of one reading.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
@@ -67,7 +68,7 @@ struct SeriesTruth {
   std::vector<QuantityTruth> quantities;
 };
 
-/// Truth contains the true motion and contacts; physics samples every `period_ns` from time 0.
+/// Truth contains the true motion and contacts of a simulated run, sampled every `period_ns` from time 0.
 struct Truth {
   std::int64_t period_ns = 500000;
   std::vector<Eigen::Vector3d> p_WB_m;
@@ -84,7 +85,7 @@ struct Truth {
   std::vector<SeriesTruth> series;  ///< in the order of Sensors::series
 };
 
-/// A simulated recording.
+/// Recording contains the sensor data and the truth of a simulated run.
 struct Recording {
   Sensors sensors;
   Truth truth;

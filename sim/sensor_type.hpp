@@ -12,10 +12,10 @@
 
 namespace tumble::sim {
 
-/// SensorContext is the input of a sensor's simulation; all members outlive the call.
+/// SensorContext is the input of a sensor's simulation. The references in SensorContext are valid during the call.
 struct SensorContext {
   const engine::World& world;
-  const SensorSpec& sensor;             ///< resolved
+  const SensorSpec& sensor;             ///< sensor with resolved parameters
   const Eigen::Isometry3d& T_BX;        ///< true mounting of the sensor's frame X
   const Eigen::Isometry3d& given_T_BX;  ///< calibration that an estimator receives
   double gravity_m_s2;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// sensors.hpp defines the sensor data, which is all that an estimator receives. Frames and units are as in
+/// sensors.hpp defines the sensor data, which are the complete input of an estimator. Frames and units are as in
 /// docs/design.md: B body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds
 /// from the start.
 namespace tumble::sim {
@@ -27,19 +27,19 @@ struct ImuRecord {
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
   std::vector<std::uint8_t> clip_flags;           ///< bits gyro x y z, accel x y z; zero for devices without flags
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< flux density in I, one per sample; empty without magnetometer
-  Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();  ///< undisturbed field of the Earth, from a map; 0:
-                                                              ///< unknown
+  /// undisturbed field of the Earth, from a map; 0: unknown
+  Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };
 
-/// PointTimes states what is known about the time of points within a sweep.
+/// PointTimes states whether the times of the points within a sweep are known.
 enum class PointTimes : std::uint8_t {
-  measured,    ///< each point has its own time in offset_ns
-  not_skewed,  ///< all points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed;
-               ///< offset_ns is 0
-  unknown      ///< the sweep is skewed in an unknown way; offset_ns is 0
+  measured,  ///< each point has its own time in offset_ns
+  /// all points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is 0
+  not_skewed,
+  unknown  ///< the sweep is skewed in an unknown way; offset_ns is 0
 };
 
-/// LidarRecord contains the returns of one lidar, sweep after sweep; a firing without a hit has no point.
+/// LidarRecord contains the returns of one lidar, sweep after sweep. A firing without a hit gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;

@@ -9,8 +9,8 @@
 
 namespace tumble::sim {
 
-/// SimulationFailure is thrown if a simulated run is rejected. The message states the reason and the simulated time;
-/// sweeps over scenarios count rejected runs separately. A simulated run is rejected for any of these reasons:
+/// SimulationFailure is thrown for a simulated run that is rejected. The error message of SimulationFailure states the
+/// reason and the simulated time. A simulated run is rejected for any of these reasons:
 /// - a warning of MuJoCo, or a state that is not finite;
 /// - a speed above 5 mm/s after the second of settling before the start;
 /// - a position beyond the half extent of the world, or 60 m below the world's origin;
@@ -21,9 +21,9 @@ class SimulationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Simulates one situation: rigid bodies and contact (MuJoCo, RK4, 0.5 ms), IMU readings, lidar sweeps, truth.
-/// `threads` is the number of threads for the lidar; the recording is independent of it. Throws InvalidSituation if the
-/// robot lacks a sensor's site or the motion is impossible in the world; throws SimulationFailure for a rejected run.
+/// Simulates one situation: rigid bodies and contact (MuJoCo, RK4, 0.5 ms), IMU readings, lidar sweeps, truth. The
+/// recording is independent of `threads`, the number of threads for the lidar. Throws InvalidSituation if the robot
+/// lacks a sensor's site or the motion is impossible in the world; throws SimulationFailure for a rejected run.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
 /// Returns the initial pose of the robot's body frame, before the body settles into its contacts; nothing is simulated.

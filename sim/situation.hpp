@@ -19,14 +19,14 @@ struct SensorSpec {
   std::string device;  ///< data sheet from which the values come ("mti30"); for information
   std::string site;    ///< site of the robot's MJCF at which the sensor is mounted
   Values values;       ///< numbers of the device (data sheet with the scenario's changes)
-  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes); an offset of
-  /// the centre of mass adds to it.
+  /// Error of the sensor's mounting in the calibration that an estimator receives: x_m y_m z_m (B axes), roll_rad
+  /// pitch_rad yaw_rad (small angles, I axes). An offset of the centre of mass adds to the error.
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// Situation is one simulated case with every number fixed. Equal situations give bit-identical recordings. A Situation
-/// may omit defaults; `resolve` completes and checks it.
+/// Situation is one simulated case with every number fixed. Equal situations give bit-identical recordings. Values with
+/// defaults may be omitted; resolve() adds them and checks the Situation.
 struct Situation {
   std::string scenario;  ///< name of the scenario from which it was drawn
   std::uint64_t seed = 0;
@@ -38,17 +38,16 @@ struct Situation {
   bool operator==(const Situation&) const = default;
 };
 
-/// These functions return the registries, in the order of registration.
+/// Return all types of worlds, robots, motions and sensors, in the order of registration.
 std::span<const ComponentType> world_types();
 std::span<const ComponentType> robot_types();
 std::span<const ComponentType> motion_types();
 std::span<const ComponentType> sensor_types();
-/// Parameters of SensorSpec::mount_error.
+/// Returns the parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
-/// ResolvedSituation is a complete and checked situation. Only `resolve` creates a ResolvedSituation, so receivers need
-/// no further checks. A ResolvedSituation can be read as a Situation. To change a number, copy the Situation, change
-/// the copy and resolve it.
+/// ResolvedSituation is a complete and checked situation. Only resolve() creates a ResolvedSituation, so users need no
+/// further checks. To change a number, copy the Situation, change the copy and call resolve().
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }
@@ -67,7 +66,7 @@ class ResolvedSituation {
   Situation situation_;
 };
 
-/// Completes every component with its defaults and checks it. Throws InvalidSituation with the location of the error.
+/// Adds the defaults of every component, and checks all values. Throws InvalidSituation with the location of the error.
 ResolvedSituation resolve(const Situation& situation);
 
 }  // namespace tumble::sim

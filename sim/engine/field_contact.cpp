@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cell is a cell of a height field below a part of a strut's axis, in coordinates relative to the cell's first corner.
-/// MuJoCo divides a cell of a height field along the diagonal from the cell's first to its last corner.
+/// Cell is one cell of a height field below a strut, in coordinates relative to the cell's first corner. MuJoCo divides
+/// the cell into two triangles, along the diagonal from the first to the last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)
@@ -53,8 +53,8 @@ class Cell {
   double beside_diagonal_m(const Vector3d& p_m) const {
     return (p_m.x() * dy_ - p_m.y() * dx_) / std::sqrt(dx_ * dx_ + dy_ * dy_);
   }
-  /// Returns whether the strut's axis is out of reach above a plane through the cell's first corner with the given
-  /// slopes.
+  /// Returns whether the strut is too far above the plane with the given slopes through the cell's first corner for a
+  /// contact.
   bool above_plane(double slope_x, double slope_y) const {
     const auto above_m = [&](const Vector3d& p_m) {
       return p_m.z() - heights_m_[0] - slope_x * p_m.x() - slope_y * p_m.y();
@@ -104,7 +104,7 @@ bool turned(const mjData& data, int geom) {
 }
 
 /// Returns MuJoCo's own collision function. The first call reads the function from MuJoCo's table, before
-/// field_contacts replaces the table entry.
+/// find_field_contacts_by_geometry() replaces the entry.
 mjfCollision engines_own() {
   static const mjfCollision kOwn = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_CAPSULE];
   return kOwn;

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// height_field.hpp describes a height field and a strut above it, in the axes of the field's geom, which are parallel
-/// to the world's axes.
+/// height_field.hpp describes a height field and a strut above the field, in axes of the field, which are parallel to
+/// the world's axes.
 namespace tumble::sim::engine {
 
 /// Field contains heights on a regular grid; columns are along x.
@@ -68,7 +68,7 @@ struct Strut {
     from_m = middle_m - half_m;
     along_m = 2.0 * half_m;
     radius_m = model.geom_size[3 * capsule];
-    constexpr double kSlack_m = 1e-6;  // larger than all rounding errors here
+    constexpr double kSlack_m = 1e-6;  // larger than all rounding errors of this computation
     reach_m = radius_m + kSlack_m;
   }
   bool finite() const { return from_m.allFinite() && along_m.allFinite(); }
@@ -77,14 +77,14 @@ struct Strut {
   double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
 };
 
-/// Part is a section of a strut's axis, from `first` to `last` as fractions of the axis's length; empty if `first`
-/// exceeds `last`.
+/// Part is a section of a strut's axis; `first` and `last` are fractions of the axis's length. The section is empty if
+/// `first` exceeds `last`.
 struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }
 
-  /// Returns the part of the strut's axis whose coordinate is between the limits, after the limits are widened by the
-  /// strut's reach.
+  /// Returns the part of the strut's axis whose coordinate `axis` is between two limits, widened by the distance within
+  /// which contacts are searched.
   Part within(const Strut& strut, int axis, double low_m, double high_m) const {
     const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
     low_m -= strut.reach_m;
@@ -95,8 +95,8 @@ struct Part {
   }
 };
 
-/// Cells contains the first and last cell in one direction that a strut's bounding box overlaps; empty if `first`
-/// exceeds `last`.
+/// Cells contains the numbers of the first and last cell in one direction that a strut's bounding box overlaps. There
+/// is no cell if `first` exceeds `last`.
 struct Cells {
   int first, last;
   Cells(double low_m, double high_m, double half_m, double cell_m, int count)

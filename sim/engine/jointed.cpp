@@ -22,7 +22,8 @@ Eigen::Quaterniond attitude(const mjData& data, int body) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-/// Returns the difference between a body's pose and its target pose, in world axes: metres, then radians.
+/// Returns the difference between a body's pose and its target pose `T_WB` in world axes: position [m], then rotation
+/// [rad].
 Vector6d missing(const Eigen::Isometry3d& T_WB, const mjData& data, int body) {
   const Eigen::AngleAxisd turn(Eigen::Quaterniond(T_WB.linear()) * attitude(data, body).conjugate());
   Vector6d out;
@@ -39,7 +40,7 @@ void update_bodies(const mjModel& model, mjData& data) {
 }
 
 BodyState state_on_joints(const mjModel& model, const mjData& data, int body) {
-  mjtNum velocity[6];  // angular velocity, then velocity of the body's origin, in world axes
+  mjtNum velocity[6];  // angular velocity, then velocity of the body's origin, both in world axes
   mj_objectVelocity(&model, &data, mjOBJ_XBODY, body, velocity, 0);
   BodyState out;
   out.time_s = data.time;

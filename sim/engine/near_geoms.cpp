@@ -11,10 +11,9 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// The tree contains geoms up to this distance beyond the robot's reach, so it is rebuilt only once in hundreds of
-/// steps.
+/// The tree contains geoms up to this distance from the robot, so that hundreds of steps use one tree.
 constexpr double kMargin_m = 0.5;
-/// The tree is rebuilt when only this margin remains, which is more than the robot moves in one step at 400 m/s.
+/// A new tree is built when only this margin remains, which is the distance that a robot moves in one step at 400 m/s.
 constexpr double kStep_m = 0.2;
 
 Box everything() {

@@ -9,9 +9,9 @@
 namespace tumble::sim::engine {
 
 /// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a floating robot may touch soon. The
-/// destructor restores the original tree. MuJoCo tests the remaining pairs in the same way and sorts contacts by geom,
-/// so the motion stays bit-identical. Planes and height fields are always in the tree, with unbounded boxes, because a
-/// test of their bounding boxes saves no time. A model with further moving bodies, or without a tree, stays unchanged.
+/// destructor restores the original tree. MuJoCo tests the remaining pairs as before and sorts contacts by geom, so the
+/// motion stays bit-identical. Planes and height fields are always in the tree with unbounded boxes, because a test of
+/// their boxes saves no time. NearGeoms leaves a model unchanged if the model has further moving bodies, or no tree.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -30,7 +30,7 @@ class NearGeoms {
  private:
   struct Leaf {
     int geom;
-    bool always;                      ///< kept at any distance
+    bool always;                      ///< the geom is in the tree at any distance
     Eigen::Matrix<double, 6, 1> box;  ///< centre and half sizes, world axes
   };
   using Nodes = std::vector<Leaf>::iterator;
@@ -43,7 +43,7 @@ class NearGeoms {
   Eigen::Vector3d asked_W_m_;
   std::vector<Leaf> leaves_, near_;
   int planted_ = 0;
-  std::vector<int> own_child_, own_geom_;  ///< the compiler's tree
+  std::vector<int> own_child_, own_geom_;  ///< the original tree of MuJoCo's compiler
   std::vector<mjtNum> own_box_;
 };
 

@@ -46,8 +46,8 @@ Physics::Physics(World& world)
 
 BodyState Physics::state() const {
   if (!world_.free) return state_on_joints(*world_.model, *data_, world_.robot_body);
-  const mjtNum* q = data_->qpos;  // free joint: position and quaternion; velocity in world axes, angular velocity in
-                                  // body axes
+  // free joint: position and quaternion; velocity in world axes, angular velocity in body axes
+  const mjtNum* q = data_->qpos;
   return {data_->time, vector(q), Eigen::Quaterniond(q[3], q[4], q[5], q[6]), vector(data_->qvel),
           vector(data_->qvel + 3)};
 }
@@ -146,8 +146,8 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
     ContactTruth truth;
     truth.time_ns = time_ns;
     truth.point_W_m = vector(contact.pos);
-    truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);  // MuJoCo's normal is from the first geom to
-                                                                           // the second
+    // MuJoCo's normal points from the first geom to the second
+    truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);
     const Eigen::Vector3d v_W = now.v_WB_m_s + w_W.cross(truth.point_W_m - now.p_WB_m);
     truth.slip_velocity_W_m_s = v_W - v_W.dot(truth.normal_W) * truth.normal_W;
     truth.normal_force_n = force[0];

@@ -12,13 +12,12 @@
 
 namespace tumble::sim::engine {
 
-/// Physics simulates one robot in one world step by step (RK4). The state of Physics is that of the body that carries
-/// the sensors. Any warning of MuJoCo ends the run, because lost contacts or invalid numbers would make the data
-/// worthless.
+/// Physics simulates one robot in one world step by step (RK4). The reported state is that of the body that carries the
+/// sensors. A warning of MuJoCo ends the run, because lost contacts or invalid numbers would falsify the data.
 class Physics {
  public:
-  /// Modifies the model of `world` until destruction: the floor's friction follows the contact, and the tree of geoms
-  /// follows the robot. `world` must outlive this object.
+  /// Until destruction, Physics modifies the model of `world`: the floor's friction is that at the contact, and the
+  /// tree of geoms contains those near the robot. `world` must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
@@ -39,8 +38,8 @@ class Physics {
   void step(const Wrench& wrench);
 
   /// Appends the contacts of the robot with the world at the end of the last step, in arbitrary order. The contacts are
-  /// those at the last stage of RK4. The position at the last stage of RK4 differs from the state by an error of second
-  /// order in the step. Each contact stores `time_ns`.
+  /// those at the last stage of RK4, whose position differs from the final state by an error of second order in the
+  /// step. Each contact stores `time_ns`.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double kTouching_m = 1e-5;
 
-/// Pair is the closest pair of points found so far: one point on the strut's axis and one on the prism.
+/// Pair is the closest pair of points that the search has found: one point on the strut's axis and one on the prism.
 struct Pair {
   double distance2_m2;
   Vector3d axis_m, prism_m;
@@ -24,13 +24,13 @@ struct Pair {
   }
 };
 
-/// Returns the distance of a point to the left of an edge, seen from above, times the horizontal length of the edge.
+/// Returns how far a point is to the left of an edge, seen from above, multiplied by the horizontal length of the edge.
 double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
-/// AxisBox is the bounding box of a strut's axis. The bounding box quickly rejects geometry that is farther away than
-/// the closest pair of points found so far.
+/// AxisBox is the bounding box of a strut's axis. The box quickly rejects geometry that is farther away than the
+/// closest pair of points that the search has found.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -43,7 +43,7 @@ class AxisBox {
     const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
     return x * x + y * y + z * z > closest.distance2_m2;
   }
-  /// Returns whether every point below `top_m` is farther from the axis than the closest pair found so far.
+  /// Returns whether every point below `top_m` is farther from the axis than the points of `closest` are apart.
   bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
     const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
     const double z = std::max(low_m_.z() - top_m.z(), 0.0);
@@ -51,7 +51,7 @@ class AxisBox {
   }
 
  private:
-  static constexpr double kSlack_m = 1e-9;  // larger than all rounding errors here
+  static constexpr double kSlack_m = 1e-9;  // larger than all rounding errors of this computation
 
   double apart_m(int axis, double low_m, double high_m) const {
     return std::max(std::max(low_m_[axis] - high_m, low_m - high_m_[axis]), 0.0);
@@ -65,7 +65,7 @@ class AxisBox {
 void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v, Pair& closest) {
   const Vector3d r = p - q;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v), c = u.dot(r), f = v.dot(r);
-  const double apart = a * e - b * b;  // 0 if they are parallel
+  const double apart = a * e - b * b;  // 0 if axis and edge are parallel
   double s = apart > 1e-12 * a * e ? std::clamp((b * f - c * e) / apart, 0.0, 1.0) : 0.0;
   const double t = std::clamp((b * s + f) / e, 0.0, 1.0);
   if (a > 0.0) s = std::clamp((b * t - c) / a, 0.0, 1.0);
@@ -88,7 +88,7 @@ void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal,
 void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) {
   const Vector3d& from_m = prism.top_m[i];
   const Vector3d edge_m = prism.top_m[(i + 1) % 3] - from_m, beside_m = end_m - from_m;
-  if (left_of(edge_m, beside_m) > 0.0) return;  // the end is on the inner side
+  if (left_of(edge_m, beside_m) > 0.0) return;  // the end of the axis is on the inner side
   const double share = edge_m.head<2>().dot(beside_m.head<2>()) / edge_m.head<2>().squaredNorm();
   if (share < 0.0 || share > 1.0 || beside_m.z() > share * edge_m.z()) return;
   Vector3d on_face_m = from_m + share * edge_m;

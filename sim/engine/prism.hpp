@@ -7,13 +7,13 @@
 /// prism.hpp computes the closest points of a strut's axis and one prism of ground, in any axes with z up.
 namespace tumble::sim::engine {
 
-/// Prism is a volume of ground below a triangle, down to a horizontal bottom.
+/// Prism is the volume of ground between a triangle of the surface and a horizontal bottom.
 struct Prism {
   std::array<Eigen::Vector3d, 3> top_m;  ///< anticlockwise seen from above; no edge is vertical
   double foot_m;
 };
 
-/// Closest is the closest pair of points of an axis and a prism.
+/// Closest contains the closest points of a strut's axis and a prism, one on each.
 struct Closest {
   double distance_m;
   Eigen::Vector3d axis_m, prism_m;

@@ -23,8 +23,8 @@ struct AllanPoint {
 /// AllanNoise is the dominant noise at an averaging time. The dominant noise determines the degrees of freedom of the
 /// average.
 enum class AllanNoise {
-  white,    ///< N / sqrt(tau): angle (velocity) random walk
-  flicker,  ///< the floor: bias instability
+  white,    ///< N / sqrt(tau): angle (or velocity) random walk
+  flicker,  ///< minimum of the Allan deviation: bias instability
   walk,     ///< K sqrt(tau / 3): random walk of the bias
 };
 
@@ -43,8 +43,8 @@ std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> 
 /// curve.
 const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s);
 
-/// Returns the equivalent degrees of freedom of the Allan variance at one point, at least 1 (NIST SP 1065, table 5,
-/// Howe's approximations).
+/// Returns the equivalent number of degrees of freedom of the Allan variance at one averaging time, at least 1 (NIST SP
+/// 1065, table 5, Howe's approximations).
 double degrees_of_freedom(const AllanPoint& point, AllanNoise noise);
 
 struct AllanInterval {

@@ -11,7 +11,8 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr double kRatio = 10.0;  // ratio of correlation times: ripple of the floor below 2 %
+// ratio of two successive correlation times; the Allan deviation is then flat within 2 %
+constexpr double kRatio = 10.0;
 
 /// Returns the standard deviation of one Gauss-Markov process in an infinite series of processes whose combined Allan
 /// deviation is `floor`. Each process contributes sigma^2 / (f ln ratio) to the spectrum at frequency f; flicker noise

@@ -19,12 +19,12 @@ namespace tumble::sim {
 class Bias {
  public:
   struct Params {
-    double turn_on = 0.0;      ///< standard deviation [unit of the signal]
-    double in_run = 0.0;       ///< floor of the Allan deviation
-    double in_run_s = 1000.0;  ///< longest correlation time of the instability
-    double walk_sqrt_s = 0.0;  ///< standard deviation of the walk after one second
+    double turn_on = 0.0;      ///< standard deviation of the bias after turn-on [unit of the signal]
+    double in_run = 0.0;       ///< minimum (floor) of the Allan deviation
+    double in_run_s = 1000.0;  ///< longest correlation time of the in-run instability
+    double walk_sqrt_s = 0.0;  ///< standard deviation of the random walk after one second
   };
-  /// The bias advances in steps of `period_s`. Bias components of size 0 draw no random numbers.
+  /// Constructs a bias that changes once per `period_s`. A part of the bias whose size is 0 draws no random numbers.
   Bias(const Params& params, double period_s, const Stream& stream);
   /// Returns the current bias, then advances the bias by one period.
   Eigen::Vector3d next();

@@ -15,27 +15,27 @@ namespace tumble::sim {
 /// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix, so the reading is
 /// y = M^-1 (c(s) - o). Saturation of sensing elements has these consequences:
 /// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
-/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturation limit
-///   is a plane in the readings, tilted against the axes, and different for the two signs.
+/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturated
+///   readings are on a tilted plane, which differs for the two signs.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
 ///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i.
 /// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of
-/// RepoIMU; scenarios/certificate/real_rails.cpp has the values). The model has no noise and quantisation along the
-/// axes of the elements, because both act in the device's axes. The model also excludes compensation errors that differ
-/// at saturation, and offsets that drift within a recording.
+/// RepoIMU; scenarios/certificate/real_rails.cpp has the values). In the model, noise and quantisation act in the axes
+/// of the device. The model excludes compensation errors that differ at saturation, and offsets that drift within a
+/// recording.
 class Elements {
  public:
   struct Params {
-    double misalignment = 0.0;  ///< standard deviation of each entry off M's diagonal [1], truncated at three standard
-                                ///< deviations
-    double scale = 0.0;         ///< the same for each entry on the diagonal, about 1
-    double offset = 0.0;        ///< the same for each element's o [unit of the signal]
+    /// standard deviation of each entry off M's diagonal [1], truncated at three standard deviations
+    double misalignment = 0.0;
+    double scale = 0.0;   ///< standard deviation of each entry on the diagonal, about 1
+    double offset = 0.0;  ///< standard deviation of each element's offset o [unit of the signal]
   };
   static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
   /// Creates aligned sensing elements: M is the identity, and there is no offset.
   Elements() = default;
-  /// Draws the sensing elements at random; parameters of 0 draw no random numbers.
+  /// Draws misalignment, scale and offset of the sensing elements at random. A parameter of 0 draws no random numbers.
   Elements(const Params& params, Stream stream);
   /// Creates sensing elements with the misalignment matrix M = `axes`, which must be invertible.
   Elements(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset);
@@ -46,7 +46,7 @@ class Elements {
   bool axis_aligned() const { return axis_aligned_; }
 
   /// Returns the device's reading of `signal` after saturation by `rail`; signal and reading are in the device's axes.
-  /// Sets bit `first_bit + i` of `flags` if element i saturated. For aligned elements, the device's reading equals the
+  /// Sets bit `first_bit + i` of `flags` if element i saturated. For axis-aligned elements, the reading equals the
   /// output of `rail`.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 

@@ -8,7 +8,8 @@ namespace tumble::sim {
 
 namespace {
 
-/// The bias varies slowly, so the chain updates it only every 10 ms, which saves four fifths of the random numbers.
+/// The bias changes slowly, so TriadChain updates the bias only every 10 ms, which saves four fifths of the random
+/// numbers.
 constexpr double kBiasPeriod_s = 0.01;
 
 int steps_of_bias(double rate_hz) {

@@ -26,15 +26,15 @@ struct TriadReading {
 /// (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation of the elements,
 /// quantum, digital low-pass, mean over the window. With `clip_after_low_pass`, sensing elements and saturation act on
 /// the mean over the window instead. If a triad rotates, the mean of the readings differs from the increment of the
-/// motion (coning, sculling). The caller therefore passes the exact ideal reading of the window, and the chain adds the
-/// mean of its errors. An element that saturated in the window reports the plain mean of the chain's output. If every
-/// stage of the chain is off, the reading equals the exact reading, bit for bit. A second path with equal stages and
-/// noise, but without saturation, computes the unclipped reading. A device with a separate window or update rate
-/// (sampling.hpp) does not integrate; its reading is the plain mean over its window.
+/// motion (coning, sculling). The caller therefore passes the ideal reading of the window, and TriadChain adds the mean
+/// of the errors. An element that saturated in the window reports the plain mean of the chain's output. If every stage
+/// is off, the reading equals the ideal reading, bit for bit. A second chain with equal stages and noise, but without
+/// saturation, computes the unclipped reading. The reading of a device with a separate window or update rate
+/// (sampling.hpp) is the plain mean over its window.
 class TriadChain {
  public:
-  /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2". Random streams are named
-  /// after `stream_name`; `steps` is the number of physics steps per window.
+  /// Constructs the chain of one triad. `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and
+  /// "m_s2". `stream_name` begins the names of the random streams; `steps` is the number of physics steps per window.
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
@@ -50,7 +50,7 @@ class TriadChain {
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
-  /// Path processes the signal to the mean of a window, with or without saturation.
+  /// Path applies all stages to the signal, with or without saturation, and averages over a window.
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();

@@ -8,7 +8,8 @@
 
 namespace tumble::sim {
 
-/// Parameters of an inertial measurement unit. The defaults describe an ideal device at 100 Hz without a magnetometer.
+/// Returns the parameters of a simulated IMU. The default values describe an ideal device at 100 Hz without a
+/// magnetometer.
 std::span<const Parameter> imu_parameters();
 
 /// Checks that the resolved parameters of an IMU do not contradict each other. Throws InvalidSituation, with a message

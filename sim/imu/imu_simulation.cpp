@@ -58,7 +58,7 @@ class Device {
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
-  /// Ends an averaging window; returns false if the sample of the window is lost.
+  /// Ends an averaging window and stores its sample. Returns false if the device loses the sample.
   bool take(const Ideal& exact, std::int64_t end_ns) {
     std::uint8_t flags = 0;
     TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
@@ -96,7 +96,7 @@ class Device {
   TimeStamps stamps_;
   Glitches glitches_;
   double g_sensitivity_;
-  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< empty if it has no spread
+  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< drawn at random; empty without spread
   bool flagged_;
 };
 
@@ -135,8 +135,8 @@ class Compass {
 
 /// Pace relates the output samples of a device to the steps of its error chain.
 struct Pace {
-  int steps = 1;   ///< chain steps per sample
-  int shares = 1;  ///< chain steps per physics step; above 1 for devices faster than the physics
+  int steps = 1;   ///< steps of the error chain per sample
+  int shares = 1;  ///< steps of the error chain per physics step; above 1 for devices faster than the physics
 };
 
 Pace pace_of(const SensorSpec& sensor, double step_ns) {
@@ -164,9 +164,8 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// Selects the rotation vector of a window that agrees with the physics steps of the window. A rotation between two
-/// attitudes has several rotation vectors, which differ by full turns. A rotation below half a turn per window stays
-/// unchanged.
+/// Returns the mean rate over a window with the correct number of full turns. The attitudes at the ends of the window
+/// determine the rotation only up to full turns; the physics steps within the window determine the number of turns.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

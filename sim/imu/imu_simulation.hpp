@@ -21,25 +21,25 @@ struct GivenElements {
 /// Simulates the readings and the truth of one IMU from the body's true motion. The ideal reading of an averaging
 /// window is the exact increment of the motion. The ideal rate is the rotation between the attitudes at the window's
 /// ends, divided by the duration. The ideal specific force is the change of the sensor's velocity minus gravity, in the
-/// axes of the midway attitude. The integral of the ideal readings is the true motion at any output rate, also through
-/// impacts. The errors of the device are applied in this order (each stage is documented in its header): lever arm and
-/// mounting (truth/record_truth.hpp), delay, analogue low-pass, scale and misalignment, bias, g-sensitivity, white
-/// noise of the active range, sensing elements, saturation, compensation of the elements (elements.hpp), quantum,
-/// digital low-pass, mean over the window (imu_chain.hpp), stamps and losses (time_stamps.hpp); magnetometer.hpp for
-/// the magnetic field. The unclipped readings in ImuTruth have the noise of the readings, but no saturation.
-/// `sensor.values` must be resolved; `T_BI` is the true mounting. Clip flags mark windows in which an element saturated
-/// at any moment. If the sensing elements are tilted, a saturated element also makes the readings of the unflagged axes
-/// wrong. A sample that the device loses is also missing in the truth of this IMU. The elements in `given` leave the
-/// random numbers of the other stages unchanged. Throws InvalidSituation if the output period is not a whole number of
-/// physics steps, or if parameters contradict each other. The IMU model excludes temperature, vibration rectification
-/// and bending of the mount.
+/// axes of the midway attitude. The integral of the ideal readings is therefore the true motion at any output rate,
+/// also through impacts. The errors of the device apply in this order (headers in brackets): lever arm and mounting
+/// (truth/record_truth.hpp), delay, analogue low-pass, scale and misalignment, bias, g-sensitivity, white noise of the
+/// active range, sensing elements, saturation, compensation of the elements (elements.hpp), quantum, digital low-pass,
+/// mean over the window (imu_chain.hpp), stamps and losses (time_stamps.hpp); magnetometer.hpp for the magnetic field.
+/// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. `sensor.values` must be
+/// complete (see resolve()); `T_BI` is the true mounting of the IMU. Clip flags mark windows in which an element
+/// saturated at any moment. A saturated tilted element also makes the readings of unflagged axes wrong. If the device
+/// loses a sample, the sample is also missing in the truth. The elements in `given` do not change the random numbers of
+/// the other stages. Throws InvalidSituation if the output period is not a whole number of physics steps, or if
+/// parameters contradict each other. The IMU model excludes temperature, vibration rectification and bending of the
+/// mount.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
-/// Simulates the readings of an IMU at rest with z up for `duration_s`, without engine, body and magnetometer. The
-/// readings at rest serve to measure the noise figures of the device. The error chain runs at `chain_rate_hz` instead
-/// of the physics rate; an hour at 500 Hz takes about a second. The analogue and digital bandwidths of the device must
-/// be below half of `chain_rate_hz`, or 0.
+/// Simulates the readings of an IMU at rest with z up for `duration_s`, without engine, body and magnetometer. Tests
+/// measure the device's noise from such readings. The error chain runs at `chain_rate_hz` instead of the physics rate;
+/// an hour at 500 Hz takes about a second. The analogue and digital bandwidths of the device must be below half of
+/// `chain_rate_hz`, or 0.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 

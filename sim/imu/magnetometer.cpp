@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMu0Over4Pi = 1e-7;  // T m / A
 constexpr int kTries = 200;
-constexpr std::size_t kPositions = 500;  // number of path positions for which distances are checked
+constexpr std::size_t kPositions = 500;  // number of positions on the path at which distances are checked
 
 Eigen::Vector3d random_direction(Stream& stream) {
   const double z = stream.uniform(-1.0, 1.0), turn = stream.uniform(0.0, 2.0 * std::numbers::pi);

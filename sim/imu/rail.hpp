@@ -16,7 +16,7 @@ namespace tumble::sim {
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
 ///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
-/// The model excludes a saturation level that depends on temperature, and a device that stops permanently.
+/// The model excludes saturation levels that depend on temperature, and devices that stop after saturation.
 class Rail {
  public:
   struct Params {
@@ -24,8 +24,8 @@ class Rail {
     double axis_spread = 0.0;   ///< standard deviation, truncated at three standard deviations
     double event_spread = 0.0;  ///< standard deviation, truncated at three standard deviations
     bool wrap = false;
-    double recovery_s = 0.0;      ///< 0: immediate
-    double recovery_share = 0.0;  ///< share of the level
+    double recovery_s = 0.0;      ///< time constant of the offset after clipping; 0: no offset
+    double recovery_share = 0.0;  ///< offset after clipping, as a fraction of the level
   };
   /// `period_s` is the time between two calls of operator(). Random numbers are drawn only if a spread is above 0.
   Rail(const Params& params, double period_s, const Stream& stream);
@@ -35,7 +35,7 @@ class Rail {
 
  private:
   struct Axis {
-    std::array<double, 2> base{}, level{};  ///< of the positive and the negative side
+    std::array<double, 2> base{}, level{};  ///< level of the positive and of the negative side
     std::array<bool, 2> event{};            ///< true while a clipping event lasts
     double offset = 0.0;                    ///< offset left by clipping
   };

@@ -10,36 +10,36 @@
 namespace tumble::sim {
 
 /// Sampling models a device that does not integrate between outputs. Each reading is the plain mean of the signal over
-/// the device's averaging window. The device may have an update rate that is slower or faster than the output rate and
-/// not synchronous with the outputs. The output repeats the last reading until a new reading is available (sample and
-/// hold). The sampling model excludes drift and jitter of the device's clock, and weighted windows.
+/// the device's averaging window. The device's update rate may be lower or higher than the output rate, and the updates
+/// are not synchronous with the outputs. The output repeats the last reading until a new reading is available (sample
+/// and hold). The sampling model excludes drift and jitter of the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {
     double window_s = 0.0;   ///< 0: the time between readings
-    double update_hz = 0.0;  ///< readings per second; 0: one per output
+    double update_hz = 0.0;  ///< number of readings per second; 0: one per output
   };
   struct Reading {
     Eigen::Vector3d delivered = Eigen::Vector3d::Zero(), unclipped = Eigen::Vector3d::Zero();
-    std::uint8_t railed = 0;  ///< bits of all steps in the window
+    std::uint8_t railed = 0;  ///< bits of elements that saturated at any step in the window
   };
 
-  /// `rate_hz` is the rate of calls of `add`. The constructor draws the phase of the readings from `stream` if the
-  /// device has a separate update rate.
+  /// `rate_hz` is the rate at which the caller calls `add`. The constructor draws the phase of the readings from
+  /// `stream` if the device has a separate update rate.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns whether the device averages over its window instead of integrating between outputs. If on() is false, no
-  /// other member may be used.
+  /// Returns whether the device averages over a separate window, instead of integrating between outputs. If on() is
+  /// false, the other members must not be called.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
-  /// Returns the current output; cost O(window) for a device without a separate update rate.
+  /// Returns the current output. Cost: O(window) for a device without a separate update rate.
   Reading output() const;
 
  private:
   Reading mean() const;
 
   double readings_per_step_ = 0.0, phase_ = 0.0;
-  std::vector<Reading> ring_;  ///< most recent steps; empty: off
+  std::vector<Reading> ring_;  ///< the most recent steps; empty if the stage is off
   std::size_t next_ = 0, filled_ = 0;
   Reading held_;
   bool holding_ = false;

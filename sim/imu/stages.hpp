@@ -19,9 +19,8 @@ Eigen::Vector3d normals(Stream& stream, double sigma);
 /// `sigma` 0, the result is 0 and no random number is drawn.
 double bounded_normal(Stream& stream, double sigma);
 
-/// DelayLine delays a signal by `delay_s`. The output equals the first value until the delay has passed; values between
-/// samples are interpolated linearly. The delay preserves the sum of the signal over a long time. A delay of 0 switches
-/// the stage off.
+/// DelayLine delays a signal by `delay_s`. Until the delay has passed, the output is the first value. Values between
+/// samples are interpolated linearly, which preserves the integral of the signal. A delay of 0 switches the stage off.
 class DelayLine {
  public:
   DelayLine(double delay_s, double rate_hz);
@@ -29,7 +28,7 @@ class DelayLine {
 
  private:
   double fraction_ = 0.0;              ///< fraction of a sample
-  std::vector<Eigen::Vector3d> past_;  ///< ring buffer of the last samples; empty: off
+  std::vector<Eigen::Vector3d> past_;  ///< ring buffer of the last samples; empty if the stage is off
   std::size_t next_ = 0;
   bool started_ = false;
 };
@@ -50,17 +49,18 @@ class LowPass {
   Eigen::Vector3d s1_ = Eigen::Vector3d::Zero(), s2_ = Eigen::Vector3d::Zero();
 };
 
-/// Draws scale and misalignment errors of a triad: 1 plus scale errors on the diagonal, and six independent small
-/// angles off the diagonal, all normal. The axis errors are exactly the identity if both standard deviations are 0.
+/// Draws the matrix of scale and misalignment errors of a triad. The diagonal is 1 plus scale errors, and the other
+/// entries are six independent small angles; all errors are normally distributed. The axis errors are exactly the
+/// identity if both standard deviations are 0.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
-/// RangeChoice selects for each axis the precise part of a two-range device up to `handover`, the coarse part above,
-/// and the precise part again below 90 % of `handover`. A handover of 0 always selects the coarse part. Bias, scale and
-/// axes are equal for both parts; noise and quantum differ.
+/// RangeChoice selects for each axis the precise or the coarse part of a device with two ranges. The coarse part is in
+/// use while the signal exceeds `handover`, until the signal is below 90 % of `handover`. A handover of 0 always
+/// selects the coarse part. Bias, scale and axes are equal for both parts; noise and quantum differ.
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}
-  /// Selects the part of the device for each axis by the signal before noise and saturation.
+  /// Selects the precise or the coarse part for each axis, from the signal before noise and saturation.
   void update(const Eigen::Vector3d& signal);
   /// Returns `coarse` or `precise` for each axis, according to the selected part.
   Eigen::Vector3d pick(double coarse, double precise) const;
@@ -70,8 +70,8 @@ class RangeChoice {
   std::array<bool, 3> precise_ = {false, false, false};
 };
 
-/// Returns white noise of `density` [unit / sqrt(Hz)] for each axis, sampled at `rate_hz`: standard deviation density *
-/// sqrt(rate).
+/// Returns one sample of white noise per axis. At the sample rate `rate_hz`, noise of `density` [unit / sqrt(Hz)] has
+/// the standard deviation density * sqrt(rate).
 Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz);
 
 /// Rounds each axis to the nearest multiple of its `quantum`; a quantum of 0 switches rounding off.

@@ -11,7 +11,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kRevolution_rad = 6.283185307179586;
-constexpr int kAzimuthCells = 2048;  // 3 mrad: a strut of 4 cm at a distance of 0.3 m spans about forty cells
+constexpr int kAzimuthCells = 2048;  // 3 mrad per cell: a strut of 4 cm at a distance of 0.3 m covers about forty cells
 
 std::int64_t period_ns(const Values& values, const char* name) {
   return std::llround(values.at(name) * 1e9);
@@ -187,7 +187,7 @@ RosettePattern::RosettePattern(const Values& values) {
   block.first_slot = slot;
   block.slots = slots;
   const std::int64_t start_ns = slot * slot_period_ns_;
-  alignas(64) double x[kLanes], y[kLanes] = {}, z[kLanes] = {};  // directions of the beam of a unit without yaw
+  alignas(64) double x[kLanes], y[kLanes] = {}, z[kLanes] = {};  // directions of the beam of a unit that is not rotated
   for (const Term& term : terms_) {
     const double phase_rad = term.rate_rad_ns * static_cast<double>(start_ns);
     const double cos_start = term.amplitude * std::cos(phase_rad), sin_start = term.amplitude * std::sin(phase_rad);

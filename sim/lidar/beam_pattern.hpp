@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// kMaxChannels is the maximum number of lidar beams per slot.
+/// kMaxChannels is the maximum number of lidar beams (channels) per slot; BeamPattern explains slots.
 inline constexpr int kMaxChannels = 16;
 
 /// ChannelFirings contains the firings of one channel in kLanes consecutive slots: origins and directions in the axes
@@ -20,20 +20,21 @@ struct ChannelFirings {
 };
 
 /// FiringBlock contains the firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast
-/// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. All kLanes lanes
-/// are filled, including lanes beyond `slots`.
+/// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. Lanes beyond the
+/// number of slots are also filled.
 struct FiringBlock {
-  std::int64_t first_slot = 0;  ///< counted from the start of the recording; the unique key of the random numbers
+  /// number of the slot since the start of the recording, from which the random numbers follow
+  std::int64_t first_slot = 0;
   int slots = 0;
-  std::array<std::int64_t, kLanes> start_ns{};      ///< true time since the start of the recording
+  std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording
   std::array<std::uint32_t, kLanes> reported_ns{};  ///< reported start of the slot since the start of the sweep
-  std::array<int, kLanes> cell{};                   ///< cell of the slot, see BeamPattern::cells()
+  std::array<int, kLanes> cell{};                   ///< direction cell of each slot, see BeamPattern::cells()
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// BeamPattern describes the firings of a lidar. A slot is a sequence of all channels (spinning), or an instant at
-/// which all units fire (rosette). Slot k starts at k times the slot period, also across sweeps, and belongs to the
-/// sweep in which it starts.
+/// BeamPattern describes the times and directions of a lidar's firings. A slot is one sequence of all channels
+/// (spinning lidar), or one instant at which all units fire (rosette). Slot k starts at k times the slot period,
+/// counted over all sweeps.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;
@@ -54,8 +55,8 @@ class BeamPattern {
   /// Fills in the firings of the slots `slot` to `slot + slots - 1` of a sweep, at most kLanes.
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Returns the number of direction cells that cover all slots, so that results can be precomputed per channel and
-  /// cell. Returns 0 if the pattern does not repeat.
+  /// Returns the number of direction cells. Each slot is in one cell, so that results can be precomputed per channel
+  /// and cell. Returns 0 if the pattern does not repeat.
   virtual int cells() const { return 0; }
   /// Returns the largest angle about the z axis of L between a firing in a cell and the firing at the cell's middle.
   virtual double cell_half_angle_rad() const { return 0.0; }
@@ -69,11 +70,11 @@ class BeamPattern {
   std::array<std::uint16_t, kMaxChannels> ring_{};
 };
 
-/// SpinningPattern is that of a spinning lidar: a column of lasers that rotates about the z axis. The azimuth is zero
-/// (along x of L) at the start of each sweep and increases clockwise seen from above. Channel c of sequence k fires at
-/// the time k P + c p, with the sequence period P and the firing period p. The beam of a channel leaves the mirror at
-/// the distance R1 from the axis and R2 below the origin. Ring numbers start at the lowest elevation. The timing and
-/// geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
+/// SpinningPattern is the pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
+/// azimuth is zero (along x of L) at the start of each sweep and increases clockwise seen from above. Channel c of
+/// sequence k fires at the time k P + c p, with the sequence period P and the firing period p. The beam of a channel
+/// leaves the mirror at the distance R1 from the axis and R2 below the origin. Ring numbers start at the lowest
+/// elevation. The timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -84,19 +85,19 @@ class SpinningPattern final : public BeamPattern {
 
  private:
   std::uint32_t reported_start_ns(std::int64_t sweep, std::int64_t slot) const;
-  /// Fills in the firings of all channels from the azimuth at the start of each lane's slot.
+  /// Fills in the firings of all channels. `azimuth_rad` is the azimuth at the start of each slot.
   void aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const;
 
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
   bool driver_stamp_fault_;
   std::array<double, kMaxChannels> cos_elevation_, sin_elevation_, cos_lag_,
-      sin_lag_;  ///< lag: azimuth since the start of the sequence
+      sin_lag_;  ///< sine and cosine of the azimuth since the start of the sequence
 };
 
-/// ColumnPattern is that of a lidar with a column of up to 128 evenly spaced rings that rotates about the z axis. A
-/// column fires in banks of 16 rings from bottom to top, evenly distributed over the column's period. Each bank of 16
-/// rings is one slot. All beams start at the origin of L. Elevations may rise by a fraction of the ring spacing from
-/// sweep to sweep, which approximates patterns that do not repeat.
+/// ColumnPattern is the pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers rotates
+/// about the z axis. A column fires in banks of 16 rings from bottom to top, evenly distributed over the column's
+/// period. Each bank of 16 rings is one slot. All beams start at the origin of L. Elevations may rise by a fraction of
+/// the ring spacing from sweep to sweep, which approximates patterns that do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);
@@ -106,10 +107,10 @@ class ColumnPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, lowest_rad_, spacing_rad_, shift_share_;
 };
 
-/// RosettePattern is that of a rosette lidar: two prisms rotating at constant rates refract a beam, for one or several
-/// units with different yaw. With y/x and z/x of the beam, y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1
-/// - w2) t), where t is the time since the start of the recording. The ring number is the number of the unit, from
-/// right (negative yaw) to left. All units share the origin of L.
+/// RosettePattern is the pattern of a rosette lidar with one or several units in different directions. In each unit,
+/// two prisms that rotate at constant rates deflect the beam. At the time t since the start of the recording, the
+/// direction (x, y, z) of the beam satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The
+/// ring number is the number of the unit, from right (negative yaw) to left. All units share the origin of L.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);
@@ -118,7 +119,7 @@ class RosettePattern final : public BeamPattern {
  private:
   struct Term {
     double amplitude, rate_rad_ns;
-    std::array<double, kLanes> cos_lag, sin_lag;  ///< phase since the first slot of the block
+    std::array<double, kLanes> cos_lag, sin_lag;  ///< phase of the prisms since the first slot of the block
   };
   std::array<Term, 3> terms_;
   std::array<double, 3> cos_yaw_, sin_yaw_;

@@ -11,24 +11,24 @@ namespace tumble::sim {
 /// kMaxBeamRays is the maximum number of rays per beam.
 inline constexpr int kMaxBeamRays = 16;
 
-/// Echoes contains the echoes that determine the measured ranges of beams of finite width; one lane per firing.
+/// Echoes contains for each firing (lane) the echo of a beam of finite width from which the device measures the range.
 struct Echoes {
-  RayPacket packet;  ///< range of the echo; reflectivity and cosine as for a single surface with that echo
+  RayPacket packet;  ///< range of the echo; reflectivity and cosine of a single surface with equal energy
   alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes
 };
 
-/// BeamSpread models a finite beam width by a fixed pattern of rays, each with an equal part of the ellipse's area
-/// (Vogel, Mathematical Biosciences 44, 1979). Each ray returns an energy of reflectivity times cosine of incidence,
-/// divided by the range squared. Hits whose ranges differ by less than the length of the echo merge into one echo. The
-/// measured range is the energy-weighted mean of the ranges in the strongest echo. A beam across an edge therefore
-/// returns a range between the two surfaces, or the range of one surface if the surfaces are farther apart. The surface
-/// id and the exact hit belong to the ray with the most energy. The model excludes an intensity profile over the beam,
-/// and several returns per firing.
+/// BeamSpread models a beam of finite width as a fixed pattern of rays, which divide the beam's elliptical
+/// cross-section into equal areas (Vogel, Mathematical Biosciences 44, 1979). Each ray returns an energy of
+/// reflectivity times cosine of incidence, divided by the range squared. Hits whose ranges differ by less than the
+/// length of the echo merge into one echo. The measured range is the energy-weighted mean of the ranges in the
+/// strongest echo. A beam across an edge therefore returns a range between the two surfaces, or the range of one
+/// surface if the surfaces are farther apart. The surface id and the exact hit are those of the ray with the most
+/// energy. The model excludes an intensity profile over the beam, and several returns per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);
 
-  int rays() const { return rays_; }  ///< 1: off
+  int rays() const { return rays_; }  ///< number of rays per beam; 1: no beam width
   /// Returns the firings along ray `k` of the beams whose axes are `axis`.
   void bend(const ChannelFirings& axis, int k, ChannelFirings& firings) const;
   /// Merges the hits of all rays into one echo per lane.

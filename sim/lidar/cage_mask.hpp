@@ -9,10 +9,10 @@
 
 namespace tumble::sim {
 
-/// CageMask precomputes which firings of a repeating pattern may hit the robot's own cage. The cage mask saves time
-/// because the cage is rigidly attached to the lidar and most firings miss it. The cage mask has no false negatives: it
-/// casts the beam at the middle of each cell against widened shapes. The shapes are widened by the largest distance
-/// between a beam of the cell and the middle beam.
+/// CageMask precomputes which firings of a repeating pattern may hit the robot's own cage. The cage is rigidly attached
+/// to the lidar, and most firings miss it, so the mask saves time. The mask contains every firing that hits the cage.
+/// The mask tests the beam at the middle of each direction cell against enlarged shapes, which cover all other beams of
+/// the cell.
 class CageMask {
  public:
   /// `cage` is in the axes of the lidar frame L. For a pattern that does not repeat, every firing may hit the cage.
@@ -29,7 +29,7 @@ class CageMask {
  private:
   bool is_empty_;
   int cells_;
-  std::vector<std::uint8_t> meets_;  ///< by channel, then by cell
+  std::vector<std::uint8_t> meets_;  ///< bit per channel and cell, channel by channel
 };
 
 }  // namespace tumble::sim

@@ -15,15 +15,15 @@ struct LaneNoise {
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 
-/// LaneNoiseSource draws random numbers for sixteen lanes at a time. Philox 4x32-10 and Box-Muller (1958) are written
-/// as loops over lanes, in single precision and without calls, so that the compiler vectorises the loops. The random
-/// numbers depend only on (stream, index, lane).
+/// LaneNoiseSource draws random numbers for sixteen lanes at a time. The compiler vectorises the loops over lanes,
+/// which compute Philox 4x32-10 and Box-Muller (1958) in single precision. The random numbers depend only on (stream,
+/// index, lane).
 class LaneNoiseSource {
  public:
-  /// The random key is a block of the stream that draw() never uses.
+  /// Constructs from a random stream. The key of the source is a block of the stream that draw() does not use.
   explicit LaneNoiseSource(const Stream& stream);
 
-  /// `index` identifies the packet; must be below 2^61.
+  /// Draws the random numbers of the packet `index`, which must be below 2^61.
   void draw(std::uint64_t index, LaneNoise& noise) const;
 
  private:

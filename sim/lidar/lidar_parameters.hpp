@@ -11,13 +11,13 @@ namespace tumble::sim {
 /// first.
 inline constexpr int kSpinningChannels = 16;
 
-/// Parameters of a lidar whose column of lasers rotates about the z axis of L (RoboSense RS-16).
+/// Returns the parameters of a lidar with a column of lasers that rotates about the z axis of L (RoboSense RS-16).
 std::span<const Parameter> spinning_lidar_parameters();
 
-/// Parameters of a lidar with a column of many evenly spaced rings (Ouster, Hesai, RoboSense Helios).
+/// Returns the parameters of a lidar with a column of many evenly spaced rings (Ouster, Hesai, RoboSense Helios).
 std::span<const Parameter> column_lidar_parameters();
 
-/// Parameters of a lidar with a rosette pattern and one or several adjacent units (Livox Mid-40, Mid-100).
+/// Returns the parameters of a lidar with a rosette pattern and one or several adjacent units (Livox Mid-40, Mid-100).
 std::span<const Parameter> rosette_lidar_parameters();
 
 }  // namespace tumble::sim

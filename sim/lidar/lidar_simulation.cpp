@@ -22,8 +22,8 @@ void append(const std::vector<T>& from, std::size_t count, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// Reserves memory for every firing, so that points are never moved. Memory pages without returns need no physical
-/// memory.
+/// Reserves memory for one point per firing, so that points are never moved. Firings without a hit leave memory unused,
+/// which needs no physical memory.
 void reserve(std::size_t points, LidarRecord& record, LidarTruth& truth) {
   record.position_L_m.reserve(points);
   record.range_m.reserve(points);
@@ -54,8 +54,8 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;
 }
 
-/// Delivery decides for each sweep in turn whether the device delivers it: a sweep may be lost or start before the
-/// device.
+/// Delivery decides for each sweep in turn whether the device delivers the sweep. Sweeps before the start of the
+/// device, and random sweeps, are lost.
 class Delivery {
  public:
   Delivery(const SensorSpec& sensor, std::uint64_t seed)

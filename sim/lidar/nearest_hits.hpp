@@ -5,7 +5,7 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// NearestHits stores the nearest hits found so far for a packet of rays.
+/// nearest_hits.hpp finds the nearest of several hits for each ray of a packet.
 namespace tumble::sim {
 
 /// NearestHits computes the nearest hit of each lane with arithmetic that is identical on every CPU. Among hits at
@@ -14,7 +14,7 @@ class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
 
-  /// Starts without hits, and ignores hits beyond the maximum ranges of the rays.
+  /// Constructs without hits. NearestHits ignores hits beyond the maximum range of a ray.
   explicit NearestHits(const RayPacket& packet);
 
   bool is_replaced(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {

@@ -8,9 +8,9 @@ namespace tumble::sim {
 
 namespace {
 
-// kSure gives two limits of the signal that avoid the power function for most returns. If the uniform random number is
-// below kSure, a return is kept from the signal sure_signal_ on. From the signal certain_signal_ on, a return is always
-// kept, because the loss probability is below the resolution of the random numbers.
+// Two signal limits avoid the power function for most returns. Above sure_signal_, a return is kept if its uniform
+// random number is below kSure. Above certain_signal_, a return is always kept, because its loss probability is below
+// the resolution of the random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
@@ -40,11 +40,11 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // if the return survived the random loss, the rescaled random number is again uniform
+  // the random number of a return that is not lost at random, divided by kept_share_, is again uniform
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);
-  // the odds overflow to infinity for a return that cannot be missed
+  // the odds overflow to infinity for a return that is never lost
   return u < 1.0 - 1.0 / (1.0 + odds);
 }
 

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Returns contains the device's measurements of sixteen exact hits; values are valid only if `kept` is set.
+/// Returns contains the measurements of sixteen exact hits. A measurement is valid only if `kept` is set.
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];
@@ -25,7 +25,8 @@ class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);
 
-  /// The returns depend only on seed, name, `index` (unique per packet) and hits.
+  /// Computes the returns of a packet of exact hits. The result depends only on seed, name, `index` (unique per packet)
+  /// and hits.
   void apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const;
 
  private:

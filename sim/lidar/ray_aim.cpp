@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Shares contains the elapsed fraction of an interval at each lane, and the resulting weights of the interval's
-/// rotations.
+/// Shares contains for each lane the elapsed fraction of an interval of the motion, and the weights for interpolating
+/// the pose.
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
-  alignas(64) double within[kLanes];  ///< 1 from the interval's first lane on, 0 before
+  alignas(64) double within[kLanes];  ///< 1 from the first lane of the interval on, 0 before
 };
 
 [[gnu::target("avx2")]] void weigh(const TrackCursor::Interval& now, Shares& shares) {
@@ -36,8 +36,8 @@ struct Shares {
   }
 }
 
-/// Computes one number of the lidar's pose (an entry of rotation or position) and its time derivative, for the lanes
-/// within the interval.
+/// Computes one entry of the lidar's rotation or position, and its time derivative, for the lanes within an interval of
+/// the motion.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
   const double start = now.start(row, column), turned = now.turned(row, column), twice = now.rotated_twice(row, column);
@@ -87,7 +87,7 @@ void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, Tr
     const TrackCursor::Interval& now = track.interval(middle_ns(from));
     Shares shares;
     for (int s = 0; s < kLanes; ++s) {
-      // the next interval overwrites lanes beyond this interval
+      // lanes beyond this interval are computed again with the next interval
       shares.within[s] = s >= from ? 1.0 : 0.0;
       shares.share[s] = now.share(middle_ns(std::max(s, from)));
     }

@@ -8,8 +8,8 @@ namespace tumble::sim {
 
 /// BlockPoses computes the lidar's pose for a block of firings, and converts firings to world rays, each at its own
 /// firing time. Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s,
-/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. A slot that contains a sample of the motion, where the rate
-/// changes, has one pose per firing.
+/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. At a sample of the motion, the rate changes, so a slot that
+/// contains a sample has one pose per firing.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
@@ -25,7 +25,7 @@ class BlockPoses {
 
   alignas(64) double pose_[kPose][kLanes], rate_[kPose][kLanes];
   int broken_count_ = 0;
-  int broken_lane_[kLanes];  ///< slots that contain a change of rate
+  int broken_lane_[kLanes];  ///< lanes of the slots in which the rate changes
   Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 

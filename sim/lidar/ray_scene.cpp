@@ -37,15 +37,15 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges only select
-/// candidates: the code examines all faces within the factor kReach of the nearest hit.
+/// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges therefore only
+/// select candidates: faces within the factor kReach of the nearest hit are compared again.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
   std::int32_t surface_id = kNothing;
   float reflectivity = 0.0f;
   bool as_quads = false;
-  const float* vertices = nullptr;  ///< points into Embree's buffers
+  const float* vertices = nullptr;  ///< points into the buffers of Embree
   const std::uint32_t* faces = nullptr;
 
   Vector3f corner(std::uint32_t face, std::uint32_t i) const {
@@ -53,8 +53,8 @@ struct MeshLabel {
   }
 };
 
-/// CastContext is the data of the callbacks; Embree passes the address of the first member. The id of a ray contains
-/// the index of its lane.
+/// CastContext contains the data for the callback functions, which receive the address of its first member from Embree.
+/// The id of a ray is the index of its lane.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -104,7 +104,7 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
           Vector3d(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// Computes the range at which a ray meets the plane of a face that Embree reported, and the normal of the plane (any
+/// Computes the range at which a ray meets the plane of a face that Embree reported, and a normal of the plane (of any
 /// length). For a quad, `second_half` selects the half through which the ray passes. Embree's approximate reciprocal is
 /// accurate enough for this selection, because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
@@ -119,7 +119,7 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
     const bool in_second =
         beside_first == beside_second ? second_half : (across.dot(ray.direction) >= 0.0) == beside_second;
     if (in_second)
-      a = d;  // (d, b, c) has the same orientation
+      a = d;  // the triangle (d, b, c) has the same orientation
     else
       c = d;
   }
@@ -127,7 +127,8 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   return normal.dot(a) / normal.dot(ray.direction);
 }
 
-/// Embree calls this filter for every hit within a ray's reach, in unspecified order.
+/// Keeps the nearest hit of each ray. Embree calls this filter for every hit within the range of a ray, in unspecified
+/// order.
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -146,7 +147,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Embree always passes eight rays, because only packets are cast; some rays may be inactive.
+/// Intersects eight rays with one shape. Embree always passes eight rays; some rays may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
@@ -180,9 +181,9 @@ bool approach_shape(RTCPointQueryFunctionArguments* args) {
 struct RayScene::Impl {
   DevicePtr device;
   ScenePtr scene;
-  std::vector<SceneShape> bounded;    ///< behind geometry `shape_geometry`, in the order of primitives
+  std::vector<SceneShape> bounded;    ///< shapes of the geometry `shape_geometry`, in the order of its primitives
   std::vector<SceneShape> unbounded;  ///< infinite planes
-  std::vector<MeshLabel> meshes;      ///< by Embree geometry id
+  std::vector<MeshLabel> meshes;      ///< meshes, indexed by Embree's geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
   void add_mesh(const SceneMesh& mesh);
@@ -213,7 +214,7 @@ void RayScene::Impl::add_mesh(const SceneMesh& part) {
   rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
   rtcCommitGeometry(geometry);
   const unsigned int id = rtcAttachGeometry(scene.get(), geometry);
-  rtcReleaseGeometry(geometry);  // the scene keeps a reference to it and its buffers
+  rtcReleaseGeometry(geometry);  // the scene keeps a reference to the geometry and its buffers
   meshes.resize(std::max<std::size_t>(meshes.size(), id + 1), MeshLabel{});
   meshes[id] = {part.surface_id, part.reflectivity, as_quads,
                 static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)),

@@ -42,7 +42,8 @@ class HeightField {
   const float* data_;
 };
 
-/// Returns two triangles per cell, cut along the diagonal from (row, column) to (row + 1, column + 1), as in MuJoCo.
+/// Returns the upper surface of a height field. Each cell of the grid consists of two triangles, cut along the diagonal
+/// from (row, column) to (row + 1, column + 1), as in MuJoCo.
 TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) {
   TriangleMesh mesh;
   mesh.vertices_F_m.reserve(static_cast<std::size_t>(field.rows()) * field.columns());
@@ -63,7 +64,8 @@ TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) 
   return mesh;
 }
 
-/// Adds a wall from the edge of the height field down to height zero, over the nodes `from`, `from` + `step`, ...
+/// Adds a vertical wall from an edge of the height field down to height zero, over the nodes `from`, `from` + `step`
+/// and so on.
 void append_wall(const HeightField& field, const Isometry3d& T_FS, int row, int column, int row_step, int column_step,
                  TriangleMesh& mesh) {
   const int count = row_step != 0 ? field.rows() : field.columns();

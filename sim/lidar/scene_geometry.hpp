@@ -39,8 +39,8 @@ struct SceneGeometry {
   std::vector<SceneMesh> meshes;
 };
 
-/// HeightFieldSides selects the triangles of a height field: only the top, or closed by the side walls and base box
-/// that mj_ray also hits.
+/// HeightFieldSides selects the surfaces of a height field: `open` is only the top; `closed` adds the side walls and
+/// the base, which mj_ray also hits.
 enum class HeightFieldSides { open, closed };
 
 /// Returns the geoms of engine::World::surface_geom in world axes; the surface id of a geom is its index in
@@ -48,11 +48,11 @@ enum class HeightFieldSides { open, closed };
 /// mj_ray). Throws InvalidSituation for a geom type whose surface is not supported (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. A primitive that
-/// contains the origin of L is the housing of the lidar or a shell around it, and is transparent.
+/// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. The function omits
+/// primitives that contain the origin of L (housing of the lidar, or a shell around it), because they are transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
-/// Returns the pose of a geom in W by the current kinematics of the data.
+/// Returns the pose of a geom in W from the current state in `data`.
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
 /// Adds the surface of one geom; `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a geom type
@@ -61,8 +61,7 @@ void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, 
                  HeightFieldSides sides, SceneGeometry& scene);
 
 /// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its
-/// texture, limited to 0.05..0.95. The visible colour approximates the reflectivity at 905 nm, which differs for real
-/// surfaces.
+/// texture, limited to 0.05..0.95. The reflectivity of real surfaces at 905 nm differs from that of visible light.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

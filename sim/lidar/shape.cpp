@@ -16,8 +16,8 @@ struct Roots {
   double first, second;
 };
 
-/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. The function returns NaN if there are no real
-/// solutions, so that comparisons are false.
+/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. Without real solutions, the result is NaN, so
+/// that comparisons are false.
 Roots solve_quadratic(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0) || !(a > 0.0)) return {std::nan(""), std::nan("")};

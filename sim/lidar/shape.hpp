@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-/// Shape is an analytic surface of one of MuJoCo's primitive geoms.
+/// shape.hpp computes rays and distances for MuJoCo's primitive shapes.
 namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
@@ -25,13 +25,15 @@ struct Shape {
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
-/// Returns the distance of a point on either side to the surface [m]; exact except for the ellipsoid (1e-9 relative).
+/// Returns the distance of a point, inside or outside, from the surface [m]. The relative error is at most 1e-9, for an
+/// ellipsoid.
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
 /// Returns whether a point is inside the shape; always false for a plane.
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Returns the half sizes of the shape's bounding box along S; infinite along an unbounded plane.
+/// Returns the half sizes of the shape's bounding box along its axes S. The half size along an unbounded plane is
+/// infinite.
 Eigen::Vector3d half_extent(const Shape& shape);
 
 }  // namespace tumble::sim

@@ -45,10 +45,10 @@ struct LocalRays {
   }
 }
 
-/// Computes the hit by the slab method (Kay and Kajiya, SIGGRAPH 1986): the last side through which the ray enters, or,
-/// from inside, the first side through which the ray leaves.
+/// Computes the hits on a box by the slab method (Kay and Kajiya, SIGGRAPH 1986). A ray hits the last slab that it
+/// enters or, from inside, the first slab that it leaves.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
-  // axis numbers have the width of the lanes, so that the compiler selects ranges and axis numbers with equal masks
+  // axis numbers are doubles like the ranges, so that the compiler uses equal vector masks for both
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];
   for (int i = 0; i < kShapeLanes; ++i) {

@@ -22,8 +22,8 @@ struct ShapeRays {
   const float *direction_x, *direction_y, *direction_z;  ///< unit vectors
 };
 
-/// Computes the result of cast_ray() for eight rays, bit-identically. For planes and boxes, which form the walls of
-/// rooms, the function computes all rays at once. The hits of rays whose `wanted` is 0 are undefined.
+/// Computes the result of cast_ray() for eight rays, bit-identically. Planes and boxes (walls of rooms) are computed
+/// for all rays at once. The hit of a ray is undefined if its entry of `wanted` is 0.
 void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);
 
 }  // namespace tumble::sim

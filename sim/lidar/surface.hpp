@@ -10,11 +10,11 @@
 
 namespace tumble::sim {
 
-/// Surface is the true surface of a situation's static world, which gives distances for the scoring of maps.
+/// Surface is the true surface of a situation's static world. The error of a map is the distance of its points from
+/// Surface.
 class Surface {
  public:
-  /// Copies the static geoms of the world to a scene for rays, without composing the world again. Throws
-  /// InvalidSituation for a geom without a surface.
+  /// Constructs from the static geoms of a compiled world. Throws InvalidSituation for a geom without a surface.
   explicit Surface(const BuiltSituation& built);
   ~Surface();
   Surface(Surface&&) noexcept;

@@ -120,7 +120,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // the cage mask considers only beam axes, so every ray next to an axis is cast against the cage
+        // the cage mask is valid only for the axis of a beam, so all other rays of the beam are cast against the cage
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -40,7 +40,7 @@ class SweepCaster {
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
   /// Casts sweep `number` of the recording; the result depends only on the motion and the seed. The function allocates
-  /// no memory once `points` has room.
+  /// memory only if `points` is too small.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 
  private:

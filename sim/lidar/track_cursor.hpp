@@ -17,13 +17,13 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the
 /// body's position is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5
 /// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. After the last motion
-/// sample, TrackCursor extrapolates the last interval. The current interval is cached, so that ascending times are
-/// fast.
+/// sample, TrackCursor extrapolates the last interval. Calls with ascending times are fast, because TrackCursor keeps
+/// the current interval.
 class TrackCursor {
  public:
   /// Interval is the time between two samples of the motion. At the fraction `x` of the interval, the body has rotated
-  /// by the angle a = x |turn| [rad]. With first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2, the pose is start +
-  /// first turned + second rotated_twice + x step_m (Rodrigues: exp(x K) = I + first K + second K^2).
+  /// by the angle a = x |turn| [rad]. The pose is start + first turned + second rotated_twice + x step_m, with first =
+  /// x sin(a)/a and second = x^2 (1 - cos(a))/a^2 (Rodrigues: exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
@@ -35,8 +35,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. The limit
-  /// corresponds to 0.02 rad, or 40 rad/s over 0.5 ms.
+  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. kSmall2 is the
+  /// square of 0.02 rad, which is 40 rad/s over 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));

@@ -19,8 +19,9 @@ struct HandHeldPose {
 /// numerically, so its velocity must be continuous.
 using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
-/// Returns the wrench of a hand that carries a robot along a path: the path's feed-forward force, a spring and a
-/// damper. The hand has no body in the simulation. `inertia_B_kg_m2` is about the centre of mass, in B axes.
+/// Returns the wrench (force and torque) of a hand that carries a robot along a path. The wrench is that of the path's
+/// acceleration, plus a spring and a damper. The hand has no body in the simulation. `inertia_B_kg_m2` is about the
+/// centre of mass, in B axes.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path);
 

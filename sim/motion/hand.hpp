@@ -10,7 +10,7 @@
 
 namespace tumble::sim {
 
-/// Reference is the target position of the hand for the geometric centre of a sphere.
+/// Reference is the position to which the hand pulls the geometric centre of a sphere.
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
@@ -54,13 +54,13 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// Hand moves a sphere with a horizontal force at the sphere's centre. The force of the hand follows a reference
-/// position (spring, damper, and feed-forward force of rolling) with tremor; floor patches with different friction
-/// cause bursts of torque. The hand applies no vertical force and has no body in the simulation.
+/// Hand moves a sphere with a horizontal force at the sphere's centre. The force pulls the sphere to a moving reference
+/// position (spring, damper, and feed-forward force of rolling), with tremor. On floor patches with different friction,
+/// the hand adds bursts of torque. The hand applies no vertical force and has no body in the simulation.
 class Hand {
  public:
-  /// Error messages of the constructor start with `motion`. Throws InvalidSituation if the robot is not a sphere.
-  /// `world` must outlive the hand.
+  /// Constructs the hand of a motion. Error messages start with the name `motion`. Throws InvalidSituation if the robot
+  /// is not a sphere. `world` must outlive the hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }

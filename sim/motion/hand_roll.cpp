@@ -20,15 +20,15 @@ constexpr std::array kHandRollParameters = with_hand(std::array{
     Parameter{"pause_s", 0.3, 0.0, 30.0, "s", "duration of the stop between the legs"},
 });
 
-/// Leg is a straight path of minimum jerk from rest to rest, of length L with time fraction u: s = L (10 u^3 - 15 u^4 +
-/// 6 u^5); the peak speed is 15/8 of the mean speed.
+/// Leg is a straight path of length L with minimum jerk, from rest to rest. At the fraction u of its time, the covered
+/// distance is s = L (10 u^3 - 15 u^4 + 6 u^5). The peak speed is 15/8 of the mean speed.
 class Leg {
  public:
   Leg(const Eigen::Vector3d& along_m, double speed_m_s, double start_s)
       : along_m_(along_m), start_s_(start_s), length_s_(1.875 * along_m.norm() / speed_m_s) {}
   double end_s() const { return start_s_ + length_s_; }
 
-  /// Adds the part of the path that is covered at `time_s`.
+  /// Adds to `reference` the part of the path that is covered at `time_s`.
   void add_to(double time_s, Reference& reference) const {
     if (length_s_ <= 0.0) return;
     const double u = std::clamp((time_s - start_s_) / length_s_, 0.0, 1.0);

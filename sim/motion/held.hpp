@@ -22,7 +22,10 @@ class HoldingHand {
   Wrench hold(const BodyState& state) const;
   Eigen::Vector3d weight_n() const { return weight_n_; }  ///< force that carries the robot
   double mass_kg() const { return mass_kg_; }
-  const Eigen::Matrix3d& inertia_W_kg_m2() const { return inertia_W_kg_m2_; }  ///< for the attitude in which it is held
+  const Eigen::Matrix3d& inertia_W_kg_m2() const {
+    return inertia_W_kg_m2_;
+    /// moment of inertia for the attitude in which the robot is held
+  }
 
  private:
   BodyState start_;

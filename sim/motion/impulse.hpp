@@ -20,8 +20,8 @@ inline constexpr std::array kImpulseParameters = {
               "angular velocity change by the push about the vertical (angular impulse over inertia)"},
 };
 
-/// Returns the linear and angular impulse in world axes [N s, N m s] that gives a body at rest the horizontal velocity
-/// `velocity_m_s`, the upward velocity `lift_m_s`, and the three spins.
+/// Returns the linear and angular impulse in world axes [N s, N m s] that starts the motion of a body at rest. The
+/// motion has the horizontal velocity `velocity_m_s`, the upward velocity `lift_m_s`, and the three spins in `values`.
 Wrench whole_impulse(const Values& values, double mass_kg, const Eigen::Matrix3d& inertia_W_kg_m2);
 
 }  // namespace tumble::sim

@@ -10,16 +10,15 @@
 
 namespace tumble::sim {
 
-/// Motion is the cause of a robot's motion: its start pose and the wrench that acts on it. A Motion never sets
-/// velocities directly, because accelerometers would not measure a jump of the velocity.
+/// Motion causes the motion of a robot by a start pose and a wrench (force and torque). A Motion never sets a velocity,
+/// because the simulated accelerometers would not measure the jump.
 class Motion {
  public:
   virtual ~Motion() = default;
   /// Returns the pose at rest just above the ground, from which the robot settles under gravity before the recording
   /// starts.
   virtual BodyState start() const = 0;
-  /// Returns the wrench from `state.time_s` to the next step. At negative times, the robot settles before the recording
-  /// starts.
+  /// Returns the wrench from `state.time_s` to the next step. Before time 0, the robot settles into its contacts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 

@@ -37,8 +37,8 @@ Nodes corner(const PathPlan& plan, int count) {
   return nodes;
 }
 
-/// Returns nodes of Gerono's lemniscate, starting at its crossing point. The caller scales the nodes to the requested
-/// length.
+/// Returns nodes of Gerono's lemniscate, starting at its crossing point. The caller must scale the nodes to the
+/// requested length.
 Nodes eight(int count) {
   Nodes nodes;
   for (int i = 0; i <= count; ++i) {
@@ -48,8 +48,8 @@ Nodes eight(int count) {
   return nodes;
 }
 
-/// Returns a free path, whose heading is a sum of slow sinusoids. The free path bends to both sides, and the shortest
-/// sinusoid limits its curvature.
+/// Returns a random path whose heading is a sum of slow sinusoids. The path bends to both sides, and the shortest
+/// wavelength limits its curvature.
 Nodes free_path(const PathPlan& plan, int count, Stream& stream) {
   struct Bend {
     double turns, phase_rad, amplitude_rad;

@@ -19,10 +19,11 @@ inline constexpr int kPathShapes = 4;
 
 struct PathPlan {
   PathShape shape = PathShape::line;
-  double length_m = 1.0;       ///< along the path; for the line without its sway
-  double heading_rad = 0.0;    ///< rotation of the path about the vertical
-  double sway_m = 0.0;         ///< line only: amplitude, which fades over the first and last half metre
-  double sway_length_m = 4.0;  ///< line only: wavelength
+  double length_m = 1.0;     ///< length along the path; for a line, without its sway
+  double heading_rad = 0.0;  ///< rotation of the path about the vertical
+  /// line only: amplitude of the lateral sway, which fades over the first and last half metre
+  double sway_m = 0.0;
+  double sway_length_m = 4.0;  ///< line only: wavelength of the lateral sway
 };
 
 /// Returns nodes of the path about 5 mm apart; the centre of their bounding box is at the origin. Only the free path

@@ -43,12 +43,12 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// Stroke is one twist of the wrist or the fingers, from rest to rest; the rate is a sin^2 pulse.
+/// Stroke is one twist of the wrist or the fingers, from rest to rest, with a rate in the form of a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
 
-  /// Returns the angle that the twist has covered at `time_s`, in closed form.
+  /// Returns the angle by which the twist has rotated the robot at `time_s`.
   double angle_rad(double time_s) const {
     constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
@@ -73,8 +73,8 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
 }
 
 /// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke. A spring and a
-/// damper keep the robot on the intended path, with the path's feed-forward forces. The hand has no body in the
-/// simulation.
+/// damper keep the robot on the intended path, in addition to the forces that the path's acceleration needs. The hand
+/// has no body in the simulation.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -124,7 +124,7 @@ class Twirl : public Motion {
   Eigen::Vector3d grip_B_m_;
   Eigen::Matrix3d inertia_B_kg_m2_;
   std::vector<Stroke> strokes_;
-  std::vector<Tremor> rotations_, positions_;  ///< about x, z and y; along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< rotations about x, z and y; displacements along x, y and z
 };
 
 std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& world) {

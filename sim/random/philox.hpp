@@ -6,8 +6,8 @@
 
 namespace tumble::sim {
 
-/// Computes Philox 4x32 with ten rounds, a bijection of the counter under a key (Salmon, Moraes, Dror, Shaw, "Parallel
-/// random numbers: as easy as 1, 2, 3", SC 2011, section 4.3).
+/// Computes a random block from a counter and a key by Philox 4x32 with ten rounds (Salmon, Moraes, Dror, Shaw,
+/// "Parallel random numbers: as easy as 1, 2, 3", SC 2011, section 4.3).
 constexpr std::array<std::uint32_t, 4> philox4x32_10(std::array<std::uint32_t, 4> counter,
                                                      std::array<std::uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {

@@ -31,7 +31,7 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 }  // namespace
 
 Stream::Stream(std::uint64_t seed, std::string_view name) {
-  // The Philox key has 64 bits, but seed and name hash have 128 bits. One Philox block combines seed and name hash, so
+  // The Philox key has 64 bits, but the seed and the hash of the name have 128 bits. One Philox block combines both, so
   // that similar seeds and names give unrelated keys.
   const std::uint64_t hash = fnv1a(name);
   const auto folded = philox4x32_10({static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0, 0},

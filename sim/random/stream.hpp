@@ -8,8 +8,8 @@
 namespace tumble::sim {
 
 /// Stream is a named, independent stream of random numbers: `Stream(seed, "imu.noise")`. The stream is counter-based
-/// (Philox 4x32-10, Salmon et al., SC 2011): any number is available without the numbers before it, independent of
-/// threads and order. The distributions are implemented here, because those of standard libraries differ.
+/// (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on threads and order. Stream
+/// implements its distributions, because those of standard libraries differ.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

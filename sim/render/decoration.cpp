@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFieldGrid_m = 1.0, kFieldStep_m = 0.2, kPlaneGrid_m = 0.5, kPlaneHalf_m = 10.0;
-constexpr double kLift_m = 0.012;  // height above the surface, so that lines are not hidden by it
+constexpr double kLift_m = 0.012;  // height of lines above the surface, which would otherwise hide them
 constexpr float kGridColour[4] = {0.12f, 0.14f, 0.10f, 0.30f};
 constexpr double kGridPixels = 2.0;
 constexpr std::size_t kManyPoints = 4000;
@@ -48,8 +48,8 @@ double field_height_m(const mjModel& model, int field, double x_m, double y_m) {
          ((1 - b) * ((1 - a) * data[0] + a * data[1]) + b * ((1 - a) * data[columns] + a * data[columns + 1]));
 }
 
-/// Draws lines along both axes of a rectangle, at `height(x, y)` above its plane; calls `line(from, to)` for every
-/// segment.
+/// Calls `line(from, to)` for every segment of grid lines along both axes of a rectangle, at `height(x, y)` above its
+/// plane.
 template <typename Height, typename Line>
 void drape(double half_x_m, double half_y_m, double grid_m, double step_m, const Height& height, const Line& line) {
   for (const int axis : {0, 1}) {
@@ -107,7 +107,7 @@ void add_paths(const View& view, mjvScene& scene) {
     const Vector3d* from = nullptr;
     for (const Vector3d& to : path.points_W_m) {
       if (!to.allFinite()) {
-        from = nullptr;  // a gap in the path
+        from = nullptr;  // the path has a gap
         continue;
       }
       if (from == nullptr) {
@@ -118,7 +118,7 @@ void add_paths(const View& view, mjvScene& scene) {
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());
-        geom->emission = 0.35f;  // visible in its own colour in the shade
+        geom->emission = 0.35f;  // the path keeps its colour in the shade
         geom->specular = 0.0f;
       }
       from = &to;

@@ -4,8 +4,8 @@
 #include "sim/engine/model.hpp"
 #include "sim/render/renderer.hpp"
 
-/// decoration.hpp adds grid lines, paths and point clouds to a picture's MuJoCo scene. Callers must count the
-/// decoration's geoms first, because adding to a full scene is a programming error.
+/// decoration.hpp adds grid lines, paths and point clouds to a picture's MuJoCo scene. The caller must provide enough
+/// geoms in the scene, see decoration_size().
 namespace tumble::sim {
 
 /// Returns the maximum number of MuJoCo geoms that the decoration of a view uses.

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNear_m = 1.0;  // paths within this distance plus a quarter of the robots' extent are framed with them
+// paths within this distance plus a quarter of the robots' extent are kept in the picture
+constexpr double kNear_m = 1.0;
 
 struct Ball {
   Vector3d centre_W_m;
@@ -25,7 +26,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
     balls.push_back({T_WB.translation(), robot_radius_m});
     near.extend(T_WB.translation());
   }
-  // a diverged estimate must not make the robots tiny: if there are robots, distant paths do not influence the framing
+  // if there are robots, the framing ignores distant paths, because a diverged estimate must not make the robots tiny
   if (!near.isEmpty()) {
     const Vector3d margin = Vector3d::Constant(kNear_m + 0.25 * near.diagonal().norm());
     near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);
@@ -35,7 +36,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // point clouds are maps, which are much larger than the motion, so they count only if the view has no robot or path
+  // maps (point clouds) are much larger than the motion, so they count only if the view has neither robot nor path
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});
@@ -48,7 +49,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
 }  // namespace
 
 Framing frame(const View& view, double robot_radius_m, double fovy_rad) {
-  constexpr double kMargin = 0.82;     // share of the picture's half width and height that the content may use
+  constexpr double kMargin = 0.82;     // fraction of the picture's half width and height that the content may use
   constexpr double kSmallest_m = 1.2;  // minimum size, so that the surroundings stay visible
   constexpr double kOverview_m = 25.0;
   const std::vector<Ball> balls = content(view, robot_radius_m);

@@ -13,7 +13,7 @@ struct Framing {
   double distance_m;
 };
 
-/// Returns the framing that the view states, or a framing that keeps the view's paths and robots within the picture.
+/// Returns the camera pose that the view states, or a camera pose that shows all paths and robots of the view.
 /// `robot_radius_m` is the space around a robot's origin; `fovy_rad` is the vertical field of view.
 Framing frame(const View& view, double robot_radius_m, double fovy_rad);
 

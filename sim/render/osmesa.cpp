@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Programs that link with OSMesa request this library name, which identifies the binary interface of OSMesa's header.
+/// Name of the shared library whose binary interface matches OSMesa's header.
 constexpr const char* kLibrary = "libOSMesa.so.8";
 
 [[noreturn]] void fail() {
@@ -38,7 +38,7 @@ OsMesa load() {
 }  // namespace
 
 const OsMesa& osmesa() {
-  static const OsMesa kLoaded = load();  // if loading throws, the next call tries again
+  static const OsMesa kLoaded = load();  // if load() throws, the next call tries again
   return kLoaded;
 }
 

@@ -5,8 +5,8 @@
 
 namespace tumble::sim {
 
-/// OsMesa contains the functions of the library OSMesa, which is loaded when the first picture is rendered. OSMesa
-/// loads LLVM, which would make the start of every program a third longer (docs/figures.md).
+/// OsMesa contains the functions of the library OSMesa, which is loaded when the first picture is rendered. Loading
+/// OSMesa (with LLVM) at the start would make the start of every program a third longer (docs/figures.md).
 struct OsMesa {
   decltype(&::OSMesaCreateContextExt) create_context;
   decltype(&::OSMesaDestroyContext) destroy_context;

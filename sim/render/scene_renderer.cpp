@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadPerDegree = 0.017453292519943295;
 constexpr int kLargestSide = 4096;
-constexpr int kOversampling = 2;  // renders at twice the size and averages: smooth edges without multisampling
+constexpr int kOversampling = 2;  // renders at twice the size and averages, for smooth edges without multisampling
 
 struct ContextDeleter {
   void operator()(OSMesaContext context) const { osmesa().destroy_context(context); }
@@ -94,8 +94,8 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Restricts the shadow map to the visible area, because a smaller area gives sharper shadows. MuJoCo would spread the
-/// shadow map over the whole world.
+/// Restricts the shadow map to the visible area, because a smaller area gives sharper shadows. By default, MuJoCo uses
+/// one shadow map for the whole world.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);
@@ -168,8 +168,8 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      engine::reach(world, T_WB, *data);  // starts from the previous pose: neighbouring poses of a film strip are
-                                          // similar
+      // starts from the previous pose, because neighbouring poses of a film strip are similar
+      engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }
     return;

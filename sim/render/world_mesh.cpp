@@ -13,7 +13,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kUnbounded_m = 60.0;
-constexpr int kGroupsSeen = 3;  ///< MuJoCo's pictures show groups 0, 1 and 2
+constexpr int kGroupsSeen = 3;  ///< number of geom groups in MuJoCo's pictures: 0, 1 and 2
 
 std::array<float, 4> colour_of(const mjModel& model, int geom) {
   const int material = model.geom_matid[geom];
@@ -52,7 +52,7 @@ MeshPart part_of(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, 
   return part;
 }
 
-/// Returns the visible geoms of one body, in the axes to which T_FW converts world coordinates.
+/// Returns the visible geoms of one body in a frame F; `T_FW` converts world coordinates to F.
 std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int body, const Eigen::Isometry3d& T_FW,
                                 int segments) {
   std::vector<MeshPart> parts;

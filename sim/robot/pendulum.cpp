@@ -22,8 +22,8 @@ constexpr std::array kPendulumParameters = {
     Parameter{"play_damping_nm_s", 0.1, 0.0, 10.0, "N m s", "damping of the support; assumed"},
 };
 
-constexpr double kBarHalfThickness_m = 0.02;  // half thickness of a bar with its load, for the moment of inertia about
-                                              // its length
+// half thickness of a bar with its load, for the moment of inertia about the bar's length
+constexpr double kBarHalfThickness_m = 0.02;
 constexpr int kSegments = 3;
 
 mjsJoint* joint(mjSpec* spec, const std::string& name) {

@@ -12,7 +12,7 @@ namespace tumble::sim {
 /// RobotType is a kind of robot: its parameters, its MJCF file, and the changes that a situation makes to the file.
 struct RobotType {
   ComponentType component;
-  std::string_view file;  ///< in the folder of models
+  std::string_view file;  ///< file in the folder of models
   /// Sets mass, inertia, contact and centre of mass of the parsed robot; fills in com_offset_m and sphere_radius_m of
   /// `world`.
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);

@@ -60,10 +60,10 @@ struct TrialRay {
 };
 
 Vector3d as_float(const Vector3d& v) {
-  return v.cast<float>().cast<double>();  // both sides use the same origin
+  return v.cast<float>().cast<double>();  // rounded to float, so that the ray scene and MuJoCo use the same origin
 }
 
-/// Returns an origin above the surface at a random position of the inner world.
+/// Returns the origin of a ray, above the surface at a random position of the inner world.
 Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {
   constexpr double kAbove_m = 50.0;
   const double reach_m = 0.85 * half_extent_m;
@@ -75,7 +75,7 @@ Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Strea
   return as_float(origin);
 }
 
-/// Returns an origin near the robot's start, below the ceiling if the world has a ceiling.
+/// Returns the origin of a ray near the robot's start, below the ceiling if there is one.
 Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
   const double z_m = stream.uniform(0.1, 1.5), y_m = stream.uniform(-1.5, 1.5), x_m = stream.uniform(-1.5, 1.5);
   return as_float(start_W_m + Vector3d(x_m, y_m, z_m));

@@ -10,19 +10,18 @@ namespace tumble::sim {
 /// RayDisagreement compares the lidar's ray scene with MuJoCo's rays (mj_ray).
 struct RayDisagreement {
   std::int64_t rays = 0;
-  std::int64_t hits = 0;           ///< number of hits of the engine's rays
-  std::int64_t other_surface = 0;  ///< number of rays for which the surface of the ray scene is not at the end of the
-                                   ///< engine's ray, or only one side has a hit
+  std::int64_t hits = 0;  ///< number of hits of the engine's rays
+  /// number of rays for which both hits are on different surfaces, or only one side has a hit
+  std::int64_t other_surface = 0;
   double largest_difference_m = 0.0;  ///< largest difference of ranges on the same surface
 };
 
 struct RayTrialOptions {
   int rays = 2000;
   std::uint64_t seed = 1;
-  double mirror_shift_m = 0.0;  ///< shifts the rays of the ray scene: a deliberate error that the comparison must
-                                ///< detect
-  int surface_shift = 0;        ///< added to the surface ids of the ray scene, modulo the number of surfaces: another
-                                ///< deliberate error
+  /// displacement of the rays of the ray scene; a deliberate error that the comparison must detect
+  double mirror_shift_m = 0.0;
+  int surface_shift = 0;  ///< number added to the surface ids of the ray scene; another deliberate error
 };
 
 /// Casts random rays in all directions with the lidar's ray scene and with MuJoCo. Half of the rays start 0.2 to 3 m

@@ -21,11 +21,11 @@ struct TrialOptions {
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
-/// Trial is a robot in its world that is advanced step by step with the model and engine of `simulate`, for
-/// measurements. A trial does not let the robot settle, and ignores the motion and sensors of the situation.
+/// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
+/// robot starts without settling, and the motion and sensors of the situation are ignored.
 class Trial {
  public:
-  /// The trial uses a copy of the world. Throws InvalidSituation if the time step is outside its limits.
+  /// Constructs a trial with a copy of the world. Throws InvalidSituation if the time step is outside its limits.
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});
   ~Trial();
   Trial(Trial&&) noexcept;
@@ -39,7 +39,7 @@ class Trial {
   double half_extent_m() const;             ///< the robot has left its world beyond this |x| or |y|
 
   BodyState state() const;  ///< state of the body that carries the sensors
-  /// Throws InvalidSituation for a robot on joints.
+  /// Sets the state of a free robot. Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
   /// Returns the angle of a hinge, given its name, for a robot on joints; joint_rate_rad_s returns its rate. joint_rad
   /// and joint_rate_rad_s throw InvalidSituation for an unknown name.

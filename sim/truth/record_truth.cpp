@@ -15,7 +15,8 @@ constexpr double kSettle_s = 1.0;
 constexpr double kRestSpeed_m_s = 0.005;
 constexpr double kLeastDistance_m = 0.05;
 
-/// Lets the robot settle into its contacts under gravity and a drag that ends before the recording starts.
+/// Lets the robot settle into its contacts under gravity. An artificial drag, which ends before the recording starts,
+/// damps the motion.
 void settle(engine::Physics& physics, const mjModel& model, int body, Motion& motion) {
   BodyState start = motion.start();
   start.time_s = -kSettle_s;

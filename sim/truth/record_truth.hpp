@@ -15,8 +15,8 @@ namespace tumble::sim {
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
 /// Returns the mean specific force at a body-fixed point over one step, in the axes of the midway attitude: R_mid^T
-/// ((v1 - v0)/dt - g). `p_BP_m` is the position of the point in frame B. The sum of R_mid f dt + g dt is exactly the
-/// change of the point's velocity.
+/// ((v1 - v0)/dt - g). `p_BP_m` is the position of the point in frame B. The sum of R_mid f dt + g dt over all steps is
+/// exactly the change of the point's velocity.
 Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after, const Eigen::Vector3d& p_BP_m,
                                  double gravity_m_s2);
 
@@ -24,14 +24,14 @@ Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after
 /// no discretisation error if the body turns by less than pi in the step.
 Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 
-/// Labels every physics sample by the contacts within 10 ms. The window of 10 ms is needed because contacts are
-/// interrupted: at low friction, a third of the steps has no contact.
+/// Labels every physics sample by the contacts within 10 ms. Contacts are interrupted: at low friction, a third of the
+/// steps has no contact.
 /// - `air`: no contact.
 /// - `grip`: mean slip speed, weighted by normal force, below 0.02 m/s.
 /// - `slip`: the rotation is too fast for the motion of the geometric centre (mean difference of the rotation's and the
 ///   centre's speed along the ground, weighted by normal force).
 /// - `slide`: the rotation is too slow for the motion of the geometric centre.
-/// Touchdown is labelled 10 ms early and take-off is labelled 10 ms late. The boundary between slide and grip agrees
+/// The labels show touchdown 10 ms too early and take-off 10 ms too late. The boundary between slide and grip agrees
 /// with Coulomb's law within 4 ms. For a body other than a sphere, the labels refer to the centre of mass instead of
 /// the geometric centre.
 std::vector<ContactLabel> label_contacts(const Truth& truth);

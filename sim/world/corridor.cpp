@@ -30,7 +30,7 @@ constexpr Colour kWall = {0.85f, 0.84f, 0.8f, 1.0f}, kDoor = {0.45f, 0.3f, 0.2f,
                  kFrame = {0.3f, 0.34f, 0.4f, 1.0f}, kPillar = {0.6f, 0.62f, 0.66f, 1.0f},
                  kLocker = {0.35f, 0.5f, 0.55f, 1.0f};
 
-/// Side is one long wall of the corridor, built from back to front. `side` is +1 for the left wall.
+/// Side builds one long wall of the corridor, from back to front. `side` is +1 for the left wall.
 class Side {
  public:
   Side(mjSpec* spec, engine::World& world, const Values& values, int side, Stream& stream)
@@ -71,7 +71,7 @@ class Side {
     mjsGeom* geom = add_surface(spec_, world_, name_ + what + std::to_string(count_++), mjGEOM_BOX,
                                 {0.5 * (from_m + to_m), side_ * (half_m + 0.5 * (near_m + far_m)), 0.5 * top_m},
                                 {0.5 * (to_m - from_m), 0.5 * (far_m - near_m), 0.5 * top_m}, 0.0, colour);
-    if (side_ < 0) geom->group = kUnseenInPictures;  // pictures look from the right
+    if (side_ < 0) geom->group = kUnseenInPictures;  // cameras look from the right side
   }
 
   void add_bare(double length_m) {

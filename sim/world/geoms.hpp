@@ -28,8 +28,8 @@ struct HeightGrid {
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// Adds a height field as the surface `name`, solid down to `common_position_m` below its lowest node. MuJoCo requires
-/// a height field with some relief, so its height range is at least `least_span_m`.
+/// Adds a height field as the surface `name`. The ground is solid down to `common_position_m` below the lowest node.
+/// MuJoCo requires a height field with some relief, so its height range is at least `least_span_m`.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double common_position_m, double least_span_m, const Colour& colour);
 

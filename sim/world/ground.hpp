@@ -26,8 +26,8 @@ inline constexpr std::array kGroundParameters = {
 };
 
 /// Sets friction and softness of the ground geom. MuJoCo uses the larger friction of two touching geoms, and the sphere
-/// has no friction. On hard ground, the robot determines the softness of the contact; on soft ground, the ground alone
-/// determines it.
+/// has no friction. On hard ground, the softness of a contact is that of the robot; on soft ground, it is that of the
+/// ground.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 
 /// Adds the surface "floor" over |x| <= half_x_m, |y| <= half_y_m. The floor is a plane at height 0, or a height field

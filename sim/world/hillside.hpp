@@ -13,8 +13,8 @@
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// The height field has kSide nodes per side, with cells of 20 cm. With cells of 10 cm, a strut that an impact pushes
-/// into the ground by some centimetres stays wedged for seconds.
+/// The height field has kSide nodes per side, with cells of 20 cm. With cells of 10 cm, a strut would stay wedged for
+/// seconds after an impact has pushed it some centimetres into the ground.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge

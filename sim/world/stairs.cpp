@@ -25,7 +25,7 @@ constexpr std::array kStairsParameters = joined(kOwnStairsParameters, hillside::
 
 constexpr Colour kStone = {0.66f, 0.64f, 0.6f, 1.0f};
 
-/// Adds stepped walls along the flight, in pieces of four steps.
+/// Adds stepped walls on both sides of the flight, in pieces of four steps.
 void add_cheeks(mjSpec* spec, engine::World& world, const Flight& flight, double height_m) {
   constexpr int kPiece = 4;
   constexpr double kHalfThickness_m = 0.1, kDepth_m = 3.0;

@@ -13,10 +13,9 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// kOddsEvidenceWeight weights the likelihood of the readings in the decision between a calibrated and an uncalibrated
-// device. kOddsEvidenceWeight is ten times kEvidenceWeight, which weights the same readings in estimates of sensor
-// errors. With full weight and an uncertain calibration, half of the calibrated devices would be classified as
-// uncalibrated.
+// kOddsEvidenceWeight is the weight of the readings when DeviceUncertainty decides whether a device is calibrated. The
+// weight is ten times kEvidenceWeight, the weight of the readings in estimates of sensor errors. With a weight of 1,
+// half of the calibrated devices would count as uncalibrated if the rig's calibration is uncertain.
 constexpr double kOddsEvidenceWeight = 0.3;
 
 // Computes the matrix I + share U L U; L is the information matrix of the sensor errors, made symmetric.
@@ -39,14 +38,14 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// Computes the second moment of one device's sensor errors, cov_i + m_i m_i': rate_stream.md (R102). Returns false if
-// the information matrix is indefinite.
+// Computes the second moment of one device's sensor errors (covariance plus squared mean): rate_stream.md (R102).
+// Returns false if the information matrix is indefinite.
 bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // The correction leaves scale and misalignment unchanged, because errors of the flight model look like scale and
-  // misalignment errors.
+  // Scale and misalignment remain uncorrected, because errors of the flight model look like scale and misalignment
+  // errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

@@ -13,10 +13,10 @@ namespace tumble {
 
 namespace {
 
-// kHalfScaleRun_s is the minimum duration of flight for the detection of a gyro that reports half the rate. If all
-// rates are doubled, hand-held motion can look like flight for 0.05 s. Real flights last longer than 0.05 s.
+// kHalfScaleRun_s is the shortest flight that reveals a gyro that reports half the rate. With doubled rates, hand-held
+// motion looks like flight for up to 0.05 s. Real flights are longer.
 constexpr double kHalfScaleRun_s = 0.08;
-constexpr double kAcross = 0.05;    // minimum squared lever arm across a saturated axis, as a fraction
+constexpr double kAcross = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
 constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
 struct Axes {
@@ -33,7 +33,7 @@ constexpr Axes kUnchangedAxes{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
-/// ReadingHypothesis is a hypothesis about the sign, axis order or scale of a sensor, with the matching conversion of
+/// ReadingHypothesis is a possible fault of a sensor (sign, axis order or scale), with the conversion that corrects its
 /// readings.
 struct ReadingHypothesis {
   Axes force, rate;
@@ -60,8 +60,8 @@ constexpr std::array<ReadingHypothesis, FlightSignCheck::kAlternatives> kReading
     {kUnchangedAxes, kTwice, "flight time in s that a gyro with half the true scale explains"},
 }};
 
-/// Converts a reading as if the sensor had the hypothetical sign, axis order or scale: imu_merge.md (I32). `known` is
-/// true if the centripetal equation |w x t|^2 = -f t gives a rate of the saturated axis beyond the saturation level.
+/// Corrects a reading for a hypothetical sign, axis order or scale of the sensor: imu_merge.md (I32). `known` is true
+/// if the centripetal force gives a rate of the saturated axis above the saturation level.
 FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const ReadingHypothesis& sense,
                                          const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;
@@ -85,7 +85,7 @@ FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading
   return out;
 }
 
-/// Returns whether the middle one of three readings agrees with flight, under a hypothesis about the sensor:
+/// Returns whether the middle one of three readings agrees with flight if the sensor has the assumed fault:
 /// imu_merge.md (I31).
 bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
                         const FlightSignCheck::Params& params) {
@@ -101,8 +101,8 @@ bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightS
   return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
 }
 
-/// Returns whether the motion of the body allows the test of a hypothesis about the sensor. FlightSignCheck tests only
-/// the clearest hypotheses if the body may be hand-held.
+/// Returns whether the check tests a hypothesis about a sensor fault. For a body that may be hand-held, the check tests
+/// only the clearest hypotheses.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSignCheck::Body::thrown || sense == kSound || sense == kFlippedForce ||

@@ -15,10 +15,12 @@ constexpr std::array<const char*, 6> kQuantities = {
     "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
     "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
 
-constexpr double kMinRepetitionRatio = 10.0;  // minimum ratio of a repetition to the longest earlier repetition
-constexpr double kPossibleRailRatio = 0.9;    // fraction of the stated range above which a reading may be saturated
-constexpr double kExtremeRatio = 0.5;      // fraction of the stated range for a reading that is an extreme of the axis
-constexpr double kMotionQuanta = 50.0;     // change of another axis in quanta; 2 % cross-axis sensitivity causes one
+// minimum duration of a repetition, as a multiple of the longest earlier repetition
+constexpr double kMinRepetitionRatio = 10.0;
+constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
+constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis
+// minimum change of another axis, in quantisation steps; 2 % cross-axis sensitivity causes one step
+constexpr double kMotionQuanta = 50.0;
 constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
@@ -26,8 +28,7 @@ constexpr double kChanging =
 // A body is at rest if the rate of another axis is below kStill_rad_s and the specific force changes by less than
 // kStill_m_s2.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
-// kRestRateMax_rad_s and kRestForceMax_m_s2 are the largest readings of a working axis at rest, caused by bias and
-// gravity.
+// A working axis at rest reads at most kRestRateMax_rad_s (gyro bias) or kRestForceMax_m_s2 (gravity and bias).
 constexpr double kRestRateMax_rad_s = 1.0, kRestForceMax_m_s2 = 15.0;
 
 constexpr bool is_gyro(std::size_t channel) {
@@ -120,8 +121,8 @@ void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 
     }
   }
   const double most = is_gyro(channel) ? kRestRateMax_rad_s : kRestForceMax_m_s2;
-  // No motion keeps the rate vector exactly on one axis for `rail_stationary_min_s`. The test therefore ignores how
-  // often the other axes change.
+  // No motion keeps the rate vector exactly along one axis for `rail_stationary_min_s`. The test of a saturated axis
+  // therefore ignores changes of the other axes.
   const bool is_at_rail = at_rail(channel, axis);
   const bool was_stationary = axis.stationary_s >= params_.rail_stationary_min_s ||
                               (axis.repeated_s >= params_.rail_repetition_max_s && others_move(channel, 0.0, axis));
@@ -138,14 +139,14 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
-  // A saturation flag of the device shows only that the device saturated. The flag does not show that the repeated
-  // reading is the saturation level.
+  // A saturation flag shows that the device saturated during the repetition, but the repeated reading may be below the
+  // saturation level.
   if (axis.device_flagged && size >= kExtremeRatio * stated) return true;
   return size >= kExtremeRatio * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
 /// Returns whether the other axes of the triad change by far more than one quantisation step of the tested axis. The
-/// test needs changes of the other axes in at least a fraction `changing_share` of the samples.
+/// other axes must change in at least the fraction `changing_share` of the samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least =
       std::max(is_gyro(channel) ? kRotating_rad_s : kMotionForce_m_s2, kMotionQuanta * axis.smallest_change);
@@ -194,7 +195,7 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
 
 namespace {
 
-/// Appends an interval for each axis that is frozen at `time_ns`, or extends the last interval of the axis.
+/// Adds an interval to `out` for each axis that is frozen at `time_ns`, or extends the axis' last interval.
 void extend(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     for (int axis = 0; axis < 3; ++axis) {

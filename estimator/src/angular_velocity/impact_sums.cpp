@@ -8,18 +8,18 @@ namespace tumble {
 
 namespace {
 
-// `kMovingRateMin_rad_s` is the minimum angular rate of a moving body. `kCorrelationMin` is the minimum correlation
-// between rate change and specific force for an accepted delay. `kDelaySigmaRatio` is the standard deviation of the
-// delay, as a fraction of the slower sensor's sample period.
+// `kMovingRateMin_rad_s` is the minimum angular rate of a moving body. A delay is accepted if rate change and specific
+// force correlate by at least `kCorrelationMin`. `kDelaySigmaRatio` is the standard deviation of the delay, as a
+// fraction of the slower sensor's sample period.
 constexpr double kMovingRateMin_rad_s = 1.0, kCorrelationMin = 0.6, kDelaySigmaRatio = 0.15;
 constexpr double kCorrelatedImpactsMin = 30.0;
 // `kImpactForceMin_m_s2` is the minimum specific force of an impact. `kFlightForceMax_m_s2` is the maximum specific
-// force of free flight. `kFlightFractionMin` is the minimum fraction of the time in flight. A body that has impacts but
-// never flies is hand-held.
+// force of free flight. `kFlightFractionMin` is the minimum fraction of the time in flight. A body with impacts but
+// without flight counts as hand-held.
 constexpr double kImpactForceMin_m_s2 = 30.0, kFlightForceMax_m_s2 = 5.0, kFlightFractionMin = 0.1;
 constexpr double kImpactsMin = 10.0;
 
-// Returns the correlation between the change of the rate and the mean specific force: rate_smoother.md (R45).
+// Returns the correlation between rate change and mean specific force at the tested delay `i`: rate_smoother.md (R45).
 double correlation(const ImpactSums& sums, int i) {
   const double n = sums.intervals, x = sums.acceleration_sum, xx = sums.acceleration_squared;
   const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];
@@ -27,7 +27,7 @@ double correlation(const ImpactSums& sums, int i) {
   return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
 }
 
-// Returns the correlation between rate change and specific force. Returns 0 if the body has no impacts or no flight.
+// Returns correlation() at the tested delay `i`, or 0 if the body has no impacts or no flight.
 double score(const ImpactSums& sums, int i) {
   if (sums.impacts[i] < kImpactsMin || sums.flying[i] < kFlightFractionMin * sums.intervals) return 0.0;
   return correlation(sums, i);

@@ -17,11 +17,12 @@ namespace {
 
 constexpr double kNextRunInflation = 4.0;
 // kElementDrift is the standard deviation of the change of a gyro's cross-axis sensitivity between runs. In six runs of
-// a hand-held device, the cross-axis sensitivity ranged from 0.017 to 0.021.
+// one hand-held device, one cross-axis sensitivity ranged from 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
-// kSlopeDrift is the same standard deviation for an accelerometer.
+// kSlopeDrift is the standard deviation of the change of an accelerometer's cross-axis sensitivity between runs.
 constexpr double kSlopeDrift = 2e-3;
-// Planes with lower log odds are not saved, because a peak of the motion can resemble a saturation plane.
+// Saturation planes with lower log odds are not saved, because the readings at a peak of the motion can resemble a
+// plane.
 constexpr double kCertainLogOdds = 10.0;
 // kSlopeSigmaMin is the smallest standard deviation of a cross-axis sensitivity: rails.md (R59).
 constexpr double kSlopeSigmaMin = 3e-4;
@@ -35,12 +36,12 @@ std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
 }
 
 // A reading counts as saturated if it is within the fraction kLevelToleranceRatio of the saturation level. Saturation
-// levels are stable to 0.05 %, but the offset of the readings drifts with the bias.
+// levels are stable to 0.05 %, but the sensor's bias shifts the readings.
 constexpr double kLevelToleranceRatio = 2e-3;
 
-// Returns whether the intercept of a saturation plane is known to two standard deviations within the next run's
-// tolerance. If two sensing elements only clip together, the readings do not determine the cross-axis sensitivity
-// between them. The intercept of the saturation plane is then unknown too.
+// Returns whether the intercept of a saturation plane is known more precisely than the next run's tolerance (two
+// standard deviations). If two sensing elements only clip together, the readings determine neither their cross-axis
+// sensitivity nor the intercept.
 bool is_level_known(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.distance_rad_s;
@@ -62,7 +63,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kCertainLogOdds) {
-      // The covariance of the plane's cross-axis sensitivities grows as well.
+      // The next run also starts with a larger covariance of the plane's cross-axis sensitivities.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -83,7 +84,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Stores the cross-axis sensitivities and intercepts of a sensing element whose saturation plane is certain.
+// Stores in `rig` the cross-axis sensitivities and intercepts of a sensing element with a certain saturation plane.
 void store_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
@@ -184,7 +185,7 @@ void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& par
   covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
-  // Limits the covariance of the calibration to the default prior.
+  // The covariance of the calibration may not exceed the default prior.
   const RigConstants::Matrix floor = (1.0 - 1.0 / kNextRunInflation) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();

@@ -10,9 +10,9 @@ namespace tumble {
 
 namespace {
 
-// For a reading close to a saturation level, the test uses the steps to `kReach` neighbouring readings on each side.
-// `kRoundedPeakRatio` is the fraction of the saturation level by which a gyro's filter can lower the ends of a plateau.
-// One hand-held wand reported readings up to 2 % below the saturation level while the rate exceeded the level.
+// Near a saturation level, a reading is compared with `kReach` neighbouring readings on each side. A gyro's filter can
+// lower the first and last saturated readings by the fraction `kRoundedPeakRatio` of the saturation level. One
+// hand-held wand reported readings up to 2 % below the saturation level while the rate exceeded the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundedPeakRatio = 0.03;
 
@@ -27,7 +27,7 @@ double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::In
   return out;
 }
 
-// Returns a bit mask of the axes that may be partly saturated: rails.md (R76).
+// Returns a bit mask of the axes that may be saturated for a part of reading `at`: rails.md (R76).
 std::uint8_t axes_near_rails(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;

@@ -11,11 +11,11 @@ namespace tumble {
 namespace {
 
 // `kMaxPlaneTilt` is the maximum tilt between the saturation planes of two sensing elements, in addition to
-// kNearRailRatio. `kDeficitStepRatio` is the saturation deficit of a few saturated samples, as a fraction of the step
-// to the neighbouring reading.
+// kNearRailRatio. `kDeficitStepRatio` is the expected saturation deficit of a few saturated samples, as a fraction of
+// the step to the previous or next reading.
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
-// A reading is at the top of a segment if it is within the fraction `kTopRatio` of the segment's largest reading. A
+// A reading belongs to a flat maximum if it is within the fraction `kTopRatio` of the largest reading of the segment. A
 // tilt of kMaxPlaneTilt changes a reading by the fraction kTopRatio if the rate about the other axes is a sixth of the
 // saturation level. `kMaxElementSigmas` is the maximum difference between the saturation levels of two sensing
 // elements, in standard deviations.
@@ -30,22 +30,22 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// Returns how far a motion may rise above a flat maximum that `count` readings show. The rise is the height at which
-// two straight lines meet, with the slopes before and after the maximum: rails.md (R74).
+// Returns how far the rate may exceed a flat maximum of `count` equal readings. Two straight lines with the slopes
+// before and after the maximum meet at this height: rails.md (R74).
 double rise_above_plateau(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// Returns the magnitude of the angular rate about the axes other than `axis`. A tilted saturation plane changes the
-// saturated reading by the tilt times the rate about the other axes.
+// Returns the magnitude of the angular rate about the axes other than `axis`. On a tilted saturation plane, the
+// saturated reading changes by the tilt times the change of the rate about the other axes.
 double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
 
 }  // namespace
 
-// Stores the smallest saturation level that is compatible with the readings: rails.md (R75).
+// Raises the lower bounds of the saturation levels to a reading, which no level can be below: rails.md (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = min_levels_rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];
@@ -109,7 +109,7 @@ void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels
         if (first == 0 || last + 1 == count || first == last) continue;
         const double rise =
             rise_above_plateau(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
-        if (!(rise > 0.0)) continue;  // not a maximum
+        if (!(rise > 0.0)) continue;  // no maximum
         if (least.is_below_min_level(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {
           RateObservation& o = observations[i];

@@ -16,31 +16,31 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// kConstantRateFraction is the prior fraction of segments in which the rate is constant (spins, turntables). The
-// fraction limits how much a long segment of equal readings supports saturation.
+// kConstantRateFraction is the prior fraction of segments in which the rate is constant (spins, turntables). A long
+// segment of equal readings may therefore be a constant rate instead of saturation.
 constexpr double kConstantRateFraction = 0.05;
-// A flat segment indicates saturation only if the ratio of `bend` to `flat` in SegmentShape is at least kBendRatioMin.
+// A flat segment counts as saturated only if `bend` in SegmentShape is at least kBendRatioMin times `flat`.
 constexpr double kBendRatioMin = 3.0;
-// kLevelRangeFraction is the range of possible constant rates, as a fraction of the largest reading of the axis.
+// kLevelRangeFraction is the assumed range of constant rates, as a fraction of the axis' largest reading.
 constexpr double kLevelRangeFraction = 0.2;
-// The noise estimate uses the residuals of a parabola fit in windows of kNoiseWindow readings. `kNoiseQuantile` selects
-// the window whose residuals determine the noise.
+// The noise estimate uses the residuals of a parabola fit in windows of kNoiseWindow readings. The window at the
+// quantile `kNoiseQuantile` of the residuals determines the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// kMaxKinkLogLikelihood is the maximum log-likelihood of a kink at the end of a segment if the other axes move
-// smoothly.
+// kMaxKinkLogLikelihood is the largest log-likelihood of one kink. A kink is an end of a segment at which the clipped
+// axis bends and the other axes move smoothly.
 constexpr double kMaxKinkLogLikelihood = 2.5;
-// The test of a kink needs a change of the other axes by at least kMotionSigmasMin standard deviations around the end
-// of a segment.
+// A kink at the end of a segment counts only if the other axes change there by at least kMotionSigmasMin standard
+// deviations.
 constexpr double kMotionSigmasMin = 10.0;
-// If a segment scatters far less than noise (log-likelihood above kThinLogLikelihoodMin), the shape of its ends is
-// ignored.
+// If the readings of a segment scatter far less than noise (log-likelihood above kThinLogLikelihoodMin), the test
+// ignores kinks at its ends.
 constexpr double kThinLogLikelihoodMin = 8.0;
-// A segment loses kThinLostFreedom degrees of freedom: two to the fitted straight line and two to the partly saturated
-// ends.
+// The scatter of a segment has kThinLostFreedom fewer degrees of freedom: two for the fitted line and two for the
+// partly saturated ends.
 constexpr std::size_t kThinLostFreedom = 4;
 // A reading is at the saturation level if it is within kAtRailSigmas standard deviations of the saturation plane. The
-// tolerance for readings at a saturation level is at most the fraction kAtRailRatioMax of the level.
+// tolerance is at most the fraction kAtRailRatioMax of the level.
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
 // `kBeyondPenalty` is the amount by which each reading beyond a saturation plane decreases the log odds of the plane.
 // `kOutlierFraction` is the fraction of readings that may be beyond the plane without effect on the log odds.
@@ -63,17 +63,17 @@ struct Segment {
   std::size_t size() const { return last - first + 1; }
 };
 
-// Returns the next segment of consecutive inliers, starting at index `at`. The function moves `at` to the first inlier
-// after the segment.
+// Returns the next segment of consecutive inliers, starting at index `at`. The function then sets `at` to the first
+// inlier after the segment.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// Returns a log-likelihood ratio that is positive if the readings scatter about a straight line less than noise:
-// rails.md (R65). Readings of an angular rate contain sensor noise. Saturated readings contain no noise if the device
-// clips after the noise is added. The ratio is zero if quantisation hides the noise.
+// Returns a log-likelihood ratio, positive if the readings of a segment scatter less than sensor noise about a straight
+// line: rails.md (R65). Readings of an angular rate contain sensor noise. Saturated readings contain no noise if the
+// device clips after the noise is added. The ratio is zero if quantisation hides the noise.
 double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -111,7 +111,7 @@ struct SegmentShape {
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // `depth` is the distance of the readings next to the segment from the saturation level
+  // `depth` is the saturation level minus the readings next to the segment
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -121,14 +121,14 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // a parabola through the readings next to a segment has this height within the segment: rails.md (R61)
+  // height, within the segment, of a parabola through the readings next to the segment: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
 // Returns the log-likelihood that the readings have a kink at one end of a segment: rails.md (R64). The test compares
-// the second difference of the clipped axis with those of the other axes. An impact would cause a kink on all axes,
-// saturation only on one.
+// the second difference of the clipped axis with those of the other axes. An impact causes a kink on all axes;
+// saturation causes a kink on one axis.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;

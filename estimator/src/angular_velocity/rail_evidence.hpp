@@ -20,19 +20,20 @@ struct DistinctReadings {
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// RailFacet is a plane that limits the readings, sign * row . y = level, with the readings close to the plane.
+/// RailFacet is a possible saturation plane, sign * row . y = level for readings y, with the readings close to the
+/// plane.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
-  int segments = 0;  ///< number of runs of inliers that no rounded maximum explains
+  int segments = 0;  ///< number of runs of readings on the plane that no rounded maximum explains
 };
 
-/// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for
-/// the readings of a facet. The function counts the segments of consecutive readings on `facet`. `slope_information` is
-/// the prior information about the cross-axis sensitivities. `inliers` contains the indices of the facet's readings in
-/// DistinctReadings::rates, in ascending order.
+/// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates), from
+/// the readings on `facet`. The function also counts the segments of consecutive readings on the plane.
+/// `slope_information` is the prior information about the cross-axis sensitivities. `inliers` contains the indices of
+/// these readings in DistinctReadings::rates, in ascending order.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

@@ -20,8 +20,8 @@ constexpr int kRefinements = 10;
 // The half thickness is limited to fractions between kSlabRatioMin and kSlabRatioMax of the saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-// Collects the readings that are within `slab` of the largest value, for any cross-axis sensitivity up to `steepest`.
-// Returns the smallest value of the collected readings.
+// Collects the readings that are within `slab` of the largest reading along any sensing direction with cross-axis
+// sensitivities up to `steepest`. Returns the smallest collected value.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -45,8 +45,8 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
 }
 
 // Fits the saturation level and cross-axis sensitivities to the inliers, by least squares with a prior on the
-// sensitivities. The function also computes the standard deviation of the readings about the fitted plane. The fit uses
-// Cauchy weights, because partly saturated windows are below the plane: rails.md (R58).
+// sensitivities. The function also computes the standard deviation of the readings about the fitted plane. Cauchy
+// weights reduce the effect of partly saturated readings, which are below the plane: rails.md (R58).
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;

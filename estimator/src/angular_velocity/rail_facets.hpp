@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_facets.hpp searches the plane (facet) on which the readings of one sensing element are saturated, for one sign.
+// rail_facets.hpp searches for the plane (facet) on which the saturated readings of one sensing element are, for one
+// sign.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +12,14 @@
 
 namespace tumble::rails {
 
-/// Gate selects readings of a facet: at least `from` along `row`, and near the extreme for sensitivities up to
-/// `steepest`.
+/// Gate selects readings near a saturation plane. The readings are at least `from` along `row`, and near the extreme
+/// for cross-axis sensitivities up to `steepest`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double from = 0.0, steepest = 0.0, near_min = 0.0;
 };
 
-/// Side is the state of the search for one sign of one sensing element.
+/// Side is the state of the search for the saturation plane of one sign of one sensing element.
 struct Side {
   int axis = 0, sign = 1;
   RailFacet facet;
@@ -36,33 +37,33 @@ inline Eigen::Vector2d others(const Eigen::Vector3d& y, int axis) {
   return {y[(axis + 1) % 3], y[(axis + 2) % 3]};
 }
 
-/// Returns the largest value of a reading for cross-axis sensitivities up to `steepest`.
+/// Returns the largest value of the reading `y` along sensing directions with cross-axis sensitivities up to
+/// `steepest`.
 inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double steepest) {
   return sign * y[axis] + steepest * others(y, axis).lpNorm<1>();
 }
 
-/// Extreme contains the samples close to the largest reading of one sign of an axis.
+/// Extreme contains the samples close to the largest reading of an axis, for one sign.
 struct Extreme {
   int axis = 0, sign = 1;
   double slab = 0.0;
   double steepest = 0.0, near_min = 0.0;
 };
 
-/// Finds the readings close to the largest reading, and stores their indices in the workspace. Cost: O(N). Returns
-/// nothing if the readings of the axis are too small for saturation.
+/// Finds the readings close to the axis' largest reading of one sign, and stores their indices in the workspace. Cost:
+/// O(N). Returns nothing if the readings of the axis are too small for saturation.
 std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
                                     int sign, const FacetPrior& prior, double slope_range,
                                     RailPlaneFinder::Workspace& workspace);
 
 /// Searches a grid around the prior for the cross-axis sensitivities whose plane contains the most samples of
-/// find_extreme(). The count of samples is reduced by a penalty for unlikely cross-axis sensitivities, see rails.md
-/// (R57).
+/// find_extreme(). A penalty for unlikely cross-axis sensitivities reduces the count, see rails.md (R57).
 Eigen::Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                               const FacetPrior& prior, RailPlaneFinder::Workspace& workspace);
 
 /// Fits the saturation plane, starting from the cross-axis sensitivities `slopes`. The robust fit of rails.md (R58)
-/// starts with the standard deviation `deviation`. The function stores the indices of the samples on the plane in the
-/// workspace.
+/// starts with residuals of standard deviation `deviation`. The function stores the indices of the samples on the plane
+/// in the workspace.
 Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
                const Eigen::Vector2d& slopes, double deviation, RailPlaneFinder::Workspace& workspace);
 

@@ -27,19 +27,19 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// kInitialSigmaRatios contains initial standard deviations of the robust fit, as fractions of the layer thickness. The
-// small initial value suits a thin layer of readings with a few partly saturated readings below it. The large initial
-// value suits a thick layer of readings.
+// kInitialSigmaRatios contains two initial standard deviations of the robust fit, as fractions of the thickness of the
+// layer of readings. The small value suits a thin layer with a few partly saturated readings below it. The large value
+// suits a thick layer.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
-// kElementLevelRatio is the usual relative difference between the saturation levels of one device's sensing elements. A
-// reading of another axis that exceeds a saturation level by a larger fraction decreases the log odds of the level.
+// The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
+// If another axis reads far above a saturation level, the log odds of the level decrease.
 constexpr double kElementLevelRatio = 0.04;
 // `kNearElementLogOdds` increases the log odds of a saturation level that is near the level of another sensing element.
-// `kNearStatedLogOdds` applies near a stated range, and `kOppositeSignLogOdds` near the level of the opposite sign.
-// `kImpossibleLogOdds` applies to an impossible saturation level.
+// `kNearStatedLogOdds` applies to a level near the stated range, and `kOppositeSignLogOdds` to a level near that of the
+// opposite sign. `kImpossibleLogOdds` are the log odds of an impossible level.
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
-// `kNearKnownLogOdds` increases the log odds of a saturation level near the level of an earlier run.
+// `kNearKnownLogOdds` increases the log odds of a saturation level that is near its level in an earlier run.
 // `kKnownLevelSigmaRatio` is the standard deviation of the difference between the levels of two runs, as a fraction of
 // the level. `kFarFromKnownLogOdds` decreases the log odds of a level far from the earlier level, since the device may
 // have been replaced.
@@ -52,7 +52,7 @@ double log_normal_ratio(double value, double sigma) {
   return std::max(kImpossibleLogOdds, -0.5 * z * z);
 }
 
-// Returns the prior log odds of a saturation level: rails.md (R67).
+// Returns the log odds of a saturation level before its readings are considered: rails.md (R67).
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
@@ -114,8 +114,8 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // If two sensing elements always clip together, the readings do not determine one cross-axis sensitivity. The normal
-  // equations are then badly conditioned.
+  // If two sensing elements always clip together, the readings do not determine their cross-axis sensitivity. The
+  // normal equations are then badly conditioned.
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);
@@ -139,7 +139,8 @@ struct SideSearch {
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // Returns the saturation plane with the highest log odds near the known cross-axis sensitivities: rails.md (R60).
+  // Returns the saturation plane with the highest log odds among those near the known cross-axis sensitivities:
+  // rails.md (R60).
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
@@ -157,9 +158,9 @@ struct SideSearch {
     return side;
   }
 
-  // Searches the saturation plane of one sign of a sensing element. The search starts near the element's sensing
-  // direction if the direction is known. If the direction is unknown, the search starts near zero cross-axis
-  // sensitivities, or near the sensitivities of an earlier run.
+  // Searches the saturation plane of one sign of a sensing element. If the element's sensing direction is known, the
+  // search starts near the known direction. Otherwise the search starts near zero cross-axis sensitivities, or near
+  // those of an earlier run.
   Side search_side(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -172,7 +173,7 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // the device may be that of the earlier run or a different device
+    // the device may be that of the earlier run or another device
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -180,9 +181,8 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches the saturation plane of sign `i` of a sensing element, with the planes in `found` as prior knowledge.
-  // Returns whether `pair` contains a plane of sign `i`. `kept` states whether the previous search accepted the plane
-  // of the sign.
+  // Searches the saturation plane of sign `i` of a sensing element, using the planes in `found`. Returns whether `pair`
+  // contains a plane of sign `i`. `kept` states whether the previous search accepted the plane.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = search_side(axis, sign, found);
@@ -192,7 +192,7 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // the test may accept both saturation planes of an element together although it rejects each plane alone
+    // an element's positive and negative plane may be accepted together although each plane alone is rejected
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
@@ -236,8 +236,8 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return merge_with_known_planes(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // Each accepted saturation plane changes the odds of the planes that are still missing. The search therefore repeats
-  // until a round finds no new plane.
+  // Each accepted saturation plane changes the log odds of further planes. The search therefore repeats until a round
+  // finds no new plane.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

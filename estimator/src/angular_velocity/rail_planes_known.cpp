@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading contradicts a saturation plane if the reading exceeds the plane by kBeyondTolerance times the tolerance.
+// A reading contradicts a saturation plane if it is beyond the plane by kBeyondTolerance times the plane's tolerance.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kMinContradictions = 2;
 // kSameShare is the maximum relative difference between saturation levels of one device in two runs.
@@ -18,7 +18,7 @@ constexpr double kSameShare = 0.003;
 
 }  // namespace
 
-// Adds saturation planes of an earlier run where the current readings show none.
+// Adds the saturation planes of an earlier run for those elements and signs where the current readings show no plane.
 RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
                                                     std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;

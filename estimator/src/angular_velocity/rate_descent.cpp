@@ -12,16 +12,16 @@ namespace tumble {
 
 namespace {
 
-// kRestartThresholds contains alternative initial contact thresholds, as multiples of the parameter. The smoother tries
-// the alternative thresholds if few clipped samples are in flight (below kFlightShareExpected).
+// kRestartThresholds contains alternative contact thresholds for a restart, as multiples of the parameter. The smoother
+// restarts if few clipped samples are in flight (below kFlightShareExpected).
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
 // The iteration has converged when no combination of unknowns changes by more than kStepDeviations standard deviations:
-// rate_smoother.md (R30). At convergence, a rate that the data hardly determine may still change by a large amount.
+// rate_smoother.md (R30). A rate that the readings hardly determine may still change by several rad/s at convergence.
 constexpr double kStepDeviations = 0.1;
 
-// Computes the flight weight and contact force at each sample: rate_smoother.md (R16) to (R19).
+// Computes for each sample the weight of the flight model and the contact force: rate_smoother.md (R16) to (R19).
 void compute_flight_weights(const RateModel& model, std::span<const RateObservation> observations,
                             const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
                             double threshold_factor, std::span<RateEstimate> estimates) {
@@ -32,7 +32,7 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // if the gyro measures all axes, an error of the rate cannot explain a residual
+    // if the gyro measures all axes, a large flight residual cannot come from a wrong rate
     const int clipped = observations[k].unmeasured_axes();
     model.compute_flight_weight(observations[k], rig, rig_covariance, clipped != 0 ? threshold_factor : 1.0,
                                 std::min(before, after), estimates[k]);
@@ -40,8 +40,8 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
   }
 }
 
-// Runs the Gauss-Newton optimisation from the initial values. Returns false if the normal equations are not positive
-// definite.
+// Runs the Gauss-Newton optimisation of rates and calibration from their initial values. Returns false if the normal
+// equations are not positive definite.
 bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model,
                       std::span<const RateObservation> observations, double threshold_factor, RateSolution& solution,
                       RateReport& health) {
@@ -85,9 +85,9 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
   return true;
 }
 
-// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). A better
-// local minimum has a larger sum over the samples. `share` receives the fraction of flight samples among the samples
-// with an unmeasured rate.
+// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). Among several
+// local minima of the optimisation, the best has the largest result. `share` receives the fraction of flight samples
+// among the samples with an unmeasured rate.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;
@@ -103,7 +103,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// Eliminates the samples from the normal equations in time order: rate_smoother.md (R26).
+// Eliminates the unknowns of the samples from the normal equations, in time order: rate_smoother.md (R26).
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -122,7 +122,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// Computes the predicted decrease of the cost, g' H^-1 g, block by block: rate_smoother.md (R30). After the
+// Computes the decrease of the cost that the next step should cause, block by block: rate_smoother.md (R30). After the
 // elimination, the blocks contain L^-1 g.
 double RateIteration::newton_decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
@@ -148,8 +148,8 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// Computes the derivatives of the solution with respect to the sensor errors, and the information about them:
-// rate_smoother.md (R37), (R38), (R39).
+// Computes the derivatives of the estimated rates with respect to the sensor errors, and the information about the
+// sensor errors: rate_smoother.md (R37), (R38), (R39).
 RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const RateModel& model,
                                                                        std::span<const RateEstimate> estimates,
                                                                        const RigConstants& rig) const {

@@ -17,10 +17,12 @@ class RateIteration {
 
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the solution step, limited to step_max. Returns the largest change of an angular rate.
+  /// Adds the step of the last factorisation to the estimates, limited to step_max. Returns the largest change of an
+  /// angular rate.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for each sample of the last factorisation, from the last sample to the first.
+  /// Calls use(k, conditional) for each sample k, from the last sample to the first, with the conditional distribution
+  /// of its unknowns.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -31,8 +33,9 @@ class RateIteration {
   }
 
   /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors.
-  /// SensorErrorDerivatives also contains the information of the readings about the sensor errors, after optimisation
-  /// of all unknowns. The derivatives hold for the last factorisation, with its `estimates` and `rig`, before apply().
+  /// SensorErrorDerivatives also contains the information about the sensor errors from the readings, with all other
+  /// unknowns optimised. The derivatives hold for the last factorisation, with its `estimates` and `rig`, before
+  /// apply().
   struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
@@ -42,8 +45,8 @@ class RateIteration {
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the decrease of the cost that the last factorisation predicts. The newton_decrement is also the
-  /// square of the largest change of any combination of unknowns, in standard deviations.
+  /// Returns twice the decrease of the cost that the last factorisation predicts. The result is also the squared
+  /// largest change of any linear combination of unknowns, in standard deviations.
   double newton_decrement() const;
 
  private:
@@ -62,9 +65,9 @@ struct RateSolution {
 };
 
 /// Optimises all rates and the calibration. If most clipped samples are classified as contact, solve() repeats the
-/// optimisation with larger and smaller contact thresholds. With a wrong lever arm, the first optimisation may end in a
-/// local minimum without flight. Returns false if the normal equations are not positive definite. The function stores
-/// iterations, restarts, convergence and Mahalanobis distance in `health`.
+/// optimisation with larger and smaller contact thresholds. A wrong initial lever arm may lead to a local minimum in
+/// which no sample is in flight. Returns false if the normal equations are not positive definite. `health` receives
+/// iterations, restarts, convergence and the Mahalanobis distance of the calibration.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

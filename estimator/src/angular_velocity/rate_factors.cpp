@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Returns the products of the matrices S_i of RigConstants::inertia_basis with v, as columns. The formulas are written
-// out because inertia_basis_times() runs for each sample.
+// Returns the products of the matrices S_i of RigConstants::inertia_basis with v, as columns. The products are written
+// out for speed, because inertia_basis_times() runs for each sample.
 Eigen::Matrix<double, 3, 5> inertia_basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -30,8 +30,8 @@ struct Jerk {
   Vector3d Jw, Ja, value;
 };
 
-// Computes the angular jerk j from the time derivative of Euler's equation J alpha + w x J w = 0. The jerk satisfies J
-// j = -(alpha x J w + w x J alpha): rate_smoother.md (R11).
+// Computes the angular jerk of torque-free rotation from the time derivative of Euler's equation: rate_smoother.md
+// (R11). The jerk j satisfies J j = -(alpha x J w + w x J alpha).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -43,8 +43,8 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// JerkDerivatives contains the derivatives of the angular jerk. The derivatives are a separate type because most calls
-// need only the jerk.
+// JerkDerivatives contains the derivatives of the angular jerk with respect to rate, angular acceleration and inertia.
+// Most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, jacobian_acceleration;
   Eigen::Matrix<double, 3, 5> jacobian_inertia;
@@ -62,7 +62,8 @@ JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
   return out;
 }
 
-// Propagates the motion back in time by `delay_s`, with Euler's equation without torque: rate_smoother.md (R12).
+// Propagates rate and angular acceleration back in time by `delay_s`, for rotation without torque: rate_smoother.md
+// (R12).
 RateKnot knot_before(double delay_s, const RateKnot& knot, const Jerk& jerk) {
   const double half = 0.5 * delay_s * delay_s;
   return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
@@ -71,8 +72,8 @@ RateKnot knot_before(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 
 }  // namespace
 
-// Computes the residual of the gyro: rate_smoother.md (R6). The motion state may belong to an earlier time than the
-// reading: rate_smoother.md (R7).
+// Computes the residual of the gyro: rate_smoother.md (R6). Rate and angular acceleration may belong to an earlier time
+// than the sample: rate_smoother.md (R7).
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
@@ -132,7 +133,8 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
   return f;
 }
 
-// Computes the same residual with its derivatives with respect to the calibration only: rate_smoother.md (R12).
+// Computes the residual of delayed_flight_factor() with derivatives with respect to the calibration only:
+// rate_smoother.md (R12).
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Vector3d& reading_m_s2, double delay_s) {
   RateFactor f = flight_factor(knot_before(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);

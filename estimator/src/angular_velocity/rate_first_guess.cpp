@@ -35,7 +35,8 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
   std::vector<WnojSmoother::Measurement> readings(observations.size());
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const RateObservation& o = observations[k];
-    if (!saave.step(o.sample, state, recovered).ok()) {  // the samples were checked, so the error is a gap
+    // the samples were checked before, so the only possible error is a gap
+    if (!saave.step(o.sample, state, recovered).ok()) {
       state = {};
       (void)saave.step(o.sample, state, recovered);
     }

@@ -46,11 +46,11 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// kSubsampleInContact is the standard deviation [rad/s] that an impact adds to the saturation deficit of a partly
-// clipped reading.
+// If a sample is in contact, the saturation deficit of a partly clipped reading has this additional standard deviation
+// [rad/s].
 constexpr double kSubsampleInContact = 0.25;
 
-// kLever, kAccelBias and kInertia are indices of calibration constants. The flight model depends on lever arm and
+// kLever, kAccelBias and kInertia are indices in the vector of RigConstants. The flight model depends on lever arm and
 // accelerometer bias; Euler's equation depends on the inertia.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
@@ -74,8 +74,8 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Returns the squared residual, normalised by its covariance. The covariance contains the sensor noise and the
-// uncertainty of the calibration: rate_smoother.md (R16).
+// Returns the squared residual divided by its variance. The variance has two parts, sensor noise and the uncertainty of
+// the calibration: rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
@@ -91,8 +91,8 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Adds the information of a residual about the rate and acceleration of a sample to the normal equations. Returns A' *
-// information; A is the derivative of the residual with respect to the sample's unknowns.
+// Adds the residual to the normal equations of a sample's rate and angular acceleration. Returns A' * information; A is
+// the derivative of the residual with respect to the sample's unknowns.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.jacobian_knot;
@@ -103,8 +103,8 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
   return At;
 }
 
-// Adds the information of a residual about the calibration constants to the normal equations. The residual depends on
-// kCount constants, starting with index kFirst.
+// Adds the residual to the normal equations of the calibration constants. The residual depends on kCount constants,
+// starting with index kFirst.
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
@@ -133,7 +133,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Reduces the information of a residual because of an additional covariance of the residual: rate_stream.md (R92).
+// Reduces the weight (information) of a residual because its covariance grows by `spread`: rate_stream.md (R92).
 Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -180,15 +180,15 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
                     params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
-// Returns the variance of the accelerometer for use in sums over samples. Errors that last longer than a sample do not
-// average out.
+// Returns the variance of the accelerometer for use in sums over samples. Errors that last longer than a sample remain
+// in the sum.
 double RateModel::accel_variance_of_sum(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// Returns the squared change of the motion between two samples, normalised by its covariance in flight:
-// rate_smoother.md (R17), (R4).
+// Returns the squared change of rate and angular acceleration between two samples, divided by the variance of this
+// change in flight: rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -199,7 +199,8 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // contact changes the rate between the time of the reading and the time of the sample: rate_smoother.md (R7)
+    // in contact, the rate changes between the time of the gyro reading and the time of the sample: rate_smoother.md
+    // (R7)
     const double change =
         params_.expert.contact.gain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost =
@@ -212,8 +213,8 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the prior of the contact force has the estimated force as its standard deviation: rate_smoother.md (R20).
-// The prior prefers small contact forces over large forces as explanation of an unmeasured rate.
+// In contact, the unknown contact force has mean zero and the estimated force as standard deviation: rate_smoother.md
+// (R20). The solver therefore prefers unmeasured rates that need a small contact force.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_of_sum(observation);
@@ -302,8 +303,8 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // During model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
-  // possible change of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
+  // During model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the change
+  // of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
   const double change =
       params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
@@ -348,7 +349,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
-// Converts the scaled motion state of rate_smoother.md (R1) to physical units, as the inverse of scaled().
+// Converts a step of the solver to physical units, as the inverse of scaled(): rate_smoother.md (R1).
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;
@@ -364,7 +365,7 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.unusable_gyro;
-  // a reading that may be saturated counts as a lower bound, neither as clipped nor as measured
+  // a reading that may be saturated is a lower bound of the rate
   if (clipped == 0) return o.possibly_saturated_axes() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
   double largest = 0.0;

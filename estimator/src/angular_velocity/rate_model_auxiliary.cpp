@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_auxiliary.cpp contains the part of RateModel for auxiliary IMUs.
+// rate_model_auxiliary.cpp contains the functions of RateModel that use the readings of additional IMUs.
 #include <Eigen/LU>
 #include <cmath>
 
@@ -10,7 +10,8 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // derivative of a residual by rate and scaled acceleration
+// derivative of a residual with respect to rate and scaled angular acceleration
+using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
   const double information = 1.0 / (sigma * sigma);
@@ -18,8 +19,8 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// Returns whether an axis of an auxiliary IMU depends only on unclipped components of the primary IMU's specific force.
-// A saturation deficit of element i acts along column i of the inverse of the sensing directions.
+// Returns whether the force along an axis of an auxiliary IMU follows from the unclipped force components of the
+// primary IMU. A saturation deficit of element i acts along column i of the inverse of the sensing directions.
 bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kNegligibleCoupling = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -39,7 +40,7 @@ Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDire
 }
 
 // Returns the standard deviation of an unsaturated reading that is due to the uncertain direction of the sensing
-// element. `most` is the maximum saturation deficit of the other sensing elements.
+// element. `most` is the largest possible saturation deficit of the other sensing elements.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }

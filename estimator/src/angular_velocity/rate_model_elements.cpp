@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_elements.cpp contains the part of RateModel for samples with a clipped sensing element of gyro or
-// accelerometer. RateModel processes the readings of clipped samples element by element.
+// rate_model_elements.cpp contains the functions of RateModel for samples with a clipped sensing element. RateModel
+// processes the readings of such samples element by element.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -12,8 +12,8 @@ namespace {
 constexpr int kGyroBias = 3;
 
 // Adds the residual of one sensing element, m_j' (rate - age acceleration + bias - reading), with its information and
-// gradient. `age` is in units of the time scale of the acceleration. With `rig_spread`, the residual has a smaller
-// weight and leaves the sensing direction m_j unchanged: rate_smoother.md (R8), rate_stream.md (R92).
+// gradient. `age` is in units of the time scale of the acceleration. If `rig_spread` is given, the residual has a
+// smaller weight and does not update the sensing direction m_j: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
@@ -89,7 +89,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // The residual of the specific force is model minus reading. The true force component has the sign of the saturated
+    // The residual is the modelled minus the measured force. The true force component has the sign of the saturated
     // reading and a larger magnitude: rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_errors.cpp contains the part of RateModel that protects the calibration from contact and corrects sensor
-// errors. rate_model_errors.cpp also sums the information about sensor errors and computes the reported covariance.
+// rate_model_errors.cpp contains the functions of RateModel that correct sensor errors and compute the reported
+// covariance. Other functions exclude samples in contact from the calibration.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
@@ -9,9 +9,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A sample updates the calibration only if its flight weight is at least kRigWeightMin; it still affects a clipped
-// rate. In contact, the force residual changes the rate little, but could change uncertain calibration constants
-// strongly.
+// A sample updates the calibration only if its flight weight is at least kRigWeightMin. In contact, the force residual
+// could change uncertain calibration constants strongly.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -20,11 +19,12 @@ bool RateModel::is_uninformative(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// Restricts the effect of a contact force to unmeasured rates. The contact force then does not affect the calibration.
+// Removes the derivatives of the flight residual by which a contact force could change measured rates or the
+// calibration.
 void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    // if a contact force acted on a measured rate, the gradient of the force would change the gyro's bias
+    // a contact force that changes a measured rate would also change the gyro's bias
     if ((o.unmeasured_axes() >> j & 1u) == 0) flight.jacobian_knot.col(j).setZero();
   }
 }
@@ -49,7 +49,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
-  // The curvature term of the force is small. The code therefore neglects its derivatives: rate_smoother.md (R13).
+  // Averaging over the window changes the force in proportion to its second time derivative: rate_smoother.md (R13).
+  // The derivatives of this small term are neglected.
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -64,8 +65,7 @@ RateFactor RateModel::flight_jacobian_calibration(const RateObservation& observa
   return out;
 }
 
-// Adds the derivatives of the gradients with respect to the sensor errors, rate_smoother.md (R36), and the sums of
-// (R38).
+// Adds the derivatives of a sample's gradient with respect to the sensor errors: rate_smoother.md (R36), (R38).
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                            bool rig_spread) const {
@@ -126,7 +126,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
-// Computes the covariance of a rate that RateSmoother reports: rate_smoother.md (R49).
+// Computes the reported covariance of a rate from the covariance of the fit: rate_smoother.md (R49).
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
@@ -138,8 +138,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.is_element_clipped()) {
-    // In contact, the contact force changes the rate within a sample's averaging window. The change of the rate affects
-    // measured axes as well.
+    // A contact force changes the rate within the averaging window of a sample, also on measured axes.
     const double struck = params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m *
                           estimate.contact_force_m_s2.norm();
     timed.diagonal().array() += struck * struck;

@@ -13,7 +13,7 @@
 
 namespace tumble {
 
-/// RateReadings is a recording, classified as input of RateModel, with a prior calibration updated by the saturation
+/// RateReadings contains the classified samples of a recording, and the prior calibration updated by the saturation
 /// planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
@@ -22,8 +22,8 @@ struct RateReadings {
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Classifies the samples (at least two): clipped elements, partly saturated axes, suspect axes, rest and repeated
-/// readings. Cost: O(N). The function stores saturation levels, units and repetitions in `health`.
+/// Finds clipped elements, partly saturated axes, suspect axes, rest and repeated readings in at least two samples.
+/// Cost: O(N). The function stores saturation levels, suspect units and repetitions in `health`.
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -26,16 +26,15 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// Returns the sensor errors' standard deviations from the data sheet, without the larger values of an uncalibrated
-// device.
+// Returns the standard deviations of the sensor errors according to the data sheet.
 SensorErrorPriors data_sheet_priors(SensorErrorPriors sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
   return sizes;
 }
 
-// Returns whether a device with the stated sensor errors `given` may have the errors `found`. Errors beyond kDeviations
-// standard deviations come from the flight model, not from the device.
+// Returns whether the estimated errors `found` are plausible for a device with the stated sensor errors `given`. Errors
+// beyond kDeviations standard deviations come from the flight model, not from the device.
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorPriors& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
@@ -51,7 +50,7 @@ bool has_delay(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether the estimated and the corrected sensor errors differ enough to require another optimisation.
+// Returns whether two sets of sensor errors differ enough to require another optimisation with corrected readings.
 bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -60,11 +59,12 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// kDeviceMahalanobisMax is the Mahalanobis distance of three calibration constants that one device in a thousand
-// exceeds.
+// One correct device in a thousand exceeds the Mahalanobis distance kDeviceMahalanobisMax (three calibration
+// constants).
 constexpr double kDeviceMahalanobisMax = 2.33;
 
-// Fixes the calibration at its prior, except for the sensing directions of the gyro, which contact does not affect.
+// Returns parameters that fix the calibration at its prior, except for the gyro's sensing directions, which contact
+// cannot falsify.
 RateModelParams fixed_calibration(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -89,7 +89,8 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// Runs the optimisation, and repeats it with a fixed calibration if the result mistakes contact for flight.
+// Optimises the rates and the calibration. If the result mistakes contact for flight, a second optimisation fixes the
+// calibration.
 Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                              std::span<const RateObservation> observations, bool struck, RateFit& fit,
                              RateReport& health) {
@@ -112,19 +113,19 @@ Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModel
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // A fixed calibration keeps its uncertainty, which the covariance of the rates therefore includes.
+  // A fixed calibration is still uncertain, so the covariance of the rates includes its uncertainty.
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};
 }
 
-// The estimated delay becomes the initial value if it differs from the assumed delay by more than kGuessSigmasMax
-// standard deviations.
+// The delay estimated from impacts replaces the assumed delay if both differ by more than kGuessSigmasMax standard
+// deviations.
 constexpr double kGuessSigmasMax = 2.0;
 
-// Adds the delay estimated from impacts to the information about the sensor errors, rate_smoother.md (R38). The flight
-// model uses no impacts, so both sources of information are independent.
+// Adds the delay estimated from impacts to the information about the sensor errors, rate_smoother.md (R38). The
+// estimate from impacts is independent of the flight model, which uses no impacts.
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -136,10 +137,9 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 // kContradictionOdds. At higher odds, a mixture of a calibrated and an uncalibrated device represents the uncertainty.
 constexpr double kContradictionOdds = 0.05;
 
-// Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
-// contradicts its data sheet, the stated sampling is also unreliable, and vice versa. The function combines the
-// evidence from scale and sampling by naive Bayes. `triads_asynchronous` states that gyro and accelerometer are known
-// to be asynchronous.
+// Returns whether the readings clearly contradict the data sheet of a device, in scale or in sampling times. A wrong
+// scale also makes the stated sampling times unreliable, and vice versa. Naive Bayes combines both kinds of evidence.
+// `triads_asynchronous` states that gyro and accelerometer are known to be asynchronous.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -147,7 +147,7 @@ bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPrior
   return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kContradictionOdds;
 }
 
-// Returns the standard deviations of the sensor errors of a device without a data sheet.
+// Returns the standard deviations of the sensor errors for a device without data sheet.
 SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
   sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
@@ -156,7 +156,8 @@ SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   return sizes;
 }
 
-// Expresses the sensor errors of an earlier run relative to the errors that the caller states for this run.
+// Converts the sensor errors of an earlier run to information about the differences from the errors stated for this
+// run.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
                                                const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
@@ -164,7 +165,7 @@ SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownS
 }
 
 // Estimates sensor errors relative to the errors that the caller states. `learnt` is the estimate of an earlier run,
-// also relative to the stated errors.
+// also relative to the errors that the caller states.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -175,20 +176,20 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
 
 struct Rounds {
   const RateSmoother::Params& params;
-  const RateModelParams& known;  ///< with the sensor errors stated for the device
+  const RateModelParams& known;  ///< parameters with the sensor errors stated for the device
   std::span<const ImuSample> samples;
   std::span<const Clipping> clippings;
   double period_s = 0.0;
   bool estimated = false;
-  bool triads_asynchronous = false;  ///< a triad repeats readings, so gyro and accelerometer are asynchronous
+  bool triads_asynchronous = false;  ///< gyro or accelerometer repeats readings, so that both are asynchronous
   TriadDelay guess = {};             ///< empty if the data sheet states the delay
   std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
-  SensorErrorPriors sizes = {};      ///< stated sizes, except for the sampling of asynchronous triads
+  SensorErrorPriors sizes = {};      ///< stated standard deviations, enlarged for asynchronous triads
 
   const SensorErrorPriors& stated() const { return known.expert.error_priors; }
   bool is_delay_unknown() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// Returns whether the body has impacts and flight. A body with impacts and flight is not hand-held, so RateSmoother
-  /// may let sensor errors change the calibration of the rig.
+  /// Returns whether the body has impacts and flight, and is therefore not hand-held. Only then may sensor errors
+  /// explain a changed calibration.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -207,8 +208,8 @@ Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& kn
   return out;
 }
 
-// Start contains the initial values of one optimisation. The first optimisation uses the assumed sensor errors. If the
-// assumed delay requires a fixed calibration, a second optimisation starts with another delay.
+// Start contains the initial values of one optimisation. The first optimisation starts from the assumed sensor errors.
+// If the first optimisation must fix the calibration, a second optimisation starts from another accelerometer delay.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -234,12 +235,12 @@ Status optimise_corrected(const Rounds& rounds, const SensorErrors& errors, std:
   return optimise_or_fix_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
-// Computes the information about the sensor errors, relative to the errors that are already corrected (fit.moved).
+// Computes the information about the sensor errors that remain after the correction of the readings (fit.moved).
 Status collect_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // The remaining gradient of an unconverged optimisation must not count as information about sensor errors.
+    // An unconverged optimisation has a remaining gradient, which must not count as evidence of sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -255,10 +256,10 @@ struct RoundsState {
   SensorErrors errors;  ///< errors corrected in the last optimisation
   SensorErrorEvidence learnt;
   SensorErrorFit found;
-  bool is_plausible = true;  ///< a device may have these errors
+  bool is_plausible = true;  ///< the errors are plausible for a device
 };
 
-// Repeats the optimisation until the estimated sensor errors equal the corrected errors.
+// Repeats the optimisation with corrected readings until the estimated sensor errors no longer change.
 Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
                        RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
@@ -268,7 +269,7 @@ Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observat
   Start start = start_from(has_calibration ? learnt->errors : given, rounds);
   rounds_state.errors = start.errors;
   health.error_rounds = 0;
-  for (int round = 1;; ++round) {  // counts from the last restart, and the report counts all rounds
+  for (int round = 1;; ++round) {  // counts from the last restart; the report counts all rounds
     ++health.error_rounds;
     if (Status status = optimise_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
@@ -297,9 +298,8 @@ Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observat
   }
 }
 
-// Uses the larger covariance of an uncalibrated device if the device clearly contradicts its data sheet. The correction
-// then keeps only those sensor errors that the readings clearly determine. Returns the standard deviations of the
-// sensor errors that are in use.
+// Returns the prior standard deviations of the sensor errors. If the readings clearly contradict the data sheet, the
+// function returns those of an uncalibrated device, and increases the covariance of the estimated errors.
 SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open = rounds.is_delay_unknown() &&
                     (contradicts_data_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -315,7 +315,7 @@ SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsSt
   return sizes;
 }
 
-// Updates the fit to first order for an additional correction `step` of the sensor errors.
+// Updates rates and calibration to first order for an additional correction `step` of the sensor errors.
 void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
@@ -338,7 +338,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const SensorErrorPriors sizes = open_priors(rounds, fit, rounds_state, health);
   const SensorErrorPriors stated = data_sheet_priors(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
-    // A run without flight contains no information about the device beyond the prior. All sensor errors then keep their
+    // A run without flight contains no information about the device beyond the prior. All sensor errors keep their
     // prior uncertainty.
     rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     rounds_state.found.known.errors = rounds_state.errors;
@@ -348,8 +348,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // Sensor errors belong to the device, so the same errors affect the next run. The next run must include their
-  // uncertainty again.
+  // The next run uses the same device, so the same sensor errors affect it. The saved covariance of the calibration
+  // therefore includes the uncertainty of the sensor errors.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance +=
       fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();

@@ -17,11 +17,11 @@ struct RateFit {
   RateIteration::SensorErrorDerivatives moved;
 };
 
-/// Repeats the optimisation with readings corrected by the previous sensor errors, and finally applies a linear
-/// correction. If an optimisation mistakes contact for flight and thereby changes the calibration, the function fixes
-/// the calibration at its prior. Contact was mistaken for flight if the constants change more than their uncertainty
-/// and the sensor errors allow. Before fixing the calibration, the function repeats the first optimisation with the
-/// alternative delay (assumed or guessed).
+/// Repeats the optimisation, each time with readings corrected by the last estimated sensor errors. A linear correction
+/// follows at the end. If an optimisation mistakes contact for flight and thereby changes the calibration, the function
+/// fixes the calibration at its prior. Contact was mistaken for flight if the calibration changes by more than its
+/// uncertainty and the sensor errors allow. Before that, the first optimisation repeats with the other accelerometer
+/// delay (assumed, or estimated from impacts).
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

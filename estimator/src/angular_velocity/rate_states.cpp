@@ -14,10 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kCommonDelaySigmas is the maximum delay that gyro and accelerometer have in common, in standard deviations.
+// kCommonDelaySigmas is the largest considered delay that gyro and accelerometer have in common, in standard
+// deviations.
 constexpr double kCommonDelaySigmas = 2.0;
 
-// Interpolates the readings of a slow gyro at the time of each sample if the gyro measures all axes.
+// Interpolates the readings of a gyro that is slower than its log, for samples in which no axis is clipped.
 std::vector<std::optional<InterpolatedRate>> interpolate_gyro(std::span<const ImuSample> samples,
                                                               const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
@@ -28,8 +29,8 @@ std::vector<std::optional<InterpolatedRate>> interpolate_gyro(std::span<const Im
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
-// Returns the covariance of a rate that uncertain sensor errors cause, limited to the largest rate: rate_smoother.md
-// (R44).
+// Returns the part of a rate's covariance that uncertain sensor errors cause, limited to the largest rate:
+// rate_smoother.md (R44).
 Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                         double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
@@ -38,9 +39,8 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// Returns how fast the angular rate may change between two samples. For unsaturated readings, the function returns the
-// change of the estimated rate per time. For readings that may be saturated, the function computes the change from the
-// contact force.
+// Returns how fast the angular rate may change between two samples. For unsaturated readings, the result is the change
+// of the estimated rate per time. For readings that may be saturated, the result follows from the contact force.
 double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                           std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -52,9 +52,9 @@ double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObs
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Returns the covariance of a rate that an unknown common delay of gyro and accelerometer causes. The standard
-// deviation is the largest change of the rate within the delay. With a delay, an impact in the next sample's window may
-// belong to the current sample.
+// Returns the part of a rate's covariance that an unknown common delay of gyro and accelerometer causes. The standard
+// deviation is the largest change of the rate within the delay. An impact that a delay shifts into the next sample's
+// window may have happened in the window of the current sample.
 Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParams& params,
                                         std::span<const RateObservation> observations,
                                         std::span<const RateEstimate> estimates, std::size_t k) {
@@ -127,7 +127,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const SensorErrors& errors = health.sensor_errors.errors;
   const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
-  // if saturation planes are axis-aligned, equal readings identify saturation without the planes
+  // with axis-aligned saturation planes, equal readings alone identify saturation
   const std::vector<std::uint8_t> near =
       possible_partial_saturation(samples, health.clips_after_compensation ? RailPlanes{} : readings.planes);
   const std::vector<std::optional<InterpolatedRate>> own = interpolate_gyro(samples, readings);

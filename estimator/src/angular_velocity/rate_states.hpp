@@ -10,11 +10,11 @@
 
 namespace tumble {
 
-/// Computes angular rates and covariances at the samples. Cost: O(N), times the number of samples within a common
-/// delay. The covariances include the uncertainty of sensor errors, calibration, and a delay that gyro and
-/// accelerometer share (rate_smoother.md). The rates are valid at the times of the gyro's readings. If the gyro is
-/// slower than its log, the function interpolates readings where this is more accurate than the white-jerk prior. The
-/// function adds the numbers of recovered, bounded, unusable and flight samples to the `health` of fit_rounds().
+/// Computes angular rates and covariances at the samples. Cost: O(N n) for n samples within the common delay. The
+/// covariances include the uncertainty of sensor errors, calibration, and a delay that gyro and accelerometer share
+/// (rate_smoother.md). The rates are valid at the times of the gyro's readings. If the gyro is slower than its log,
+/// interpolated readings replace estimates that are less accurate. `health` receives the numbers of recovered, bounded,
+/// unusable and flight samples.
 std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span<const ImuSample> samples,
                                    const RateReadings& readings, const RateFit& fit, RateReport& health);
 

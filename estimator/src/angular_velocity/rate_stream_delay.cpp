@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the information about sensor
-// errors. Each force is assigned to the rate at the time of the force.
+// RateStream estimates the accelerometer's delay first from impacts, then from the information about sensor errors.
+// Each force reading is combined with the rate at the time of the force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,20 +12,20 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = ImpactSums::kDelayMax_samples;
-// Time constant of the impact statistics, as a number of intervals between readings.
+// The sums over impacts decay with this time constant, a number of intervals between readings.
 constexpr double kMemory = 2000.0;
-// `kUpdatePeriod_ns` is the time between two estimates of the delay. `kDelayChangeMin_s` is the minimum change of the
-// delay that the stream applies.
+// `kUpdatePeriod_ns` is the time between two estimates of the delay. RateStream ignores changes of the delay below
+// `kDelayChangeMin_s`.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;
-// If the odds of synchronous triads are below `kContradictionOdds`, impacts clearly contradict the data sheet. A
-// guessed delay replaces the current delay if their difference exceeds `kGuessSigmasMax` standard deviations.
+// If the odds of a synchronous gyro and accelerometer are below `kContradictionOdds`, impacts contradict the data
+// sheet. A delay estimated from impacts replaces the current delay if they differ by more than `kGuessSigmasMax`
+// standard deviations.
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// `kIntervalsMin` is the minimum number of intervals. `kCorrelationGainMin` is the minimum difference between the
-// correlations at the estimated and at the stated delay. The first impacts of a tumble correlate by chance with the
-// rate changes.
+// An estimated delay needs at least `kIntervalsMin` intervals between readings. The correlation at the estimated delay
+// must exceed that at the stated delay by `kCorrelationGainMin`, because the first few impacts correlate by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
-// Maximum delay, in standard deviations of an uncalibrated device.
+// Maximum delay, as a multiple of the prior standard deviation for an uncalibrated device.
 constexpr double kReach = 3.0;
 
 double seconds_to(const RateStream::Knot& a, const RateStream::Knot& b) {
@@ -70,8 +70,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
-// Stores the specific force at the time of sample k, or the closest force in the window. The function also stores the
-// remaining delay between the force and the sample: rate_stream.md (R105).
+// Stores in sample k the specific force at the time of the sample, or the closest force in the window. The function
+// also stores the remaining delay between the force and the sample: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -86,7 +86,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
 }
 
-// Updates samples whose force the newest sample replaces by a force that is closer in time.
+// Updates the forces of those samples for which the newest sample contains a force that is closer in time.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.applied_delay_s == prior_delay_s_ && force_shift(state) == 0) return newest;
@@ -96,8 +96,8 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// Adds the interval between two consecutive readings to the impact statistics: rate_stream.md (R104). The interval is
-// old enough that its clipping, and forces up to the maximum delay, are known.
+// Adds an interval between two consecutive readings to the sums over impacts: rate_stream.md (R104). The interval is so
+// old that its clipped axes and all forces up to the maximum delay are known.
 void RateStream::accumulate_impacts(State& state) const {
   if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
   const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
@@ -119,15 +119,15 @@ void RateStream::accumulate_impacts(State& state) const {
   impacts.add((end - begin).norm() / span_s, mean);
 }
 
-// Returns the delay estimated from impacts. The estimate is empty if the log repeats readings, since each repetition
-// would count as a reading.
+// Returns the delay estimated from impacts. The estimate is empty if the log repeats readings, because a repetition
+// must not count as a reading.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const ImpactSums& impacts = state.device.front().delay.impacts;
   if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};
   return impacts.estimate_delay(params_.period_s, params_.period_s);
 }
 
-// Before a step, decides whether to change the delay: rate_stream.md (R106).
+// Decides before a solver step whether to change the accelerometer's delay: rate_stream.md (R106).
 void RateStream::update_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
@@ -151,7 +151,8 @@ void RateStream::update_delay(State& state) const {
   if (delay.found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
-// Applies a different delay. The window restarts, and the calibration estimated with the previous delay is discarded.
+// Replaces the accelerometer's delay, restarts the window and discards the calibration estimated with the previous
+// delay.
 void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.applied_delay_s = delay.estimated_s = delay_s;
@@ -168,8 +169,8 @@ void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the accelerometer's delay. The prior from marginalised samples changes to first order:
-// rate_stream.md (R107).
+// Applies a small change of the accelerometer's delay. The prior from samples that left the window changes to first
+// order: rate_stream.md (R107).
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

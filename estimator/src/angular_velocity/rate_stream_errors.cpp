@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensor errors in a RateStream are considered parameters (Schmidt, 1966). RateStream sums the information about sensor
-// errors and adds the uncertainty of the errors to the covariances.
+// RateStream treats the sensor errors as consider parameters (Schmidt, 1966). RateStream sums the information about
+// sensor errors and adds their uncertainty to the covariances of the rates.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ using Eigen::Matrix3d;
 // which costs more than a step of the stream.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
-// Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
+// Returns the part of a rate's covariance that uncertain sensor errors cause, limited to the largest rate:
 // rate_smoother.md (R44).
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
@@ -31,8 +31,8 @@ bool moves(const RateStream::Knot& knot) {
 
 }  // namespace
 
-// Updates the information about the sensor errors when a sample leaves the window. The update is the Schur complement
-// with the sensor errors as the last unknowns: rate_stream.md (R100).
+// Updates the information about the sensor errors when a sample leaves the window. A Schur complement eliminates the
+// sample's unknowns and keeps the sensor errors: rate_stream.md (R100).
 void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
@@ -41,7 +41,7 @@ void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& err
   device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-// Deletes all information from marginalised samples, except for the calibration.
+// Deletes the prior from samples that left the window, but keeps the estimated calibration.
 void RateStream::reset_prior(State& state) const {
   state.prior = {};
   state.prior_corner = {};
@@ -53,7 +53,7 @@ void RateStream::reset_prior(State& state) const {
   device.evidence.gradient.setZero();
 }
 
-// Resets the calibration to its prior. Deletes the information about the motion before the window.
+// Resets the calibration to its prior, and deletes the information about the motion before the window.
 void RateStream::reset_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -69,8 +69,8 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// Computes the derivatives by the sensor errors: rate_stream.md (R101). Before the call, the blocks of the window must
-// be eliminated. Since the elimination, the estimates of the window and the calibration must not have changed.
+// Computes the derivatives of the estimated rates with respect to the sensor errors: rate_stream.md (R101). The caller
+// must have eliminated the blocks of the window with the current estimates and calibration.
 void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -105,7 +105,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // Information from impacts has full weight. The division cancels the evidence weight.
+      // The delay from impacts has full weight, so this division cancels kEvidenceWeight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
@@ -116,8 +116,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   device_.update(window_evidence, posterior_work, device.posterior, delay.found);
 }
 
-// Returns the covariance of a sample's rate that is due to sensor errors and to a delay common to gyro and
-// accelerometer.
+// Returns the part of a rate's covariance that sensor errors, and a delay common to gyro and accelerometer, cause.
 Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();

@@ -11,8 +11,8 @@
 
 #include "tumble/angular_velocity/rate_stream.hpp"
 
-/// rate_stream_members.hpp lists the members of RateStream's state, and members of RateStream::Params that are not
-/// Fields, as state_visitor.hpp describes.
+/// rate_stream_members.hpp lists the members of RateStream's state and further members of RateStream::Params, for
+/// saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<RateStreamForce> Self, class Visitor>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Classification of a RateStream's window by the detected saturation levels.
+// RateStream classifies the samples of its window by the detected saturation levels.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -17,15 +17,15 @@ namespace {
 using Eigen::Vector3d;
 
 // `kSlopeSigmasMax` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted
-// saturation level needs at least `kPlateauReadingsMin` readings within kNearRailRatio of the axis' largest reading. A
+// saturation plane needs at least `kPlateauReadingsMin` readings within kNearRailRatio of the axis' largest reading. A
 // rounded maximum of n readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height.
 // If saturation cuts off a motion, the extrapolated height exceeds `kHeightRatioMin` times the measured height. The
 // extrapolated height also exceeds `kHeightNoiseSigmas` standard deviations of the noise.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
-// Maximum relative difference between the saturation levels of two sensing elements. On the wand of RepoIMU, the
-// difference is 3 %.
+// Maximum relative difference between the saturation levels of two sensing elements. The wand of the data set RepoIMU
+// has a difference of 3 %.
 constexpr double kLevelDifferenceMax = 0.05;
 
 // Returns whether the largest reading of a sensing element may be its saturation level. The criterion is the distance
@@ -56,14 +56,14 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// Beside contains the samples with the gyro readings before and after a sample's reading. The pointer is null if the
+// Beside points to the samples with the gyro readings before and after a sample's reading. A pointer is null if the
 // window contains no earlier or later reading.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Returns the samples with the gyro readings before and after the reading of sample k. All samples that repeat one
-// reading have equal results.
+// Returns the samples with the gyro readings before and after the reading of sample k. The result is the same for all
+// samples that repeat one reading.
 Beside neighbour_readings(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -89,8 +89,8 @@ void RateStream::reclassify_window(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Classifies samples of the window again with the current saturation levels. The update starts at the previous reading,
-// because the classification of a reading depends on its neighbours. A newly clipped sample gets a new initial rate.
+// Classifies samples of the window again with the current saturation levels. The classification starts one reading
+// earlier, because it depends on neighbouring readings. A newly clipped sample gets a new initial rate.
 void RateStream::classify_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.rails.known;
@@ -129,9 +129,9 @@ void RateStream::classify_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated: rate_stream.md (R93). If the saturation level is known, the reading must
-// be at the level within the uncertainty of the saturation plane. If the saturation level is unknown, the test uses the
-// largest reading so far. The largest reading must be close to the saturation levels of the other sensing elements.
+// Returns whether a reading may be saturated: rate_stream.md (R93). A reading at a known saturation level, within the
+// uncertainty of the saturation plane, may be saturated. If the level is unknown, the axis' largest reading so far must
+// be close to the levels of the other sensing elements.
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -147,7 +147,8 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
-// Computes the possible saturation deficit of a single sample near the saturation level of another sensing element.
+// Stores the possible saturation deficit of a single sample whose reading is near the saturation level of another
+// element.
 void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.isolated_high_axes = 0;
@@ -157,8 +158,8 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               now, after);
 }
 
-// Clears the suspect marks in the window that a larger reading refutes. The function also clears marks for which a
-// saturation level is now known.
+// Clears the marks of suspect readings in the window if a larger reading has arrived, or if the saturation level is now
+// known.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
@@ -167,7 +168,8 @@ void RateStream::clear_suspects(State& state) const {
   }
 }
 
-// Marks runs of three or more unflagged readings that may be saturated. Each new sample repeats the marking.
+// Marks runs of three or more unflagged readings that may be saturated. RateStream repeats the marking for each new
+// sample.
 void RateStream::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspect;
   clear_suspects(state);
@@ -188,8 +190,8 @@ void RateStream::mark_possible_saturation(State& state) const {
   }
 }
 
-// Returns the larger of the reading's slopes before and after a run of suspect readings, per sample. Each slope is the
-// smaller of two steps between readings, because an impact causes only a single step.
+// Returns how steeply the readings change before or after a run of suspect readings, per sample; the larger slope
+// counts. Each slope is the smaller of two steps between readings, because an impact causes only a single step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -226,12 +228,12 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
     if (((observation.clipping.gyro | observation.clipping.unusable_gyro) & bit) != 0) continue;
     observation.isolated_high_axes = static_cast<std::uint8_t>(observation.isolated_high_axes & ~bit);
     observation.suspect = static_cast<std::uint8_t>(observation.suspect | bit);
-    // saturation cuts off all readings of the run together, so the run counts as one reading
+    // the errors of all saturated readings of a run are correlated, so the run counts as one reading
     observation.expected_deficit_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
 }
 
-// Returns the growth of the gyro's reading before the newest sample, per sample. The growth is the smaller of two
+// Returns the increase of the gyro's reading per sample, before the newest sample. The growth is the smaller of two
 // steps, because an impact causes a single step. A constant spin after an impact is not saturation.
 Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
@@ -246,8 +248,8 @@ Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the slope before a run of clipped readings. The slope is needed while the run continues after its first
-// reading left the window.
+// Stores the slope before a run of clipped readings. RateStream needs the slope after the first reading of the run has
+// left the window.
 void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
@@ -259,8 +261,8 @@ void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& ne
   }
 }
 
-// Adds the saturation planes' information about the directions of clipped elements. Each step adds the information
-// about the planes again, because the planes improve.
+// Adds the saturation planes' information about the sensing directions of clipped elements. Each step adds this
+// information again, because the planes improve.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

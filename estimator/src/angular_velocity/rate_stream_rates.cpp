@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reported rate of a sample in a RateStream's window.
+// RateStream computes the reported rate of a sample in its window.
 #include <algorithm>
 #include <cmath>
 
@@ -20,8 +20,8 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// Returns the saturation deficit of a sample according to the slopes at the ends of a run of clipped readings:
-// rate_stream.md (R99). The start of a flight also ends the run, since the specific force then determines the rate.
+// Returns the saturation deficit of a sample that the slopes before and after a run of clipped readings predict:
+// rate_stream.md (R99). The run also ends at the start of a flight, where the specific force determines the rate.
 double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -41,8 +41,7 @@ double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const Sta
   return slope * before * after / (before + after);
 }
 
-// Returns the covariance of a clipped rate in contact, with the minimum standard deviations of rate_stream.md (R98),
-// (R99).
+// Returns the covariance of a clipped rate in contact, which is at least that of rate_stream.md (R98), (R99).
 Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
@@ -61,8 +60,9 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   return out;
 }
 
-// Returns whether the readings that determine a rate may be partly saturated. The rate depends on the reading of its
-// sample. If the log repeats readings, the rate also depends on the neighbouring readings.
+// Returns whether a reading that determines the rate may have been saturated for a part of its averaging window. The
+// rate depends on the reading of its sample. If the log repeats readings, the rate also depends on the neighbouring
+// readings.
 bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
@@ -74,9 +74,9 @@ bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) con
   return (window[next].near | after.clipping.gyro | after.possibly_saturated_axes()) != 0;
 }
 
-// Evaluates the rate some time after the sample, for a gyro that is delayed relative to the accelerometer:
-// rate_stream.md (R108). Between knots, the rate is a cubic. After the newest knot, the angular acceleration is assumed
-// to be constant, and the covariance contains the error of this assumption.
+// Computes the rate at the time `late_s` after a sample, because the gyro is delayed relative to the accelerometer:
+// rate_stream.md (R108). Between samples, the rate is a cubic. After the newest sample, the angular acceleration is
+// assumed constant, and the covariance includes the error of this assumption.
 void RateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Invariants and comparison of RateStream's states.
+// rate_stream_state.cpp checks and compares states of a RateStream.
 #include <algorithm>
 #include <cmath>
 

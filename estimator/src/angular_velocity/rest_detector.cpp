@@ -40,7 +40,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
                       sample.time_ns, bias_rad_s, state);
 }
 
-/// Adds an averaged reading to the current run and tests for rest: attitude.md (A15).
+/// Adds an averaged reading to the current run of quiet readings and tests for rest: attitude.md (A15).
 bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                 TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
   const double step_s = seconds(to_ns - state.last_mean_ns);
@@ -85,7 +85,7 @@ std::vector<bool> RestDetector::find(std::span<const ImuSample> samples, const E
   State state;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!observe(samples[k], state, bias_rad_s)) continue;
-    // all samples of the run so far are rest
+    // all samples of the run so far are samples at rest
     for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
   }
   return rest;

@@ -47,8 +47,8 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // As in the publication, the method recovers at most one axis. The method selects the first clipped axis in the
-    // order x, y, z: saave.md (S3).
+    // As in the publication, Saave recovers at most one axis, the first clipped axis in the order x, y, z: saave.md
+    // (S3).
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;

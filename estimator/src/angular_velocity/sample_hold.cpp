@@ -14,11 +14,11 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// The search tests kPeriods periods with kPhases phases each. The periods cover the fraction kPeriodRangeRatio around
-// the mean period. A finer search of kFineSteps steps follows around the best clock.
+// The search for the sensor's clock tests kPeriods periods with kPhases phases each. The periods differ from the mean
+// period by up to the fraction kPeriodRangeRatio. A finer search of kFineSteps steps follows around the best clock.
 constexpr int kPeriods = 100, kPhases = 24, kFineSteps = 10;
 constexpr double kPeriodRangeRatio = 0.03;
-// Averaging window of an accelerometer as a fraction of its period. The true fraction is between 0 and 1.
+// Assumed averaging window of an accelerometer as a fraction of its period; the true fraction is unknown.
 constexpr double kAccelWindowRatio = 0.5;
 
 struct Clock {
@@ -27,7 +27,8 @@ struct Clock {
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-// Returns the number of samples that contradict a clock. Counting stops at `most` + 1.
+// Returns the number of samples whose repetitions contradict a clock. The function stops counting at `most` + 1
+// samples.
 std::size_t count_misses(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                          std::size_t most) {
   std::size_t misses = 0;
@@ -43,16 +44,15 @@ std::size_t count_misses(const Clock& clock, std::span<const std::size_t> moving
   return misses;
 }
 
-// PhaseRun is the longest run of adjacent phases, on the circle of phases, for which a period explains the most
-// samples.
+// PhaseRun is the longest run of adjacent phases of a period that explain the most samples; phases form a circle.
 struct PhaseRun {
   std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
 };
 
-// Finds the best phases of a period. The search stops early if the period leaves more than `most` samples unexplained.
-// Most periods stop the search early.
+// Finds the phases with which a period explains the most samples. The search stops early if more than `most` samples
+// remain unexplained.
 PhaseRun best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                      std::size_t most) {
   // a change of the period does not change the phase at the middle of the motion
@@ -75,8 +75,8 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
   return out;
 }
 
-// Returns the middle clock of the best clocks around `first`. Clocks that explain equally many samples cover an area in
-// period and phase. In the middle of the area of best clocks, the run of adjacent phases is longest.
+// Returns the middle one of the clocks near `first` that explain the most samples. Equally good clocks form an area in
+// period and phase. In the middle of the area of equally good clocks, the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   PhaseRun best{moving.size()};

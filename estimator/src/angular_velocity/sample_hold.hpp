@@ -12,8 +12,8 @@
 
 namespace tumble {
 
-/// RepeatedReadings describes the readings of a gyro or accelerometer that is slower than the log, so that the log
-/// repeats readings (sample and hold).
+/// RepeatedReadings describes how a log repeats the readings of a gyro or accelerometer that is slower than the log
+/// (sample and hold).
 struct RepeatedReadings {
   double period_s = 0.0;      ///< time between two readings
   double agreement = 0.0;     ///< fraction of samples that a regular clock explains
@@ -25,17 +25,17 @@ struct RepeatedReadings {
   double window_lag_s = 0.0;
 
   bool steady() const { return agreement >= sample_hold::kAgreementMin; }
-  /// Returns how long before the sample's window the reading describes the motion.
+  /// Returns the age of a sample's reading, between the middles of both averaging windows.
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings in a recording. Cost: O(N) for each of about 5000 clocks, on at most 1000 samples. Returns
-/// nothing if less than a twentieth of the moving samples (faster than 0.3 rad/s, at least 30) repeat all three
-/// numbers. Period and phase are those of the regular clock that best explains the repetitions. Ages and window lag
-/// follow from the clock, or are zero if no clock explains the repetitions (agreement below 0.9).
+/// Detects repeated readings in a recording. Cost: O(N), plus tests of about 5000 clocks on at most 1000 samples.
+/// Returns nothing if less than a twentieth of the samples in motion (above 0.3 rad/s, at least 30 samples) repeat the
+/// previous reading. Period and phase are those of the regular clock that best explains the repetitions. Ages and
+/// window lag are zero if no regular clock explains 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
-/// Neighbours are the nearest samples with a different reading, or null.
+/// Neighbours points to the nearest earlier and later samples with a different reading, or null.
 struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };

@@ -6,7 +6,7 @@
 namespace tumble {
 
 /// The constants of sample_hold_bounds.hpp are criteria for repeated readings, for recordings (find_repeated) and live
-/// (RepeatDetector). The criteria are the minimum and maximum number of moving samples, and the minimum fraction of
+/// (RepeatDetector). The criteria are the minimum and maximum number of samples in motion, and the minimum fraction of
 /// repeated samples. Repetitions longer than kSlowest samples are rest, saturation or a frozen axis.
 namespace sample_hold {
 inline constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kSlowest = 10.0, kAgreementMin = 0.9;

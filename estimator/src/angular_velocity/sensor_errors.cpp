@@ -17,8 +17,8 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// `share` is the prior size of the sensor errors, from 0 (data sheet) to 1 (uncalibrated). `probability` is the prior
-// probability of the size `share`.
+// Size is one hypothesis about the standard deviations of the sensor errors. `share` ranges from 0 (data sheet) to 1
+// (uncalibrated); `probability` is the prior probability.
 struct Size {
   double share, probability;
 };
@@ -27,7 +27,7 @@ constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}
 constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
-// minimum standard deviation, which makes each prior covariance invertible
+// minimum prior standard deviation of a sensor error, so that each prior covariance is invertible
 constexpr double kLeast = 1e-9;
 
 double between(double sheet, double unknown, double share) {
@@ -53,11 +53,11 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
   return out;
 }
 
-// If the probability of the data sheet's values is below kPlain, the readings clearly contradict the data sheet.
+// The readings clearly contradict the data sheet if the probability of its standard deviations is below kPlain.
 constexpr double kPlain = 0.05;
 
 // Weight of the readings' information in the covariance of the sensor errors. The weight is below 1, because errors of
-// the flight model last longer than a sample. The likelihood of a size of the sensor errors has full weight.
+// the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -68,7 +68,7 @@ struct Hypothesis {
 };
 
 // Computes the posterior of the sensor errors, in units of the prior's standard deviations: rate_smoother.md (R40),
-// (R41), (R43). The input is h = gamma + information * errors.
+// (R41), (R43). The input h is the gradient gamma plus information * errors.
 Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
@@ -145,8 +145,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Multiplies the information matrix by (I - d U U') on both sides. The code multiplies only the few columns of U,
-  // because a stream's thread may have a small stack.
+  // Multiplies the information matrix by (I - d U U') on both sides. The code uses only the few columns of U, because
+  // the thread of a RateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -188,7 +188,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
     if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
-  // the corrections follow the data sheet until the readings clearly contradict the data sheet
+  // the readings must clearly contradict the data sheet before the corrections deviate from it
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
@@ -197,7 +197,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // the covariance includes the differences to the mean in use: rate_smoother.md (R42)
+  // the covariance includes the difference of each hypothesis from the mean in use: rate_smoother.md (R42)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());

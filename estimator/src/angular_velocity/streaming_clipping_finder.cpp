@@ -16,12 +16,12 @@ namespace {
 using Eigen::Vector3d;
 
 // A reading above the fraction `kNearExtremeRatio` of an axis' largest reading may be saturated.
-// `StreamingClippingFinder` stores readings above the fraction `kStoreRatio` of the largest reading.
-// `StreamingClippingFinder` also stores `kBeside` neighbours of a segment.
+// `StreamingClippingFinder` stores readings above the fraction `kStoreRatio` of the largest reading, and `kBeside`
+// neighbours of a segment.
 constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
-// `StreamingClippingFinder` always stores the first and the latest readings of a run. The first readings of a run
-// determine the gyro's noise.
+// `StreamingClippingFinder` always stores the first and the latest readings of a run. The first readings determine the
+// gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
 // StreamingClippingFinder searches again when the number of readings near the extremes has grown by the fraction 1 /
 // kSearchGrowthDivisor, and by at least two readings.
@@ -64,8 +64,8 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   return false;
 }
 
-// Stores a reading. If the memory is full, store() first removes readings far from the extremes. If necessary, store()
-// then removes the oldest readings, except for the first readings of the run.
+// Stores a reading. If the memory is full, store() first removes readings far from the extremes. If the memory is still
+// full, store() removes the oldest readings, but keeps the first readings of the run.
 void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

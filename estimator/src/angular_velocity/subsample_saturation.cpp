@@ -8,12 +8,12 @@ namespace tumble {
 
 namespace {
 
-// Maximum saturated fraction of the window. If a larger fraction is saturated, the unsaturated part of the window does
-// not determine the slope.
+// Maximum saturated fraction of an averaging window. If a larger fraction is saturated, the reading does not determine
+// the slope of the rate.
 constexpr double kSaturatedFractionMax = 0.85;
-// The standard deviation of the saturation deficit has two parts. The first part of the deviation is the fraction
-// `kDeficitSigmaRatio` of the deficit. The second part is the fraction `kDepthSigmaRatio` of the reading's distance
-// from the saturation level. The distance counts up to `kDepthMax` (1 rad/s).
+// The standard deviation of the saturation deficit has two parts. The first part is the fraction `kDeficitSigmaRatio`
+// of the deficit. The second part is the fraction `kDepthSigmaRatio` of the distance from the saturation level, at most
+// `kDepthMax` [rad/s].
 constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 1.0;
 
 }  // namespace
@@ -26,7 +26,8 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
   // A mean of clipped values is exactly at the saturation level. Noise that is added before clipping lowers the mean by
   // less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // A constant rate does not cross the saturation level. On a slightly tilted plane, a plateau decreases slowly.
+  // A constant rate does not cross the saturation level. Saturated readings on a slightly tilted plane may change
+  // slowly.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

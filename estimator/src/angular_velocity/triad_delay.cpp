@@ -21,20 +21,20 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // unknowns: lever arm, accelerometer bias
 
-constexpr int kMaxDelay_samples = ImpactSums::kDelayMax_samples;  // largest delay, in samples
+constexpr int kMaxDelay_samples = ImpactSums::kDelayMax_samples;  // largest tested delay, in samples
 constexpr int kDelaysPerSample =
     4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
-// Two readings closer in time than kApart_s count as one reading with jitter.
+// Two gyro or accelerometer readings that are closer in time than kApart_s count as one reading with jitter.
 constexpr double kApart_s = 1e-4;
-// Kernel widths of the robust cost, from the first to the last iteration [m/s^2].
+// Widths of the robust kernel for the flight residuals, from the first to the last iteration [m/s^2].
 constexpr double kKernelWidths_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
-// Minimum decrease of the robust cost (at most 1 per sample) that is not due to chance.
+// Minimum decrease of the robust cost that is not due to chance; each sample costs at most 1.
 constexpr double kGainMin = 0.4;
 
-// TriadReadings contains the distinct readings of one triad, with their true times.
+// TriadReadings contains the distinct readings of a gyro or accelerometer, with their true times.
 struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
@@ -70,8 +70,8 @@ struct RotationSample {
   Matrix3d jacobian_lever;  ///< [alpha]x + [w]x [w]x
 };
 
-// Interpolates the force at a time, by a cubic through four readings. `from` is the index of the last reading before
-// the time; the function updates `from`.
+// Interpolates the specific force at `time_s` by a cubic through four readings. The function sets `from` to the index
+// of the last reading before `time_s`.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -92,7 +92,7 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
     if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
-    // angular acceleration: slope of a parabola through three readings
+    // angular acceleration at the middle reading: slope of a parabola through three readings
     const double left = gyro.time_s[k] - gyro.time_s[k - 1], right = gyro.time_s[k + 1] - gyro.time_s[k];
     const Vector3d alpha = (left / right * (after - w) + right / left * (w - before)) / (left + right);
     out.push_back({gyro.time_s[k], so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
@@ -100,8 +100,8 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   return out;
 }
 
-// Returns the robust cost of a delay, minimised over lever arm and bias. The residuals are the flight residuals of
-// rate_smoother.md (R10).
+// Returns the robust cost of the flight residuals for one delay, minimised over lever arm and bias: rate_smoother.md
+// (R10).
 double cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
@@ -134,8 +134,8 @@ double cost(const TriadReadings& accel, std::span<const RotationSample> instants
   return sum;
 }
 
-// ForceIntegral integrates the norm of the specific force from the first reading on. Between readings, the norm is
-// linear. After the last reading, the norm is constant.
+// ForceIntegral integrates the norm of the specific force over time, starting at the first reading. Between two
+// readings, the norm of the force is linear. After the last reading, the norm is constant.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)
@@ -145,7 +145,7 @@ class ForceIntegral {
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
     }
   }
-  // `from` is the index of the last reading before the time, as in force_at()
+  // `from` is set to the index of the last reading before `time_s`, as in force_at()
   double to(double time_s, std::size_t& from) const {
     if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
     if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());
@@ -160,7 +160,8 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// Estimates the delay from impacts: rate_smoother.md (R45). If there are too few impacts, `sigma_s` is 0.
+// Estimates the accelerometer's delay from impacts: rate_smoother.md (R45). If there are too few impacts, `sigma_s` is
+// 0.
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
@@ -185,7 +186,7 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
   return sums.estimate_delay(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
-// Estimates the delay from flight. If there is too little flight, returns 0.
+// Estimates the accelerometer's delay from flight. Returns 0 if there is too little flight.
 double delay_from_flight_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
                            double period_s) {
   const std::vector<RotationSample> turning = rotation_samples(gyro);

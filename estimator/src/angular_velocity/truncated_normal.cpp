@@ -28,7 +28,7 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double bo
 }
 
 // Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The update first
-// removes the old Gaussian factor from the marginal (cavity distribution).
+// removes the old Gaussian factor from the marginal distribution, which gives the cavity distribution.
 GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
                            double variance_max, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);

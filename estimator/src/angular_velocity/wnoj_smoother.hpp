@@ -15,22 +15,20 @@ namespace tumble {
 /// samples.
 ///
 /// The state at each sample (knot) consists of angle, rate and angular acceleration. The motion prior between samples
-/// is that of Tang, Yoon and Barfoot (RA-L 2019). The prior has a transition matrix Phi and process noise Q of order
-/// three, with density `jerk_psd`. Each sample measures the rate, with a separate variance per axis. The angle is not
-/// measured, and the angle of the first sample is fixed. The angle can therefore be eliminated exactly, from the last
-/// sample backwards. After the elimination, the prior of (rate, acceleration) has the noise Q = q [dt^3/3, dt^2/2;
-/// dt^2/2, dt]. WnojSmoother computes only rate and angular acceleration. Orthogonal (square-root information)
-/// elimination and back-substitution give mean and variance of the rate at every sample. Square-root elimination stays
-/// accurate even if the variances of the samples differ by many orders of magnitude.
+/// is that of Tang, Yoon and Barfoot (RA-L 2019). The white angular jerk has the density `jerk_psd`. Each sample
+/// measures the rate, with a separate variance per axis. The angle is not measured, and the angle of the first sample
+/// is fixed. The angle can therefore be eliminated exactly, from the last sample backwards. After the elimination, the
+/// motion prior of (rate, acceleration) has the process noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. Orthogonal
+/// (square-root information) elimination and back-substitution give mean and variance of the rate at every sample.
+/// Square-root elimination stays accurate even if the variances of the samples differ by many orders of magnitude.
 ///
 /// WnojSmoother smooths the three axes independently. The neglected commutators of SO(3) would change the angular
-/// acceleration by about dt^2 |w x alpha| / 4. The published code uses +gyro, although its sign convention requires
-/// -gyro. The sign of the gyro matters only in the commutators, because the linear problem is unchanged if angle, rate
-/// and acceleration change sign. WnojSmoother therefore needs no parameter for the sign of the gyro.
+/// acceleration by about dt^2 |w x alpha| / 4. The published code uses the gyro's rates with the wrong sign for its
+/// convention. The sign matters only in the commutators, so WnojSmoother needs no parameter for the sign.
 class WnojSmoother {
  public:
   struct Params {
-    double jerk_psd_rad2_s5 = 1e6;  ///< larger values follow the readings more closely
+    double jerk_psd_rad2_s5 = 1e6;  ///< larger values: the rate follows the readings more closely
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>

@@ -25,7 +25,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
 }
 
-/// Averages the force difference between IMUs and its derivatives with respect to the accelerometer errors:
+/// Averages the force differences between the IMUs, and their derivatives with respect to the accelerometer errors:
 /// imu_merge.md (I10), (I11).
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
@@ -84,7 +84,8 @@ void ForceErrors::update(State& state) const {
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
-      if (squared(innovation) > squared(params_.gate_sigmas) * s) continue;  // an impact within the samples
+      // an impact within the samples causes a large innovation
+      if (squared(innovation) > squared(params_.gate_sigmas) * s) continue;
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
     }
@@ -98,7 +99,7 @@ void ForceErrors::update(State& state) const {
   state.span_s = 0.0;
 }
 
-/// Returns the specific force of an IMU, corrected by the estimated errors: imu_merge.md (I13).
+/// Returns the specific force of IMU k, corrected by the estimated accelerometer errors: imu_merge.md (I13).
 Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {
   if (!state.started) return force;
   const auto own = state.x.segment<kPerUnit>(kPerUnit * k);

@@ -3,7 +3,7 @@
 
 namespace tumble {
 
-// All files of the smoother for hand-held motion use one explicit instantiation of ArrowSystem.
+// All files for hand-held motion use this explicit instantiation of ArrowSystem.
 template struct ArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;
 
 }  // namespace tumble

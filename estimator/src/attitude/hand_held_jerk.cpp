@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// `kSecondDifference` is the variance of a second difference of readings, as a multiple of q P^3, with jerk density q
-// and period P. `kJerkSpan_periods` is the time span of a second difference, in periods.
+// White jerk of density q gives a second difference of readings with period P the variance `kSecondDifference` q P^3.
+// `kJerkSpan_periods` is the time span of a second difference, in periods.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkSpan_periods = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
@@ -29,8 +29,8 @@ struct Reach {
 };
 
 // Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). White jerk
-// of density q gives the second difference of means over adjacent windows P the variance 11/20 q P^3, plus six times
-// the noise variance.
+// of density q gives the second difference of means over three adjacent windows P a variance of 11/20 q P^3. The noise
+// of the readings adds six times the noise variance.
 void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                              std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);
@@ -69,8 +69,8 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
 }
 
 // Estimates the jerk of a sensing element across a clipped segment: carried.md (C25). White jerk of density q changes
-// the angular acceleration by a mean square of q T within the time T. A motion that reverses beyond the saturation
-// level has a larger jerk than the adjacent unsaturated readings.
+// the angular acceleration within the time T; the mean square of the change is q T. A motion that reverses above the
+// saturation level has a larger jerk than the unsaturated readings before and after.
 void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                  double node_s, std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

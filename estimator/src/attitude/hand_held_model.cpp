@@ -16,13 +16,16 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using so3::hat;
 
-using GyroRow = Eigen::Matrix<double, 1, 6>;              // derivative by rate and angular acceleration
-using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;  // derivative by the calibration constants
-using ForceState = Eigen::Matrix<double, 3, 12>;          // derivative by attitude, rate, and both accelerations
+// derivative of a residual with respect to rate and angular acceleration
+using GyroRow = Eigen::Matrix<double, 1, 6>;
+// derivative of a residual with respect to the calibration constants
+using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
+// derivative with respect to attitude, rate, and both accelerations
+using ForceState = Eigen::Matrix<double, 3, 12>;
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
-// Returns the hazard phi(u)/Phi(u), the slope of log Phi(u): carried.md (C14). The function uses an asymptotic series
-// in the tail, because phi and Phi underflow there.
+// Returns phi(u)/Phi(u), the slope of log Phi(u) for the normal distribution: carried.md (C14). In the tail, phi and
+// Phi underflow, so an asymptotic series gives the result.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -44,8 +47,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// `value` contains the derivatives of one sensing element's rate with respect to the errors of the node's state.
-// `slope` contains the derivatives of the sensing element's angular acceleration.
+// GyroRows contains derivatives of one sensing element's rate with respect to the errors of a node's state. `value` is
+// the derivative of one sensing element's rate, and `slope` that of its angular acceleration.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -64,9 +67,8 @@ GyroRows predict_gyro(const Eigen::RowVector3d& m, const Node& node, const Const
   return rows;
 }
 
-// Returns the difference between the estimated rate and the readings of clipped and unusable sensing elements. For a
-// clipped sensing element, the difference is the saturation deficit. The function sums the differences over all sensing
-// elements except `except`.
+// Sums the difference between estimated rate and reading over the clipped and unusable sensing elements, except element
+// `except`. For a clipped sensing element, this difference is the saturation deficit.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -80,8 +82,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// Replaces n readings at times t by two independent readings, the value at the mean time and the slope: carried.md
-// (C13).
+// Adds the unclipped readings of a sensing element near a node as two independent measurements: the rate at the mean
+// time, and its slope, carried.md (C13).
 double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                               System::Corner& corner) {
   const double mean_t = e.time_sum_s / e.count;
@@ -110,16 +112,16 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds a measurement with information `w` that three states are zero. `i` is the index of the first state, and `value`
-// contains the current states.
+// Adds a measurement with information (inverse variance) `w` that three states are zero. `i` is the index of the first
+// state, and `value` contains the current values.
 double add_zero_prior(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// Adds information about `N` states of two consecutive nodes, with equal information for each axis. `first` is the
-// index of the first of the `N` states.
+// Adds the motion model of `N` states per axis between two consecutive nodes, with equal information for each axis.
+// `first` is the index of the first state.
 template <int N>
 double add_motion_factor(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                          const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -167,8 +169,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // All readings of a node share one tilt error of the saturation plane. The tilt error therefore does not average
-      // out over the readings.
+      // All readings of a node share one tilt error of the saturation plane. Averaging over the readings does not
+      // reduce the tilt error.
       const double tilt = noise.deficit_error_ratio * deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,
@@ -250,14 +252,15 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // Q is the covariance that white jerk adds to rate and angular acceleration during a step: carried.md (C2).
+  // Q is the covariance that white jerk adds to rate and angular acceleration from one node to the next: carried.md
+  // (C2).
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // Given rate and angular acceleration at both ends of a step, the rotation angle has the remainder variance of a
-  // quintic: carried.md (C4).
+  // Even if rate and angular acceleration are known at both ends of a step, the rotation angle between them has this
+  // variance: carried.md (C4).
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
   // white noise drives the acceleration of the hand-held point of the body: carried.md (C6), (C7), (C8)
@@ -314,7 +317,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   return cost;
 }
 
-// Adds the weak priors that limit velocity and position: carried.md (C9).
+// Adds the weak priors that keep velocity and position of the held point close to zero: carried.md (C9).
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double position = params_.position_m * params_.position_m * params_.position_tau_s;

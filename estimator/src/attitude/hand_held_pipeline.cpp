@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns the sensing directions of the gyro. An element without a known saturation plane gets the direction of its
+/// Returns the sensing directions of the gyro. For an element without a known saturation plane, the direction is its
 /// output axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
@@ -44,8 +44,8 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   if (!status.ok()) return status;
   state.repeat_state = repeat_state;
   state.levels_changed = clipping_finder_.observe(sample, state.rails);
-  clipping_finder_.axis_aligned_rails().classify(sample,
-                                                 state.rails.known.axis_aligned_rails);  // updates the hysteresis
+  // this call of classify() updates the hysteresis of the clipped axes
+  clipping_finder_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
   return status;
 }
 

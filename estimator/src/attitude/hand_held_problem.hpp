@@ -10,10 +10,10 @@
 
 namespace tumble::hand_held {
 
-/// Returns the weights of the motion model; `jerk` multiplies the root density of the jerk.
+/// Returns the parameters of the motion model. `jerk` multiplies the root density of the angular jerk.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
-/// Adds the measurements of one node: gyro, specific force, limits of velocity and position, and rest.
+/// Adds to a block the measurements of one node: gyro, specific force, weak priors of velocity and position, and rest.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
@@ -22,8 +22,8 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// Message contains the information of all nodes on one side of a node, as a quadratic function about the node's
-/// current state.
+/// Message contains the prior on a node from all earlier or all later nodes, as a quadratic function about its current
+/// state.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -31,8 +31,8 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Part is the range of nodes [first, last] of a problem. A Part includes the information of all other nodes about the
-/// ends of the range, for fixed constants.
+/// Part is the range of nodes [first, last] of a problem, with the priors on both ends from all other nodes, for fixed
+/// constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
@@ -43,15 +43,15 @@ class Problem {
   Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
           std::vector<Node> nodes);
   /// Constructs the sub-problem of `part`; condense_rest() must have set `part.before` and `part.after`. The
-  /// sub-problem copies and fixes the calibration constants and the noise density of the held point's acceleration.
+  /// calibration constants, and the noise density of the held point's acceleration, are fixed copies from `whole`.
   Problem(const Problem& whole, const Part& part);
 
-  /// Solves the problem by Gauss-Newton iteration. Returns `diverged` if the normal equations are not positive
-  /// definite.
+  /// Estimates all nodes and constants by Gauss-Newton iteration. Returns `diverged` if the normal equations are not
+  /// positive definite.
   Status solve(HandHeldSmoother::Report& report);
   /// Computes the covariances of all nodes at the solution.
   Status covariances(HandHeldSmoother::Report& report);
-  /// Answer is a copy of the solution and its covariances, for restore().
+  /// Answer is a copy of the estimated nodes and their covariances, for restore().
   struct Answer {
     std::vector<Node> nodes;
     Constants constants;
@@ -61,15 +61,15 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Computes the information of all other nodes about the ends of each part, with one elimination from each end.
-  /// Returns false if the normal equations are not positive definite.
+  /// Computes the priors on both ends of each part from all other nodes, by one elimination from each end of the
+  /// recording. Returns false if the normal equations are not positive definite.
   bool condense_rest(std::span<Part> parts) const;
   /// Solves a sub-problem by Gauss-Newton iteration. Returns the cost at the solution, or infinity if the iteration
   /// does not converge.
   double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
-  /// Returns the expected gyro reading of a node: rate plus bias.
+  /// Returns the expected gyro reading at a node: estimated rate plus bias.
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
   double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
@@ -77,7 +77,7 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Replaces the nodes from index `first` on, in order to start from other initial values.
+  /// Replaces the nodes from index `first` on by other initial values.
   void place(std::size_t first, std::span<const Node> nodes);
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
   /// Returns the joint covariance of attitude error (sensor axes), rate and angular acceleration.
@@ -88,7 +88,7 @@ class Problem {
   double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
-  /// Iterate is the state of the problem before a Gauss-Newton step.
+  /// Iterate contains the nodes and constants before a Gauss-Newton step.
   struct Iterate {
     std::vector<Node> nodes;
     Constants constants;
@@ -107,11 +107,11 @@ class Problem {
   double period_s_ = 0.0;  // period of the gyro's distinct readings
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
-  std::optional<Part> part_;  // if set, a part of another problem with fixed constants
+  std::optional<Part> part_;  // if set, this problem is a part of another problem, with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
-  std::vector<double> jerk_;        // multiplier of the jerk's root density, per node
-  std::vector<double> hand_;        // multiplier of the density of the held point's acceleration, per step
+  std::vector<double> jerk_;        // factor on the root density of the jerk, per node
+  std::vector<double> hand_;        // factor on the density of the held point's acceleration, per step between nodes
   std::vector<double> hand_power_;  // cumulative sum of the squared multipliers
   std::vector<System::Block> blocks_;
   std::vector<System::StateVector> steps_;

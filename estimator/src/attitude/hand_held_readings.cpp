@@ -45,7 +45,7 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// Equal readings are repetitions if at least the fraction kMinClockAgreement of them agrees with a regular clock.
+// Equal readings are repetitions of a slow sensor if a regular clock explains at least the fraction kMinClockAgreement.
 constexpr double kMinClockAgreement = 0.9;
 // Averaging windows longer than kLongWindow node intervals may be partly saturated. In recordings of pendulums,
 // averaging windows of 20 ms were partly saturated. In recordings of hand-held wands, averaging windows of 10 ms were
@@ -56,7 +56,7 @@ TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-/// Returns the median time step, or `otherwise_s` for fewer than two samples.
+/// Returns the median time between samples, or `otherwise_s` for fewer than two samples.
 double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
@@ -90,7 +90,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.reading_time_sum += z * t;
 }
 
-/// Fills the clipped segment [begin, end) of one sensing element, given all its readings `raw`.
+/// Replaces the clipped segment [begin, end) of one sensing element by a cubic; `raw` contains all its readings.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -125,14 +125,13 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed beyond the saturation level with the sign of the
-  // previous reading.
+  // If all readings of a segment are unusable, the rate is assumed to be above the saturation level, with the sign of
+  // the previous reading.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Computes ends and centres of the averaging windows for readings every `period_s`. The reading after a drop-out has an
-// averaging window of the usual length.
+// Computes ends and centres of the readings' averaging windows, which are `period_s` long even after a missing reading.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -155,8 +154,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 }
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
-// (C12). The corrected window centre is the middle of the possible range. The uncertainty of the force includes the
-// change of force over the possible range of the window centre.
+// (C12). The corrected centre is the middle of its possible range. The returned standard deviations cover the change of
+// the force over the possible range of the centre.
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -170,7 +169,8 @@ std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period
   return out;
 }
 
-// Corrects the unsaturated readings next to clipped readings for subsample saturation: rails.md (R69) to (R73).
+// Corrects unsaturated readings next to clipped readings, which may be saturated for a part of their window: rails.md
+// (R69) to (R73).
 void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
@@ -220,7 +220,7 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const ClippedEl
     }
     ImuSample own = samples[k];
     if (repeated) own.time_ns -= nanoseconds(repeated->age_s[k]);
-    // one time step may contain two readings if the clock is inaccurate
+    // with an inaccurate clock, two readings may be in one time step
     if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);

@@ -6,16 +6,17 @@
 
 #include "tumble/attitude/hand_held_smoother.hpp"
 
-/// hand_held_readings.hpp assigns the IMU readings of a hand-held body to nodes, as input of Problem.
+/// hand_held_readings.hpp assigns the IMU readings of a hand-held body to nodes (time steps), as input of Problem.
 namespace tumble::hand_held {
 
 /// kRowsMin is the minimum determinant of the matrix of sensing directions. With a smaller determinant, the sensing
 /// directions do not span three dimensions.
 inline constexpr double kRowsMin = 0.1;
-/// kAge_samples is the standard deviation of a repeated reading's time, uniform within the previous sample: 1/sqrt(12).
+/// kAge_samples is the standard deviation of a repeated reading's time, in samples: 1/sqrt(12) for a uniform
+/// distribution.
 inline constexpr double kAge_samples = 0.29;
 
-/// Windows contains the times of averaging windows relative to the nodes; time zero is the centre of the first window.
+/// Windows contains the times of the readings' averaging windows; time zero is the centre of the first window.
 struct Windows {
   double period_s = 0.0;
   std::vector<double> centre_s;
@@ -23,7 +24,7 @@ struct Windows {
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
 
-/// TimedReadings contains the distinct readings of a gyro or accelerometer, at their true times, if the sensor is
+/// TimedReadings contains the distinct readings of a gyro or accelerometer with their true times. The sensor may be
 /// slower than the log.
 struct TimedReadings {
   std::vector<ImuSample> samples;  ///< stamped at the end of their windows
@@ -32,9 +33,9 @@ struct TimedReadings {
   std::vector<std::size_t> of_sample;  ///< index of the reading of each IMU sample
 };
 
-/// GyroReadings contains the readings of the gyro, corrected for subsample saturation.
+/// GyroReadings contains the distinct readings of the gyro, corrected for saturation during a part of a window.
 struct GyroReadings : TimedReadings {
-  /// Standard deviation of the correction for subsample saturation, per sensing element; 0: not corrected.
+  /// Standard deviation of the correction for partly saturated windows, per sensing element; 0: not corrected.
   std::vector<Eigen::Vector3d> subsample_sigma_rad_s;
 };
 
@@ -50,30 +51,30 @@ struct NodeData {
 NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
                  const ClippedElements& clipped);
 
-inline constexpr double kLongest = 1.5;  ///< longest window, in periods
+inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
 /// Estimates the root density of the angular jerk near each of `nodes` nodes [rad/s^3 sqrt(s)] from the readings. Cost:
 /// O(N). The jerk estimate uses the curvature of unsaturated readings, and the change of slope across clipped segments.
-/// The estimate is 0 where the readings contain no information. The equations are carried.md (C24), (C25).
+/// The estimate is 0 where no readings determine the jerk. The equations are carried.md (C24), (C25).
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 
-/// Returns the gyro's rates with clipped segments of each sensing element replaced by cubic polynomials. Value and
+/// Returns the gyro's rates, with a cubic polynomial in place of each clipped segment of a sensing element. Value and
 /// slope of the filled rates are continuous at both ends of a clipped segment. The cubic polynomial stays between the
 /// saturation level and kFillRatioMax times the level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
-inline constexpr double kFillRatioMax = 2.5;  ///< heuristic, affects only initial values
+/// heuristic bound of the initial rates, as a multiple of the saturation level
+inline constexpr double kFillRatioMax = 2.5;
 
-/// kFreeNodes is the number of nodes per optimisation step while no sample in the window of HandHeldStream is clipped.
+/// While no sample in its window is clipped, HandHeldStream makes one optimisation step per kFreeNodes nodes.
 inline constexpr int kFreeNodes = 5;
 
-/// Returns whether a sensing element of the gyro is clipped or unusable during a part of the node's time.
+/// Returns whether a node has clipped or unusable readings of a gyro's sensing element.
 bool clips(const NodeReadings& readings);
 
-/// kWindowCentreSigmaRatio is the standard deviation of an accelerometer's window centre if its averaging is unknown,
-/// as a fraction of the period: 1/(4 sqrt(3)). The window centre is assumed to be uniformly distributed between the
-/// window's middle and its end.
+/// kWindowCentreSigmaRatio is the standard deviation of the time of an accelerometer reading, as a fraction of its
+/// period: 1/(4 sqrt(3)). The time is uniformly distributed over the second half of the period.
 inline constexpr double kWindowCentreSigmaRatio = 0.144;
 
 /// Adds one reading of the gyro to a node; the reading is `t` seconds after the node. `subsample_sigma_rad_s` is the
@@ -82,8 +83,8 @@ void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSi
               const Eigen::Vector3d& subsample_sigma_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);
 
-/// Initialises attitude and rates of the nodes by a VQF filter on the filled rates, and the held point's acceleration
-/// by the remaining force.
+/// Initialises attitude and rates of the nodes by a VQF filter with the rates of filled_rates(). The force that gravity
+/// and rotation do not explain gives the held point's acceleration.
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                    std::vector<Node>& nodes);
 

@@ -56,7 +56,7 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 
 /// Adds the effect of the gyro's scale error to the attitude covariance: carried.md (C27). The scale error matters for
 /// a body that rotates continuously in one direction, which a hand cannot do. The attitude error grows with the
-/// rotation since the last rest or until the next rest, whichever is smaller.
+/// rotation since the last rest, or until the next rest if this rotation is smaller.
 void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_sigma;
@@ -110,8 +110,8 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
-    // The rate belongs to the centre of the averaging window, because a reading is the mean over its window. The
-    // attitude belongs to the time stamp of the reading.
+    // A reading is the mean over its averaging window, so the reported rate is that at the window's centre. The
+    // reported attitude is the attitude at the time stamp of the reading.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

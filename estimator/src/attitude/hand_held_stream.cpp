@@ -19,7 +19,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kRotationMax_rad = 0.8;
-constexpr int kFirstNodes = 100;  // number of first nodes, during which the attitude still converges
+constexpr int kFirstNodes = 100;  // number of first nodes, during which the attitude converges
 
 System::BorderVector moved(const hand_held::Constants& from, const hand_held::Constants& to) {
   System::BorderVector out;
@@ -51,7 +51,7 @@ HandHeldStream::HandHeldStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // The buffer stores up to twice the nominal sample rate; beyond this rate, the stream drops the oldest readings.
+  // The buffer has room for twice the nominal sample rate; at higher rates, the stream drops the oldest readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -142,8 +142,8 @@ Status HandHeldStream::push(const ImuSample& sample, const ClippedElements& know
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // While the gyro is unsaturated, the predicted nodes are already accurate. Occasional optimisation steps then suffice
-  // for attitude and calibration constants.
+  // While the gyro is unsaturated, the predicted nodes are already accurate. An optimisation step every few nodes then
+  // suffices for attitude and calibration constants.
   const bool due =
       begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || has_clipped_reading(state));
   const bool factorised = due && step(state);
@@ -171,7 +171,7 @@ void HandHeldStream::predict_newest(State& state) const {
   }
 }
 
-// Adds a sample to the window. The reading after a drop-out has an averaging window of the usual length.
+// Adds a sample to the window. The averaging window of a reading after missing samples has the usual length.
 void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -193,7 +193,7 @@ void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State
   ++state.samples;
 }
 
-// Updates saturation signs and sensing directions; returns whether samples in the window have changed.
+// Updates the clipped axes and the sensing directions. Returns whether a sample in the window has changed.
 bool HandHeldStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -207,15 +207,15 @@ bool HandHeldStream::reclassify(const ClippedElements& known, State& state) cons
   return changed;
 }
 
-// Rebuilds the readings of all nodes, except for the newest reading, which push() adds.
+// Assigns all readings of the window to the nodes again, except for the newest reading, which push() adds.
 void HandHeldStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds an IMU reading to the nodes of the window unless the reading is a repetition. A slow sensor averages over a
-// window as long as its period. The averaging window of a slow sensor ended at an unknown time since the previous
-// sample: rate_stream.md (R95). For a slow accelerometer, the length of the averaging window is also unknown:
+// Adds an IMU reading to the nearest nodes of the window unless the reading is a repetition. A slow sensor averages
+// over a window as long as its period. The averaging window of a slow sensor ended at an unknown time since the
+// previous sample: rate_stream.md (R95). For a slow accelerometer, the length of the averaging window is also unknown:
 // carried.md (C12).
 void HandHeldStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
@@ -254,7 +254,7 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Returns the noise of the readings, which is that of the gyro's own period if the log repeats readings.
+// Returns the noise of the readings. If the log repeats readings, the noise is that of the gyro's longer period.
 hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -293,13 +293,13 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
   if (knot.readings.force_count > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// Returns the noise density of the hand's acceleration: carried.md (C41).
+// Returns the factor by which recent motion changes the density of the hand's acceleration: carried.md (C41).
 double HandHeldStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_noise_floor_ratio,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
-// Adds the prior that marginalised nodes leave behind: rate_stream.md (R91).
+// Adds the prior on the oldest node and the constants from nodes that have left the window: rate_stream.md (R91).
 void HandHeldStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
   if (state.first_node == 0) {
     (void)motion_.add_initial_prior(state.window.front().node, block);
@@ -331,7 +331,7 @@ void HandHeldStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // if the prior from marginalised nodes is unusable, the stream restarts from the initial prior
+    // if the prior from nodes that left the window is not positive definite, the initial prior replaces it
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_initial_prior(next, state.prior);
@@ -349,7 +349,7 @@ void HandHeldStream::marginalise_oldest(State& state) const {
   prune_output_samples(state);
 }
 
-// Deletes readings whose rate has been reported and whose node has left the window.
+// Deletes the readings whose rates have been reported and whose nodes have left the window.
 void HandHeldStream::prune_output_samples(State& state) const {
   std::size_t gone = 0;
   const std::size_t given = first_unreported(state);

@@ -6,8 +6,8 @@
 #include "tumble/attitude/detail/hand_held_pipeline.hpp"
 #include "tumble/attitude/hand_held_stream.hpp"
 
-/// hand_held_stream_members.hpp lists the members of the states of HandHeldStream and HandHeldPipeline, and members of
-/// their Params that are not Fields, as state_visitor.hpp describes.
+/// hand_held_stream_members.hpp lists the members of the states and parameters of HandHeldStream and HandHeldPipeline,
+/// for saving (see state_visitor.hpp).
 namespace tumble {
 
 namespace hand_held {

@@ -16,8 +16,9 @@ using hand_held::System;
 
 namespace {
 
-constexpr double kUnknown_rad2_s2 = 1e6;  // variance if the equations cannot be solved
-constexpr double kNear_s = 0.1;           // distance from clipped nodes within which covariances use the inflated jerk
+constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
+// covariances use the inflated jerk density up to this time from clipped nodes
+constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
   std::uint8_t axes = 0;
@@ -28,8 +29,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate at the reading with index `at`. All readings of one node reuse the node's covariance until the next
-// optimisation step. `factorised` is defined at report_rates().
+// Returns the rate to report at the reading with index `at`. All readings of one node share the node's covariance until
+// the next optimisation step. `factorised` is described at report_rates().
 RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -77,8 +78,8 @@ RateState HandHeldStream::to_rate(const Reading& reading, const State& state, co
   return out;
 }
 
-// Counts the clipped segment around the reading `at` if the segment may contain an additional revolution: carried.md
-// (C43).
+// Counts the clipped segment around the reading `at` in the report if the body may have made one revolution more in it:
+// carried.md (C43).
 void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -102,8 +103,8 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
 }
 
 // Reports the rates of the readings [first, last] with their covariances. The covariances of nodes near clipped
-// readings follow from carried.md (C23), (C42). If `factorised` is true, the buffer already contains the equations with
-// the assumed jerk density.
+// readings follow from carried.md (C23), (C42). `factorised` states that the buffer already contains the factorised
+// equations for the assumed jerk density.
 void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                   std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {

@@ -22,12 +22,15 @@ constexpr int kMinImusForRecovery = 3;  // minimum number of IMUs for recovering
 constexpr double kUnsaturatedForceRatio =
     0.8;  // fraction of the accelerometer's range up to which errors are estimated
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
+// minimum squared lever arm effect; 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
+constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-constexpr double kSuspect_s = 0.04;              // impacts come in groups, and filters prolong an impact
-constexpr double kAccelerationSigmaRatio = 0.3;  // uncertainty of an acceleration, relative to its change per sample
+// duration of a suspicion after an impact: impacts come in groups, and filters prolong an impact
+constexpr double kSuspect_s = 0.04;
+// uncertainty of an angular acceleration, as a fraction of its change per sample
+constexpr double kAccelerationSigmaRatio = 0.3;
 
 }  // namespace
 
@@ -38,7 +41,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// Returns the parameters of RateRecovery, with IMU positions relative to the mean position of the IMUs.
+/// Returns parameters of RateRecovery in which the IMU positions are relative to their mean position.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -93,7 +96,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Adds finite readings and the flags of saturated axes to the averaging windows of their IMUs.
+/// Adds the finite readings of all IMUs, with the flags of saturated axes, to the averaging window of each IMU.
 void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -164,7 +167,7 @@ ImuSample ImuMerge::merge(State& state) const {
   if (std::count(present.begin(), present.end(), true) >= kMinImusForRecovery) {
     recover(readings, present, h, state, merged);
   } else {
-    state.recovery.running = false;  // no prediction is valid across a gap in the data
+    state.recovery.running = false;  // a prediction across a gap in the data is invalid
   }
   const auto suspect = [](const Unit& unit) { return unit.exclusion_left_s > 0.0; };
   if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
@@ -174,11 +177,11 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Selects the unsaturated IMUs whose rate and specific force agree with the median of all IMUs: imu_merge.md (I5).
+/// Selects those unsaturated IMUs whose rate and specific force agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
-  // Rotation causes different specific forces at different positions. The tolerance of the median test must therefore
-  // include the effect of rotation.
+  // In rotation, IMUs at different positions measure different specific forces. The tolerance of the median test must
+  // therefore grow with the rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -189,16 +192,16 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // If the rig has three or more IMUs, a clipped gyro provides a lower bound of the rate. The merge therefore uses
-    // the accelerometer of an IMU even if its gyro clips.
+    // With three or more IMUs, RateRecovery uses a clipped gyro as a lower bound. The accelerometer of an IMU with a
+    // clipped gyro therefore remains in use.
     const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // If the selected IMUs are a minority, the merge uses all present IMUs. With one or two present IMUs, the merge uses
+  // If the selected IMUs are a minority, ImuMerge uses all present IMUs. If a rig has one or two IMUs, ImuMerge uses
   // only unsaturated IMUs.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
-  const bool apart = state.windows > 0 && h > 0.0;  // true if a previous window allows derivatives
+  const bool apart = state.windows > 0 && h > 0.0;  // true if derivatives from a previous window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
@@ -230,19 +233,21 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// Returns the ratio of measured to modelled force differences that the lever arms cause: imu_merge.md (I8).
+/// Returns the ratio of the measured force differences between the IMUs to the differences that the lever arms should
+/// cause: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;
 }
 
-/// Updates the estimated IMU errors with the means over the averaging windows, and starts new windows.
+/// Updates the estimated errors of the IMUs with the mean readings of the last averaging windows, and starts new
+/// windows.
 void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // An IMU with a repeated reading may be frozen, and therefore does not update the estimated errors. If all IMUs
-  // repeat their readings, the rate is constant, so no IMU is frozen.
+  // An IMU that repeats its reading may be frozen, so its reading does not update the estimated errors. If all IMUs
+  // repeat their readings, the rate is constant and no IMU is frozen.
   const auto end = state.units.begin() + params_.count;
   const auto any_repeats = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
@@ -258,7 +263,7 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
-    } else {  // use the prediction from the other IMUs, since the IMU's last reading is outdated
+    } else {  // the IMU's last reading is outdated: use the prediction from the other IMUs
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 =
@@ -274,7 +279,7 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   ++state.windows;
 }
 
-/// Excludes IMUs whose accelerometer an impact may have saturated for less than a sample: imu_merge.md (I6). On a rigid
+/// Excludes IMUs whose accelerometer an impact may have saturated for a part of a sample: imu_merge.md (I6). On a rigid
 /// body, the force at one IMU predicts the force at another IMU along their connecting line. The force along the
 /// connecting line does not depend on the angular acceleration. The reference is the IMU whose force agrees with the
 /// most other IMUs. The function excludes IMUs whose force disagrees with the reference. If no two IMUs agree, the
@@ -334,7 +339,8 @@ void ImuMerge::recover(const Readings& readings, const UnitMask& present, double
 }
 
 /// Updates bias, scale and time offset of each gyro relative to the mean of all IMUs: imu_merge.md (I3), (I8). The
-/// angular acceleration is the central difference of the rates in the adjacent windows.
+/// angular acceleration is the difference of the rates in the next and previous window, divided by the time between
+/// them.
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();

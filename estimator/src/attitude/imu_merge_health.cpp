@@ -5,7 +5,7 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// imu_merge_health.cpp detects faulty IMUs: saturation, frozen readings, disagreement.
+// imu_merge_health.cpp detects IMUs that are saturated, frozen, or in disagreement with the other IMUs.
 namespace tumble {
 
 namespace {
@@ -14,16 +14,16 @@ constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying t
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
-constexpr double kArmShareMin = 0.5;  // smallest lever_arm_agreement() without a finding if the gyros are confirmed
-// Largest deviation of lever_arm_agreement() from 1. A larger deviation indicates a scale error of all IMUs.
-// Centripetal force grows with the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data
-// sheet's scale error. In runs of `slip` without faults, lever_arm_agreement() was 0.999 to 1.002.
+constexpr double kArmShareMin = 0.5;  // smallest plausible lever_arm_agreement() if the gyros are confirmed
+// Largest deviation of lever_arm_agreement() from 1 for IMUs without a common scale error. Centripetal force grows with
+// the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data sheet's scale error. In runs of
+// the scenario `slip` without faults, lever_arm_agreement() was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
 
 constexpr double kAxisContributionMin =
-    0.02;  // contribution of a clipped axis above which another axis counts as clipped
+    0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
 
-/// Returns the rotation perpendicular to the direction of the repeated force, which is mostly gravity.
+/// Returns the angle by which the direction of the repeated force, which is mostly gravity, should have rotated.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
@@ -66,7 +66,7 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
 }
 
 /// Detects gyros and accelerometers that repeat readings while the median of the IMUs changes. Accelerometers count as
-/// frozen only if the body rotates, since all accelerometers may freeze together.
+/// frozen only if the body rotates, which also detects accelerometers that all freeze together.
 void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                                    TimeNs time_ns, State& state) const {
   UnitMask counted = present;
@@ -181,7 +181,7 @@ void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& 
     if (unit.disagreement_s < params_.expert.disagreeing.after_s) continue;
     unit.disagrees = true;
     unit.disagrees_since_ns = unit.disagreement_since_ns;
-    break;  // if the faulty IMU is removed, the median changes
+    break;  // the median changes without the faulty IMU, so the next window tests again
   }
 }
 

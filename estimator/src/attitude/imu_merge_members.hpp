@@ -4,8 +4,8 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 
-/// imu_merge_members.hpp lists the members of ImuMerge's state, and members of ImuMerge::Params that are not Fields, as
-/// state_visitor.hpp describes.
+/// imu_merge_members.hpp lists the members of ImuMerge's state and further members of ImuMerge::Params, for saving (see
+/// state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<ForceErrors::State> Self, class Visitor>
@@ -89,7 +89,8 @@ void members(Self& s, Visitor& visit) {
   visit("merge.all_frozen", s.all_frozen);
 }
 
-/// Visits all members except the poses of the units, which the parameters of RollingOdometry contain.
+/// Visits all members of ImuMerge::Params except the poses of the IMUs, which the parameters of RollingOdometry
+/// contain.
 template <StateOf<ImuMerge::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit.scratch(p.T_CI);

@@ -20,7 +20,7 @@ auto best_axis_residual(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
-// Returns the scalar product of the rotations that gyro and specific force measure: imu_merge.md (I20). The product
+// Returns the scalar product of the rotations that gyro and specific force measure: imu_merge.md (I20). The product a b
 // follows from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
 double rotation_product_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2.front());
@@ -74,7 +74,8 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Repetiti
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
-/// Adds an averaged reading to the comparison of gyro and specific force: imu_merge.md (I18), (I19).
+/// Adds an averaged reading to the window in which the rotations of gyro and specific force are compared: imu_merge.md
+/// (I18), (I19).
 void ImuPlausibility::process_average(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -83,9 +84,9 @@ void ImuPlausibility::process_average(State& state) const {
   if (std::abs(force.norm() - params_.gravity_m_s2) > kNonRestForceRatio * params_.gravity_m_s2)
     state.non_rest_force_s += length_s;
   if (state.window_started) {
-    // Each averaged force belongs to the centre of its averaging interval. The sum of rotations therefore counts the
-    // first and the last rotation by half. To first order, the sum with halves equals the sum of all rotations except
-    // the first.
+    // Each averaged force is valid at the centre of its averaging interval. The rotation between two forces is
+    // therefore the sum of the rotations in between, plus half of the first and last. To first order, this equals the
+    // sum of all rotations except the first.
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -110,7 +111,8 @@ void ImuPlausibility::process_average(State& state) const {
   }
 }
 
-/// Adds a window of constant specific force to the sums: imu_merge.md (I19), (I22).
+/// Adds the rotations of gyro and specific force in a window of constant force magnitude to the sums: imu_merge.md
+/// (I19), (I22).
 void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.gravity_difference_ratio_max * params_.gravity_m_s2;
@@ -170,8 +172,8 @@ double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
 }
 
 /// Returns for how long a sensor has repeated its reading, in seconds. A sensor whose reading never changed counts as
-/// frozen only while the body moves. For a frozen gyro, motion is detected by a rotating force, or by a force that
-/// excludes rest. For an accelerometer that reads zero for longer than a free fall, the gyro detects motion.
+/// frozen only while the body moves. A rotating force, or a force that excludes rest, shows that the body moves while
+/// the gyro repeats. The gyro shows that the body moves while the accelerometer reads zero for longer than a free fall.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Repetition& hold) {
     return hold.changing_duration_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
@@ -184,7 +186,7 @@ double ImuPlausibility::frozen_s(const State& state) const {
                    accel ? state.accel.repeated_s : 0.0});
 }
 
-/// Returns the ratio of the rotation from force to the rotation from gyro, by linear regression: imu_merge.md (I20).
+/// Returns the slope of a linear regression of the force's rotation on the gyro's rotation: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
   return rotation_product_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
@@ -211,11 +213,11 @@ std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state
 }
 
 /// Returns whether a different gyro scale explains the readings better than pushes of the body do: imu_merge.md (I21).
-/// Pushes also rotate the measured force, but leave an equal residual for any gyro scale.
+/// Pushes also rotate the measured force, but do not fit any gyro scale better than another.
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
-  // Pushes of the body often reduce the slope of the regression. Pushes rarely invert the slope or increase it by half.
+  // Pushes of the body often reduce the regression slope, but rarely invert it or increase it by half.
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? params_.expert.naming.unexplained_ratio_max : params_.expert.turning.unexplained_ratio_max;
   return left < most * state.unexplained_rad2.front();

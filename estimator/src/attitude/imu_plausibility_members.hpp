@@ -4,7 +4,7 @@
 #include "../common/imu_members.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 
-/// imu_plausibility_members.hpp lists the members of ImuPlausibility's state, as state_visitor.hpp describes.
+/// imu_plausibility_members.hpp lists the members of ImuPlausibility's state, for saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<ImuPlausibility::Repetition> Self, class Visitor>

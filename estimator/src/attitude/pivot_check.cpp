@@ -18,10 +18,11 @@ namespace tumble {
 namespace {
 
 constexpr double kScaleStep = 0.05;
-constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of scales 1/2 and 2
+constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
-constexpr double kClearLogRatio = 0.4;     // logarithm of a ratio of squared residuals
+// minimum logarithm of the ratio of two squared residuals for a clear decision
+constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
@@ -41,13 +42,13 @@ Readings all_readings() {
   return out;
 }
 
-/// ScaleVote is the estimate of the gyro's scale from one segment of motion. `step` is a Newton step that starts at
-/// scale 1. `weight` is the second derivative of the residual with respect to the scale, at scale 1.
+/// ScaleVote is the estimate of the gyro's scale from one segment of motion. `step` is the Newton step from scale 1.
+/// `weight` is the second derivative of the residual with respect to the scale, at scale 1.
 struct ScaleVote {
   double step, weight;
 };
 
-/// Segments contains the results of completed segments of motion, and the unfinished segment.
+/// Segments contains the results of the completed segments of a recording, and the sums of the current segment.
 class Segments {
  public:
   Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
@@ -60,7 +61,7 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
-  /// Completes the unfinished segment of motion. A segment counts if it has at least half of the nominal length.
+  /// Completes the current segment of motion. A segment that is shorter than half of the nominal length is discarded.
   void close() {
     if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_min_rad) take();
     sums_ = {};
@@ -80,9 +81,11 @@ class Segments {
     vote(fits);
   }
 
-  /// Compares the residuals of the hypotheses about the gyro: imu_merge.md (I28), (I29).
+  /// Compares how well the unchanged gyro and each hypothesis about a wrong gyro explain a segment: imu_merge.md (I28),
+  /// (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // The residual combines the unexplained velocity with the difference between mean force magnitude and gravity.
+    // The residual of a hypothesis has two parts: the unexplained velocity, and the difference between mean force and
+    // gravity.
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s,
                         length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
@@ -143,8 +146,8 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // The check uses two series of segments, offset by half a segment. An event at a segment boundary of one series is
-  // therefore inside a segment of the other series.
+  // The check divides the recording twice into segments, offset by half a segment. An event at a boundary between two
+  // segments is therefore inside a segment of the other division.
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

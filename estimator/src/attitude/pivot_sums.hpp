@@ -13,15 +13,16 @@ namespace tumble {
 /// PivotFit is the fit of a motion segment by a rotation about a body point that moves at constant velocity:
 /// imu_merge.md (I27).
 struct PivotFit {
-  double residual_m_s = 0.0;  ///< root mean square of the velocity residual over all components
-  double gravity_m_s2 = 0.0;  ///< magnitude of the force that does not rotate
+  double residual_m_s = 0.0;  ///< root mean square of the components of the unexplained velocity
+  double gravity_m_s2 = 0.0;  ///< magnitude of the constant force in world axes
   double arm_m = 0.0;         ///< distance from the pivot to the sensor
 };
 
 /// PivotSums contains the normal equations of imu_merge.md (I27) for one hypothesis about the gyro.
 class PivotSums {
  public:
-  /// Adds a mean reading over `dt_s` seconds; its middle is `at_s` after the start of the segment. Cost: O(1).
+  /// Adds a reading that is averaged over `dt_s` seconds, with its middle `at_s` after the start of the segment. Cost:
+  /// O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;
@@ -43,7 +44,7 @@ class PivotSums {
   }
 
   PivotFit fit() const {
-    constexpr double kArm = 0.01;  // s^-2: keeps the arm short if the body hardly rotates
+    constexpr double kArm = 0.01;  // s^-2: keeps the lever arm short if the body hardly rotates
     using Nine = Eigen::Matrix<double, 9, 1>;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 9, 9> normal;
@@ -57,7 +58,7 @@ class PivotSums {
 
  private:
   Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in the axes at the start
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in sensor axes at the start
   double n_ = 0.0, t_ = 0.0, tt_ = 0.0, vv_ = 0.0;
   Eigen::Matrix3d a_ = Eigen::Matrix3d::Zero(), ta_ = Eigen::Matrix3d::Zero(), aa_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d v_ = Eigen::Vector3d::Zero(), tv_ = Eigen::Vector3d::Zero(), av_ = Eigen::Vector3d::Zero();

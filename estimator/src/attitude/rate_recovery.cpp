@@ -25,15 +25,15 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// Seen contains the readings of one gyro or accelerometer. If a sensing element clips, the readings are along the
-// sensing directions of the elements: rails.md (R52). If no sensing element clips, the readings are along the axes of
-// the IMU.
+// Seen contains the readings of one gyro or accelerometer. If a sensing element clips, the readings are the components
+// along the sensing directions: rails.md (R52). If no sensing element clips, the readings are the components along the
+// axes of the IMU.
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the saturation deficit of the clipped sensing elements, given the expected readings.
+  // Returns the saturation deficit of the clipped sensing elements if the true values are `expected`.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -103,16 +103,16 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
     }
     clipped += force;
   }
-  // If the rate is correct, the unsaturated IMUs provide a better specific force than the filter. The merged force
-  // therefore counts as clipped only if few IMUs are unsaturated.
+  // While all gyros are unsaturated, the unsaturated accelerometers give a better force than the filter. The merged
+  // force then counts as clipped only if most accelerometers are saturated.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated accelerometers is therefore
-  // biased in one direction of the world frame W.
+  // Accelerometers saturate when gravity and centripetal force add up. The mean of the unsaturated accelerometers is
+  // therefore biased in a constant direction of the world.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kActiveRangeRatio * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -153,7 +153,8 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
 /// Predicts rate, angular acceleration and specific force: imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a force that is constant in W rotates in C
+  // a force that is constant in the world rotates in C
+  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
   F.block<3, 3>(kForce, kForce) = turn;
@@ -182,7 +183,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
       const double reading = seen.reading[axis];
       const double missing = reading - seen.rows_C.row(axis).dot(state.x.segment<3>(kRate));
       if (seen.railed[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
-        continue;  // the prediction is consistent with saturation
+        continue;  // the predicted reading is beyond the saturation level, as it should be
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.rows_C.row(axis);
       const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kAccelerationSpan_s =
     0.01;  // time base of the angular acceleration, equal to model_error_s of the rate model
-constexpr double kResetFraction = 0.5;  // fraction of the steps within a lag that reset the calibration
+// the calibration is unstable if more than this fraction of the solver steps within a lag reset it
+constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
   HandHeldStream::Params out = params.hand_held;
@@ -23,25 +24,25 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   return out;
 }
 
-// Returns whether a reading is clipped, partly saturated, or suspect (possibly saturated).
+// Returns whether the gyro reading of a sample is clipped, partly saturated, or suspect (possibly saturated).
 bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
-// Returns the saturation sign of each axis of a sample. A run of suspect readings provides a lower bound of the rate,
-// like a clipped reading.
+// Returns for each axis of a sample the sign of the saturation level if the axis is clipped. Suspect readings count as
+// clipped, because they are also lower bounds of the rate.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rate estimates of RateStream and HandHeldStream. In all motion types, a suspect reading counts as
-// `bounded_only`, not as clipped.
+// Combines the rates of RateStream and HandHeldStream; `share` is the weight of HandHeldStream. The rate at a suspect
+// reading has the source `bounded_only`.
 RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
   RateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  // HandHeldStream cannot detect which readings may be partly saturated
+  // only RateStream detects partly saturated readings
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
@@ -92,7 +93,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = hand_held_weight(*out, state);
   }
   std::optional<RateState> hand_held;
-  // HandHeldStream accepts all input of RateStream, except sensing directions that do not span three dimensions
+  // HandHeldStream accepts the input of RateStream unless the sensing directions do not span three dimensions
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_running) {
       hand_held_.restart(state.hand_held);
@@ -132,7 +133,7 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        std::span<const RateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // A rate that was fitted to the force with an invalid calibration agrees with the force in any motion.
+  // With an invalid calibration, the rate was fitted to the force, and therefore agrees with the force in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -150,13 +151,13 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
 }
 
 // Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. The function
-// counts resets within RateStream's lag, because optimisation steps within the lag determine the reported rate.
+// counts only resets within the lag of RateStream, because these resets affect the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the motion type probabilities with a reported sample and its rate: forward pass of carried.md (C38).
+// Updates the probabilities of the motion types with a reported sample and its rate: forward pass of carried.md (C38).
 void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
@@ -172,8 +173,8 @@ void RegimeStream::update_probabilities(const RateState& rate, State& state) con
 }
 
 // Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40). The weight is the smallest
-// probability of hand-held motion among nearby samples of the same clipped segment. The weight is 0 outside clipped
-// segments.
+// probability of hand-held motion among nearby samples of the clipped segment around the rate. The weight is 0 outside
+// clipped segments.
 double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.segment_gap_max_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
@@ -191,7 +192,7 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
   if (out < params_.hand_held_probability_min || !before) return out;
-  // the forward pass continues with the provisional rates of unreported samples
+  // the forward pass also uses the samples in the window, whose rates are provisional
   RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);

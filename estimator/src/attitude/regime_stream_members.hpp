@@ -5,8 +5,8 @@
 #include "hand_held_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
-/// regime_stream_members.hpp lists the members of RegimeStream's state, and members of RegimeStream::Params that are
-/// not Fields, as state_visitor.hpp describes.
+/// regime_stream_members.hpp lists the members of RegimeStream's state and further members of RegimeStream::Params, for
+/// saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<RegimeProbabilities> Self, class Visitor>

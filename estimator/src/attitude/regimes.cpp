@@ -22,16 +22,17 @@ double log_gaussian(double squared_norm, double variance) {
   return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;
 }
 
-// Returns the log density of a vector whose length is g and whose direction is unknown, with Gaussian noise: carried.md
-// (C35). The average of the density over the sphere is N(n; 0) exp(-g^2 / 2v) sinh(x) / x with x = n g / v.
+// Returns the log density of a measured force of norm n, if the true force has length `gravity` and any direction:
+// carried.md (C35). With g for gravity and variance v, the density is N(n; 0) exp(-g^2 / 2v) sinh(x) / x, where x = n g
+// / v.
 double log_about_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// Hand-held motion is either gentle or rough: carried.md (C33). One of kRoughly samples of hand-held motion is rough,
-// with kRougher times the standard deviation.
+// Hand-held motion is either gentle or rough: carried.md (C33). One in kRoughly samples of hand-held motion is rough,
+// with a standard deviation kRougher times as large.
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -42,8 +43,8 @@ double log_hand_held(double n, double g, double hand_variance, double grip_varia
 }
 
 // `kRolls` is the prior fraction of gentle rolling among samples in contact: carried.md (C34). All other contact
-// consists of impacts with forces of any size. A single sample of gentle rolling looks like hand-held motion, so the
-// neighbouring samples decide.
+// consists of impacts with forces of any size. A single sample of gentle rolling looks like hand-held motion; the
+// samples before and after decide.
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {
@@ -59,7 +60,7 @@ Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
   return (rates[b].w_WI_I_rad_s - rates[a].w_WI_I_rad_s) / dt_s;
 }
 
-// Returns the probabilities of a transition between motion types within dt: carried.md (C37).
+// Returns the matrix of transition probabilities between the motion types within `dt_s`: carried.md (C37).
 Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
   const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
   Matrix3d out;
@@ -75,7 +76,7 @@ RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
-// Returns the likelihood of a sample for each motion type: carried.md (C31), (C32), (C33), (C34), (C36).
+// Returns the likelihood of a sample and its rate for each motion type: carried.md (C31), (C32), (C33), (C34), (C36).
 Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Vector3d& alpha,
                                     const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
   const Vector3d& w = rate.w_WI_I_rad_s;
@@ -143,11 +144,11 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
   return {};
 }
 
-// Combines two rate estimates, weighted by their probabilities: carried.md (C39).
+// Combines two rate estimates; `share` is the probability of the second: carried.md (C39).
 RateState mix_rate_states(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
-  // The difference `apart` between both estimates increases the covariance of the more probable estimate.
+  // The difference `apart` between the two rates increases the covariance of the combined rate.
   out.covariance_rad2_s2 = (1.0 - share) * first.covariance_rad2_s2 + share * second.covariance_rad2_s2 +
                            std::min(share, 1.0 - share) * apart * apart.transpose();
   return out;

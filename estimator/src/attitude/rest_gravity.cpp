@@ -12,18 +12,19 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;        // total duration of rest that is needed for checking the magnitude of gravity
-constexpr double kWrongUnitRatio = 3.0;  // an error factor that no scale error or bias of an accelerometer reaches
+constexpr double kRested_s = 1.0;        // total duration of rest that the check of gravity's magnitude needs
+constexpr double kWrongUnitRatio = 3.0;  // minimum factor for naming a wrong unit; no scale error or bias reaches it
 
-/// Returns rest parameters that accept any specific force, even a force far from gravity.
+/// Returns parameters of the rest detector that accept any specific force, even far from gravity.
 RestDetector::Params without_force_limits(RestDetector::Params rests) {
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
   return rests;
 }
 
-/// Returns rest parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. Readings far
-/// above gravity at rest prove a wrong unit, because no robot stands still at ten times gravity.
+/// Returns parameters of the rest detector for forces in mg, cm/s^2 or counts, whose numbers (also of the noise) are
+/// larger than in m/s^2. Readings far above gravity at rest prove a wrong unit, because no robot stands still at ten
+/// times gravity.
 RestDetector::Params scaled_to_larger_units(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;
@@ -89,8 +90,8 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Integrates the rotation of the body. A reading is the mean over its window and belongs to the window's middle:
-/// imu_merge.md (I25).
+/// Integrates the rotation of the body. A reading is the mean over its averaging window, and is valid at the window's
+/// middle: imu_merge.md (I25).
 void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -103,15 +104,15 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& r
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.saturation_deficit_m_s += dt_s * peak;
 }
 
-/// Ends a clipped segment of readings. Saturation deficits within one clipped segment are correlated: imu_merge.md
-/// (I23).
+/// Ends a clipped segment of readings, and adds its variance. Errors within one clipped segment are correlated:
+/// imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Starts a period of rest. The function compares the rotation of the gravity direction since the previous rest with
-/// the gyro's rotation: imu_merge.md (I23).
+/// Compares, at the start of a rest, the rotation of gravity since the previous rest with the rotation from the rates:
+/// imu_merge.md (I23).
 void RestGravity::finish_span(State& state) const {
   end_segment(state);
   if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_min_rad ||
@@ -129,7 +130,8 @@ void RestGravity::finish_span(State& state) const {
   state.angle_error_sigma_rad = sigma_rad;
 }
 
-/// Compares the mean specific force between two rests with the specific force during rest: imu_merge.md (I25), (I26).
+/// Compares the specific force integrated between two rests with gravity, as measured at the current rest: imu_merge.md
+/// (I25), (I26).
 void RestGravity::check_velocity(const Eigen::Vector3d& current_force_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.last_rest_force_m_s2).norm() / state.last_rest_force_m_s2.norm();
@@ -143,7 +145,8 @@ void RestGravity::check_velocity(const Eigen::Vector3d& current_force_m_s2, doub
   state.velocity_error_ratio_max = allowed;
 }
 
-/// Returns the maximum allowed error of the rotation between two rests: imu_merge.md (I24).
+/// Returns the largest accepted angle error between two rests, if the rates have the standard deviation `sigma_rad`:
+/// imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.angle_tolerance_max_rad,
                   std::max(params_.angle_tolerance_min_rad, params_.angle_error_max_sigmas * sigma_rad));

@@ -4,7 +4,7 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 
-/// rest_gravity_members.hpp lists the members of RestGravity's states, as state_visitor.hpp describes.
+/// rest_gravity_members.hpp lists the members of RestGravity's states, for saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<RestGravity::MagnitudeState> Self, class Visitor>

@@ -26,7 +26,8 @@ constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost:
 constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
 constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
-constexpr int kRounds = 3;                 // maximum rounds of tests, with a complete solution after each
+// maximum number of rounds; each round tests all segments and solves the whole problem
+constexpr int kRounds = 3;
 
 /// Segment is a range of nodes [first, last] in which a sensing element was saturated and had no unsaturated reading.
 struct Segment {
@@ -46,7 +47,7 @@ struct AlternativeSolutions {
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Returns the cost of the jerk that one additional revolution within `steps` node intervals requires.
+/// Returns the cost of the angular jerk that one additional revolution within `steps` node intervals requires.
 double revolution_cost(const Problem& problem, std::size_t steps) {
   return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
@@ -83,7 +84,8 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
 }
 
 /// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. The function
-/// adds a smooth bump to the rate, integrates the attitude, and spreads the remaining attitude error evenly.
+/// adds a smooth bump to the rate, integrates the attitude, and distributes the remaining attitude error over the
+/// nodes.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -112,7 +114,7 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// Returns the optimised solution, and alternatives with another possible number of revolutions.
+/// Returns the optimised solution of a part, and alternatives with another number of revolutions.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
@@ -122,7 +124,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // a solution with the same number of revolutions as another hypothesis is discarded
+    // discards a solution with the same number of revolutions as another hypothesis
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -155,7 +157,8 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of all solutions except the one with index `standing`: carried.md (C29).
+/// Returns the probabilities of all solutions of a segment except the current solution, which has index `standing`:
+/// carried.md (C29).
 AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std::optional<std::size_t> standing) {
   AlternativeSolutions out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -168,8 +171,8 @@ AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std:
   return out;
 }
 
-/// Returns the probable alternative solutions of all segments. `taken` states whether the selected changes have been
-/// applied.
+/// Returns the probable alternative solutions of all segments. `taken` states whether the best solutions have already
+/// replaced the current solutions.
 std::vector<AlternativeSolutions> remaining_alternatives(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<AlternativeSolutions> out;
   for (const TestedSegment& each : tested) {
@@ -197,8 +200,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests the number of revolutions in each segment. The optimised solution remains unless another solution is clearly
-/// better. The best alternative replaces an optimised solution that the tests have ruled out (`fallen`).
+/// Tests the number of revolutions in each segment. The current solution remains unless another solution is clearly
+/// better. An earlier test may have ruled out the current solution (`fallen`); the best alternative then replaces it.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -243,8 +246,8 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The tests use linearised information about the nodes outside a part. A change of the solution therefore requires
-  // another round of tests.
+  // The tests linearise the equations of the nodes outside a part. If a solution changes, another round of tests is
+  // therefore needed.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);

@@ -19,16 +19,16 @@ struct RigidForces {
 
   std::array<bool, kUnits> present{};
   std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
-  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the unit's readings
+  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the IMU's single readings
   std::array<double, kUnits> change_m_s2{};  ///< change of the force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
   double uncertainty_rad_s2 = 0.0;  ///< standard deviation of the angular acceleration
-  double small_peak_m_s2 = 0.0;     ///< two units with smaller readings are not saturated
-  double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement of all other units
+  double small_peak_m_s2 = 0.0;     ///< two IMUs with smaller readings are unsaturated
+  double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement with all other IMUs
 
   struct AgreeingForces {
     std::size_t unit = 0;
-    int others = -1;  ///< number of agreeing units
+    int others = -1;  ///< number of IMUs that agree with the IMU
   };
 
   Eigen::Vector3d misfit(std::size_t k, std::size_t j) const {
@@ -43,8 +43,8 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the unit with which the most other units agree. Among units with equally many agreeing units, the function
-  /// prefers the unit whose force changed least.
+  /// Returns the IMU whose force agrees with the most other IMUs. If several IMUs have equally many, the function
+  /// returns the IMU whose force changed least.
   AgreeingForces most_agreed() const {
     AgreeingForces best;
     for (std::size_t k = 0; k < kUnits; ++k) {
@@ -57,8 +57,8 @@ struct RigidForces {
     return best;
   }
 
-  /// Returns the correction of the angular acceleration that minimises the force differences between the units:
-  /// imu_merge.md (I7).
+  /// Returns the change of the angular acceleration that minimises the force differences between the IMUs: imu_merge.md
+  /// (I7).
   Eigen::Vector3d common_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -70,7 +70,7 @@ struct RigidForces {
         b += d.cross(misfit(k, j));
       }
     }
-    return A.completeOrthogonalDecomposition().solve(b);  // collinear units leave one component undetermined
+    return A.completeOrthogonalDecomposition().solve(b);  // IMUs on one line leave one component undetermined
   }
 };
 

@@ -22,7 +22,7 @@ constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
 /// Applies a scalar Kalman update of the state with index `index`: attitude.md (A4). `innovation` is measurement minus
-/// prediction. The Kalman update keeps the variance of the heading unchanged: attitude.md (A9).
+/// prediction. The update leaves the variance of the heading unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,8 +38,8 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Returns the tilt variance that TumbleAttitude reports. During a coarse alignment, the reported tilt variance is at
-/// least that at the start of the alignment.
+/// Returns the tilt variance that TumbleAttitude reports. During a coarse alignment, the reported variance is at least
+/// the variance at the start of the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
@@ -104,7 +104,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
 Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
   Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
-  if (state.alignment.running) {  // until the alignment is complete, it does not use later corrections of the filter
+  if (state.alignment.running) {  // until the alignment is complete, it must not depend on the filter's corrections
     covariance.topLeftCorner<2, 2>() = reported_tilt_rad2(state) * Eigen::Matrix2d::Identity();
     covariance.topRightCorner<2, 1>().setZero();
     covariance.bottomLeftCorner<1, 2>().setZero();
@@ -154,7 +154,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// Propagates the attitude and its covariance across a gap in the data: attitude.md (A17), (A18).
+/// Propagates the attitude and its covariance over a gap of the readings: attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) process_average(state);
@@ -178,11 +178,10 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // After a gap, a sphere that rolls without slip has the velocity of rolling. The change of velocity during the gap
-  // does not indicate slip.
+  // A sphere that grips before the gap is assumed to roll without slip after the gap. A change of velocity during the
+  // gap does not indicate slip.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // The tilt variance must be computed before the correction, because the update by a single reading is nonlinear. The
-  // new alignment replaces an earlier coarse alignment.
+  // The variance of the tilt must be computed before the correction. The new coarse alignment replaces an earlier one.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -200,7 +199,7 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Returns the velocity variance of a body per axis, derived only from the body's earlier motion and rotation.
+/// Returns the variance of a body's velocity per axis, as expected from its earlier motion and its rotation.
 double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -208,13 +207,11 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
   return std::max({assumed, power_m2_s2, turning});
 }
 
-/// Updates a coarse alignment after the correction `corrected` of a node, a rotation of the world frame W: attitude.md
-/// (A19), (A20).
+/// Updates a coarse alignment after the filter has rotated the world frame W by `corrected`: attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // The alignment ignores the filter's velocity since the gap, because this velocity depends on a tilt that may be
-  // wrong.
+  // The alignment ignores the velocity that the filter estimated since the gap, because a wrong tilt falsifies it.
   const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
@@ -228,8 +225,8 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// Restarts the filter from an attitude with the tilt variance `tilt_rad2`. The restart rotates the world frame W by
-/// `levelling`, and resets the velocity according to the body's motion.
+/// Restarts the filter after the coarse alignment. The restart rotates the world frame W by `levelling`, sets the tilt
+/// variance to `tilt_rad2`, and resets the velocity.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -248,7 +245,7 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.displacement_power_m2 = 0.0;
 }
 
-/// Adds the variance of recovered (formerly clipped) rates to the attitude: attitude.md (A10).
+/// Adds the variance of recovered (formerly clipped) rates to the variance of the attitude: attitude.md (A10).
 void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   if (state.at_rest || state.recovered_covariance_rad2_s2.isZero(0.0)) {
     state.recovered_sigma_sum_rad.setZero();
@@ -264,7 +261,8 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_covariance_rad2_s2.setZero();
 }
 
-/// Predicts the filter states and their covariance over one node interval: attitude.md (A6), (A7), (A8), (A9).
+/// Predicts the states of the filter and their covariance from one node to the next: attitude.md (A6), (A7), (A8),
+/// (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -277,8 +275,8 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
   }
-  // The derivative of velocity with respect to tilt is the horizontal part of phi x f. The derivative with respect to
-  // heading is omitted, because the velocity does not determine the heading.
+  // The derivative of velocity with respect to tilt phi is the horizontal part of phi x f. The derivative with respect
+  // to heading is omitted, because TumbleAttitude does not correct the heading.
   F(kVelocity, kTilt + 1) = state.force_integral_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.force_integral_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
@@ -313,8 +311,8 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
   return state.slipping;
 }
 
-/// Returns the variance of a body's velocity or displacement per axis: attitude.md (A13). `power` is the previous
-/// variance.
+/// Returns the variance of a body's velocity or displacement per axis: attitude.md (A13). `power` is the variance at
+/// the previous node.
 double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                        const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
@@ -322,9 +320,8 @@ double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index,
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});
 }
 
-/// Corrects velocity and displacement of a body other than a sphere: attitude.md (A12), (A14). TumbleAttitude corrects
-/// the velocity while the body moves. TumbleAttitude corrects the displacement of a body other than a sphere towards
-/// zero.
+/// Corrects velocity and displacement of a body other than a sphere: attitude.md (A12), (A14). The velocity is
+/// corrected while the body moves. The displacement is corrected towards zero.
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
@@ -343,7 +340,7 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
 }
 
 /// Returns the horizontal velocity of the IMU that follows from the body's rotation: attitude.md (A11). The IMU's
-/// velocity is the sum of its velocity about the body's centre and the centre's rolling velocity.
+/// velocity is the sum of the centre's rolling velocity and the IMU's velocity about the centre.
 Eigen::Vector2d TumbleAttitude::velocity_from_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();

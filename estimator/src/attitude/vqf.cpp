@@ -14,12 +14,12 @@ namespace tumble {
 namespace {
 
 constexpr double kNoDirection_m_s2 = 1e-6;
-/// Within the forgetting time, the bias variance grows by the square of kForgottenSigma_rad_s. The VQF publication
-/// fixes this rate at 0.1 deg/s.
+/// Within the forgetting time, the variance of the bias grows by the square of kForgottenSigma_rad_s (0.1 deg/s in the
+/// VQF publication).
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Returns the measurement variance for which the variance of a scalar bias filter with random walk `growth` converges
-/// to sigma^2.
+/// Returns the measurement variance for which the variance of a scalar bias filter converges to sigma^2. `growth` is
+/// the filter's random walk.
 double steady_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -66,8 +66,8 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
 }
 
-/// Corrects the rotation q_WN of the inertial frame by the specific force. Returns the unit vector "up" according to
-/// the specific force, in frame W before the correction.
+/// Corrects the rotation q_WN of the inertial frame by the specific force. Returns the unit vector along the specific
+/// force (upwards), in frame W before the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // low-pass filter of the specific force: attitude.md (A3)
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
@@ -100,8 +100,8 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The levelling rate has two parts: the remaining bias, and the bias that was removed since the force entered the
-    // low-pass filter.
+    // The rate of the vertical correction has two causes: the remaining bias, and the bias that was corrected after the
+    // force entered the low-pass filter.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);

@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 
-/// dense.hpp declares decompositions of large symmetric matrices that are compiled once. Eigen's fixed-size
-/// decompositions would be instantiated per file and size, which doubles the compile time of those files. The
-/// factorisations equal those of fixed size bit for bit; the eigenvalues are equal up to rounding. Each decomposition
-/// allocates memory, so call it at most once per sweep or run.
+/// dense.hpp declares decompositions of large symmetric matrices, which are compiled once for all sizes. Eigen's
+/// fixed-size decompositions would be instantiated per file and size, which doubles the compile time of those files.
+/// The factorisations equal Eigen's fixed-size factorisations bit for bit; the eigenvalues are equal up to rounding.
+/// Each decomposition allocates memory, so call it at most once per sweep or run.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read

@@ -13,25 +13,26 @@ namespace {
 
 using Eigen::Vector3d;
 
-// docs/maths/outliers.md, "Thresholds", lists the measurements behind the thresholds of the outlier test.
-constexpr double kRateMin_rad_s = 1.0;   // smallest outlier of a gyro
-constexpr double kForceMin_m_s2 = 30.0;  // smallest outlier of an accelerometer
+// The section "Thresholds" of docs/maths/outliers.md lists the measurements that justify the thresholds of the outlier
+// test.
+constexpr double kRateMin_rad_s = 1.0;   // smallest jump of a gyro reading that is an outlier
+constexpr double kForceMin_m_s2 = 30.0;  // smallest jump of an accelerometer reading that is an outlier
 constexpr double kOutlierRatio = 3.0;    // an outlier is larger than this multiple of the neighbours' difference
-constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration per force
-constexpr double kLever_m = 10.0;                     // largest force per angular acceleration
-constexpr double kRateJumpMax_rad_s = 50.0;           // limit of a rate jump that lasts one sample only
-constexpr double kVelocityJumpMax_m_s = 20.0;         // limit of a velocity jump that lasts one sample only
+constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration of a robot per unit of force
+constexpr double kLever_m = 10.0;                     // largest force of a robot per unit of angular acceleration
+constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
+constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
 constexpr double kNear_s = 0.1;                       // neighbours further away than this are not compared
-constexpr double kStampStepMax_periods = 1.75;  // a longer step of the stamps is held: the next stamp may be earlier
+// after a longer step of the stamps, the sample is delayed, because the next stamp may be earlier
+constexpr double kStampStepMax_periods = 1.75;
 
-// A reading above the fraction kAtRange of the stated range may be saturated. A large reading that repeats may also be
-// saturated.
+// A reading may be saturated if it is above the fraction kAtRange of the stated range, or large and repeated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// Gyro or accelerometer.
+/// Triad contains the thresholds of the gyro or of the accelerometer.
 struct Triad {
   Vector3d ImuSample::*reading;
   std::uint8_t clip_flags;
@@ -66,7 +67,7 @@ double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// Sequence contains consecutive samples, oldest first.
+/// Sequence contains the last accepted samples and the samples under test, oldest first.
 struct Sequence {
   std::array<const ImuSample*, 4> samples{};
   std::size_t count = 0;
@@ -106,7 +107,7 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns how far a reading differs from both neighbours in one direction, on the axis with the largest difference:
+/// Returns how far a reading is above or below both neighbouring readings, on the axis with the largest difference:
 /// outliers.md (O1).
 double distance_from_neighbours(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
@@ -118,7 +119,7 @@ double distance_from_neighbours(const Vector3d& before, const Vector3d& now, con
 }
 
 /// Returns the distance of a reading from the last accepted reading, or from the line through the last two: outliers.md
-/// (O2). The function uses the smaller of both distances.
+/// (O2). The smaller distance counts.
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -191,7 +192,7 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state);
 }
 
-/// Returns whether a reading jumps further than the readings of the other sensor (gyro or accelerometer) explain:
+/// Returns whether the gyro or accelerometer reading jumps further than the reading of the other sensor explains:
 /// outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
   const double after_s = step_s(state.recent_inliers[1], sample);

@@ -4,7 +4,7 @@
 #include "imu_members.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 
-/// outlier_filter_members.hpp lists the members of OutlierFilter's state, as state_visitor.hpp describes.
+/// outlier_filter_members.hpp lists the members of OutlierFilter's state, for saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<OutlierFilter::State> Self, class Visitor>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // precompiled.hpp includes the headers that nearly every source uses, and instantiates frequent Eigen expressions. The
 // compiler spends more time on the classes of an Eigen expression than on its machine code (docs/figures.md).
-// CMakeLists.txt precompiles this header, so no source includes it. Precompilation affects only the compile time.
+// CMakeLists.txt adds this header to each source; the header affects only the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -15,12 +15,12 @@
 
 namespace tumble::precompiled {
 
-/// `known` is true for any Eigen expressions, and instantiates their classes and evaluators.
+/// `known` instantiates the classes and evaluators of any Eigen expressions; its value is always true.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
 
-/// `known_matrices` is true for any matrix types, and instantiates them with their constants and identities.
+/// `known_matrices` instantiates any matrix types with their constants and identities; its value is always true.
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>
@@ -29,7 +29,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// The operands of the following expressions are declared but never defined.
+// The operands of the expressions in precompiled.hpp have no definition, because the expressions are never evaluated.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;

@@ -11,13 +11,13 @@ namespace tumble {
 
 namespace {
 
-constexpr double kOutlier = 4.0;  // limit of an error, in standard deviations
-constexpr double kStray = 0.4;    // error, in periods, above which the sample number is uncertain
+constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in standard deviations
+constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
 constexpr std::size_t kConsecutiveOutliersMax = 8;
 constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
-constexpr double kErrorCorrelationMax =
-    0.5;                                   // maximum correlation of successive errors for a line that follows the clock
-constexpr double kStepMin_periods = 0.25;  // minimum time between two samples, in periods
+// maximum correlation of successive errors if the fitted line follows the clock
+constexpr double kErrorCorrelationMax = 0.5;
+constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
 constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
 
 constexpr double kPeriodMax_ns = 1e11;
@@ -28,7 +28,8 @@ double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
 }
 
 struct Line {
-  double period_ns = 0.0, last_ns = 0.0;  ///< slope; value of the line at the last stamp, relative to the first stamp
+  /// slope of the line; value of the line at the last stamp, relative to the first stamp
+  double period_ns = 0.0, last_ns = 0.0;
   double weighted_number_sum = 0.0,
          weighted_number_squared_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
   double mean_square_error_ns2 = 0.0;        ///< variance of the stamps about the line
@@ -66,7 +67,7 @@ double median_step(const Offsets& x_ns) {
   return steps[steps.size() / 2];
 }
 
-// Numbers the samples according to the time steps between their stamps.
+// Assigns a number to each sample, according to the time steps between the stamps.
 Numbers index_from_steps(const Offsets& x_ns, double period_ns) {
   Numbers n{};
   for (std::size_t k = 1; k < n.size(); ++k)
@@ -116,7 +117,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // Corrected time must increase even after an uncorrected stamp or a burst of stamps. The corrected stamps then
+  // Corrected stamps must increase, even after an uncorrected stamp or a burst of stamps. The corrected stamps then
   // approach the received stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns =
@@ -126,7 +127,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   return {};
 }
 
-/// Fits a line through the first time stamps if the stamps are periodic.
+/// Fits a line (time against sample number) to the first time stamps if the stamps are periodic.
 void SampleClock::begin(State& state) const {
   Offsets x_ns{};
   for (std::size_t k = 0; k < kFirstFitStamps; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
@@ -174,8 +175,7 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
       forget_fraction * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
   state.prediction_error_ns = limited_ns;
 
-  // Sample numbers count from the current sample. Only the current sample has a non-zero residual about the fitted
-  // line.
+  // Sample numbers count from the current sample, so that only the current sample has a residual about the fitted line.
   const double keep = 1.0 - forget_fraction;
   state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
                                               2.0 * number * state.weighted_number_sum + number * number * state.sum);

@@ -65,7 +65,7 @@ std::string six_digits(double value) {
   return std::string(text.data(), end.ptr);
 }
 
-/// Returns the margin of a value beyond its bound, see HealthFinding::confidence.
+/// Returns how far the value of a finding is beyond its bound, see HealthFinding::confidence.
 double margin(const Status& status, double normal) {
   const double value = std::abs(status.value - normal), bound = std::abs(status.bound - normal);
   const double larger = std::max(value, bound);
@@ -78,8 +78,8 @@ const char* to_string(Kind kind) {
   return meaning(kind).name;
 }
 
-/// When a failure of attitude, vertical or localisation ends, later estimates are correct. The covariance or the frame
-/// marks the states during the failure. After a tracking failure, all later poses remain wrong.
+/// Estimates after the end of an attitude, vertical or localisation failure are correct. The covariance or the frame of
+/// an estimate marks estimates during the failure. A tracking failure makes all later poses wrong.
 bool HealthFinding::invalidates_estimate() const {
   // the scale of the gyro is suspect only until the rotation of gravity confirms the scale
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||

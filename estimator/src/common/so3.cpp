@@ -13,7 +13,7 @@ constexpr double kSmallAngle = 1e-4;
 // to rounding up to kCancellingAngle.
 constexpr double kCancellingAngle = 0.5;
 
-// Returns (1 - cos x) / x^2. The formula uses the half angle, because 1 - cos x loses digits by cancellation.
+// Returns (1 - cos x) / x^2. The half-angle formula avoids the cancellation of digits in 1 - cos x.
 double cosine_term(double angle, double angle2) {
   if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
   const double s = std::sin(0.5 * angle);
@@ -48,7 +48,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q) {
-  // A half turn has two rotation vectors. The function returns the rotation vector whose first non-zero component is
+  // A half turn has two rotation vectors, v and -v. The result is the vector whose first non-zero component is
   // positive, so that q and -q give equal results.
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
   if (q.w() == 0.0) {
@@ -80,8 +80,8 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   // The rotation is the quaternion with real part |h| / 2 and imaginary part (from x to) / |h|, where h = from + to.
-  // The imaginary part uses from x h, which equals the cross product from x to. For nearly opposite vectors, h is exact
-  // to rounding. The formula is therefore accurate up to a half turn.
+  // The code computes the equal product from x h. For nearly opposite vectors, h is exact to rounding, so the formula
+  // is accurate up to a half turn.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

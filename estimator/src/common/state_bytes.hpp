@@ -12,8 +12,8 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// state_bytes.hpp serialises an estimator's state as numbers of fixed width, little-endian on every machine. The
-/// length of a sequence (8 bytes) precedes its elements.
+/// state_bytes.hpp serialises an estimator's state as numbers of fixed width, little-endian on every machine. The bytes
+/// of a sequence start with its length (8 bytes), followed by its elements.
 namespace tumble {
 
 /// Returns the 64-bit checksum FNV-1a (Fowler, Noll and Vo, RFC 9923), which changes if a single byte changes. The
@@ -57,14 +57,14 @@ class StateWriter : public StateVisitor<StateWriter> {
   std::vector<std::byte>& out_;
 };
 
-/// StateReader reads states from untrusted bytes. After the first error, StateReader reads nothing more, status()
-/// returns the error, and the values read so far are invalid. The possible errors are `too_few` (the bytes end within
+/// StateReader reads states from untrusted bytes. After the first error, StateReader stops reading, and status()
+/// returns the error. The values read so far are then invalid. The possible errors are `too_few` (the bytes end within
 /// `field`), `non_finite` and `out_of_range` (index, count, enumeration or length).
 class StateReader : public StateVisitor<StateReader> {
  public:
   static constexpr bool kReads = true;
   static constexpr bool kDescribes = false;
-  static constexpr double kCountMax = 1e9;    ///< limit of an int
+  static constexpr double kCountMax = 1e9;    ///< largest count that fits into an int
   static constexpr double kTimeMax = 4.6e18;  ///< half of the range of 64 bits, so that differences do not overflow
 
   explicit StateReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -84,7 +84,7 @@ class StateReader : public StateVisitor<StateReader> {
   requires requires(T& value, StateReader& in) { value.load(in); }
   void whole(const char* /*name*/, T& value) { value.load(*this); }
 
-  /// Reports an error unless a relation between members holds that every saved state fulfils.
+  /// Reports an error if `holds` is false, for a relation between members that is true in every saved state.
   void require(const char* name, bool holds, double value = 0.0, double bound = 1.0) {
     if (going() && !holds) status_ = {ErrorCode::out_of_range, name, value, bound};
   }

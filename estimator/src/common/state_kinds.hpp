@@ -13,7 +13,8 @@
 /// state_kinds.hpp defines the kinds of state members that a StateVisitor (state_visitor.hpp) distinguishes.
 namespace tumble {
 
-/// StateOf constrains the first argument of `members` and `others` to the type `Of` or const `Of`.
+/// StateOf is true if T is `Of` or const `Of`; the functions `members` and `others` constrain their first argument with
+/// it.
 template <class T, class Of>
 concept StateOf = std::same_as<std::remove_const_t<T>, Of>;
 

@@ -15,9 +15,9 @@
 /// state_layout.hpp checks that saved bytes match given parameters and a given layout of the state.
 namespace tumble {
 
-/// StateMatcher compares the visited members of a state with saved bytes. At the first different number, StateMatcher
-/// reports `out_of_range` with the member's name, the stored value and the visited value. StateMatcher reports
-/// `too_few` if the bytes end early.
+/// StateMatcher compares the visited members of a state with saved bytes. At the first difference, StateMatcher reports
+/// `out_of_range` with the member's name, the saved number and the member's number. StateMatcher reports `too_few` if
+/// the bytes end early.
 class StateMatcher : public StateVisitor<StateMatcher> {
  public:
   static constexpr bool kReads = false;

@@ -6,7 +6,7 @@
 #include "state_visitor.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// state_params.hpp visits a `Params` structure that is part of a state, as state_visitor.hpp describes.
+/// state_params.hpp visits a `Params` structure that is part of a saved state (see state_visitor.hpp).
 namespace tumble {
 
 namespace detail {

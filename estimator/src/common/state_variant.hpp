@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
-/// state_variant.hpp visits std::variant members of a state, as state_visitor.hpp describes.
+/// state_variant.hpp visits the std::variant members of a saved state (see state_visitor.hpp).
 namespace tumble {
 
-/// Visits the index of a variant's current alternative, and the members of the alternative.
+/// Visits the index of the alternative that a variant contains, and the members of this alternative.
 template <class Variant, class Visitor, std::size_t... Kinds>
 void visit_variant(const char* name, Variant& value, Visitor& visit, std::index_sequence<Kinds...>) {
   using V = std::remove_const_t<Variant>;

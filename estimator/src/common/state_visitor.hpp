@@ -8,24 +8,23 @@
 
 #include "state_kinds.hpp"
 
-/// The members of an estimator's state are listed in one function. Saving, loading and comparing a state are visitors
-/// of this list.
+/// One function lists the members of an estimator's state. Visitors of this list save, load and compare states.
 ///
-/// The list is a function `members(Self& s, Visitor& visit)` in the state's namespace, or a static function if the
-/// members are private. `members` calls `visit("name", s.member)` for each member: numbers, fixed-size Eigen types,
+/// The function is `members(Self& s, Visitor& visit)`, in the state's namespace or, for private members, a static
+/// function of the class. `members` calls `visit("name", s.member)` for each member: numbers, fixed-size Eigen types,
 /// arrays, vectors, deques, optionals and nested states. `members` visits indices and counts with their bounds, and
 /// enumerations with their last value. `members` visits values that may be NaN by `with_nan`, and buffers by `scratch`.
 /// The type `Self` may be const. The function `visit_params` visits a `Params` structure that is part of a state. The
 /// function `others(Self& p, Visitor& visit)` visits the members of a `Params` structure that are not Fields.
 namespace tumble {
 
-/// StateVisitor visits the members of an estimator's state. A class `Derived` that derives from StateVisitor has the
-/// following members. The function numbers(name, data, count) processes contiguous numbers. The function length(name,
-/// count) processes the size of a sequence or an optional (0 or 1), and returns the size to use. The function
-/// bounded(name, value, low, high) checks a number against its bounds. The function going() returns false to stop the
-/// visit. The optional function whole(name, value) processes a member that serialises itself. The constant kReads is
-/// true if the visitor overwrites the members. The constant kDescribes is true if a sequence is visited as one element
-/// in its initial state.
+/// StateVisitor visits the members of an estimator's state. A derived class must define the following members. The
+/// function numbers(name, data, count) processes contiguous numbers. The function length(name, count) processes the
+/// size of a sequence or an optional (0 or 1), and returns the size to use. The function bounded(name, value, low,
+/// high) checks a number against its bounds. The function going() returns false to stop the visit. The optional
+/// function whole(name, value) processes a member that serialises itself. The constant kReads is true if the visitor
+/// overwrites the members. The constant kDescribes is true if a sequence is visited as one element in its initial
+/// state.
 template <class Derived>
 class StateVisitor {
  public:
@@ -60,7 +59,7 @@ class StateVisitor {
     }
   }
 
-  /// Visits an index or a count with its bounds.
+  /// Visits a member that is an index or a count, with its bounds.
   template <class T>
   void operator()(const char* name, T& value, double low, double high) {
     (*this)(name, value);

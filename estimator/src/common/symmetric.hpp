@@ -3,8 +3,8 @@
 
 namespace tumble {
 
-/// Replaces P by (P + P^T) / 2, which removes accumulated rounding errors. The function works in place, because a copy
-/// would need too much stack.
+/// Replaces a covariance P by (P + P^T) / 2, which removes asymmetry due to rounding. The function works in place,
+/// because a copy would need too much stack.
 template <class Matrix>
 void make_symmetric(Matrix& P) {
   for (int j = 0; j < P.cols(); ++j) {

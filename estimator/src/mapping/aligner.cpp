@@ -14,10 +14,11 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-constexpr double kCoarseReach = 2.0;  // maximum distance of useful matches, as a multiple of the matching distance
+// maximum distance of matched map points in the coarse stage, as a multiple of the matching distance
+constexpr double kCoarseReach = 2.0;
 
-/// Returns the parameters of a coarse registration. A coarse registration has wider limits and only needs to find a
-/// pose near the solution.
+/// Returns the parameters of a coarse registration. A coarse registration has wider limits, and its result only needs
+/// to be near the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;
@@ -48,7 +49,7 @@ void align(Registration& registration, const Registration::Prior& prior, const S
   if (!status.ok()) found.verdict = RegistrationVerdict::diverged;
 }
 
-/// Returns the prior with the result `found` as initial value of the iterations.
+/// Returns the prior of a registration that continues from the result `found` of an earlier registration.
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;

@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// Scene is the input of an alignment of a sweep to the map.
+/// Scene contains the map, the sweep and its IMU samples, as input of a registration.
 struct Scene {
   std::span<const MotionSample> samples;
   TimeNs end_ns;
@@ -17,26 +17,25 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Aligner registers a sweep to the map in stages. The verdict of `found` states whether the registration succeeded.
-/// After success, `trajectory` is the registered motion. After a failure, `trajectory` is the motion of the failed
-/// attempt.
+/// Aligner registers a sweep to the map in stages. The verdict of the output `found` states whether the registration
+/// succeeded. The output `trajectory` is the registered motion, or the motion of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers a sweep with all points and few iterations. If the full registration does not converge, stages with
-  /// fewer points continue at lower cost.
+  /// Registers a sweep with all points and few iterations. If the registration does not converge, stages with fewer
+  /// points continue at lower cost.
   void align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                              Registration::Result& found);
-  /// Registers a sweep with some of the points until convergence, then with all points from the converged pose.
+  /// Registers a sweep with a subset of its points until convergence, then with all points from the converged pose.
   void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                             Registration::Result& found);
-  /// Registers a sweep from an initial pose that may be far away: coarsely with few points, then to convergence if the
-  /// coarse stage succeeds. A wrong initial pose therefore costs only a fraction of a registration.
+  /// Registers a sweep from an initial pose that may be far from the solution. A coarse stage with few points comes
+  /// first; only if it succeeds, the registration continues to convergence.
   void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
 
-  /// Returns the Registration object that computes the variance of a lidar return.
+  /// Returns the registration with all points, which also computes the variance of a lidar return.
   const Registration& registration() const { return full_; }
 
  private:

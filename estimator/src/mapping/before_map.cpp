@@ -15,11 +15,11 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// The prior of the speed has standard deviation kSpeed_m_s and correlation time kSpeedTime_s. Robots exceed kSpeed_m_s
-// only for moments.
+// The prior of the speed has standard deviation kSpeed_m_s and correlation time kSpeedTime_s. Robots rarely exceed
+// kSpeed_m_s.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
-// The standard deviations of a start in motion assume that the mean force over half a second differs from gravity by 1
-// m/s^2.
+// Standard deviations of tilt and speed for a start in motion. The mean force over half a second is assumed to differ
+// from gravity by 1 m/s^2.
 constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
@@ -37,18 +37,18 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Returns the matrix that transforms errors of the motion to a frame with its origin at the IMU, rotated by `turn`.
-/// The matrix includes the error of the displacement from the old origin to the IMU.
+/// Returns the matrix that transforms the errors of position, attitude and velocity to a frame with origin at the IMU,
+/// rotated by `turn`. The error of the displacement from the old origin to the IMU is included.
 Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
   T.block<3, 3>(6, 6) = turn;
-  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw error turns the velocity
+  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw error rotates the velocity
   return T;
 }
 
-/// Applies a Kalman update with a measured velocity of 0 and standard deviation `sigma_m_s`. The covariance C
-/// determines the Kalman gain. The update with this gain applies to C and to the covariance E of the errors.
+/// Applies a Kalman update with a measured velocity of 0 and standard deviation `sigma_m_s`. The gain follows from the
+/// covariance C. The update applies to C and to the covariance E of the actual errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -129,16 +129,16 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in a frame in which the IMU's attitude has no error. The frame without attitude error is
-/// rotated by the tilt error φ of the IMU. In the rotated frame, velocity v and gravity g have the errors δv + v × φ
-/// and g × φ.
+/// Returns the state estimate in the frame of the map, in which the IMU's attitude has no error. The frame of the map
+/// is rotated by the IMU's tilt error φ, so velocity v and gravity g have the errors δv + v × φ and g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // derivative of velocity and gravity
+  // derivative of velocity and gravity with respect to the errors of the motion
+  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();
   const bool free_gravity = params.expert.gravity_sigma_m_s2 > 0.0;

@@ -9,9 +9,8 @@
 
 namespace tumble::mapping {
 
-/// DeadReckoning predicts an alternative pose from inertial data. During an unconfirmed relocalisation, the alternative
-/// is the pose without the relocalisation. After a contradicted relocalisation, the alternative is the contradicted
-/// pose.
+/// DeadReckoning predicts a second pose from the IMU. While a relocalisation is unconfirmed, the second pose is the
+/// pose without it. After later sweeps have contradicted the relocalisation, the second pose is the relocalised pose.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;

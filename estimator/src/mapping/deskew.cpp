@@ -47,7 +47,8 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   }
 }
 
-/// Computes u(t) of each point, the position without contributions of start state and gravity: mapping.md (R3).
+/// Computes the vector u(t) of each point, which is its position without the parts due to start state and gravity:
+/// mapping.md (R3).
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());

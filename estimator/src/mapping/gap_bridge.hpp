@@ -9,10 +9,11 @@
 
 namespace tumble::mapping {
 
-/// kGap_ns is the longest IMU window whose reading still describes the motion inside the window.
+/// If the time between two IMU samples exceeds kGap_ns, the reading does not describe the motion in between, so the
+/// time is a gap.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
-/// WindowRate is the angular rate in one window of the IMU, in IMU axes, with its standard deviation.
+/// WindowRate is the mean angular rate over the averaging window of one IMU sample, with its standard deviation.
 struct WindowRate {
   Eigen::Vector3d rate_rad_s;
   Eigen::Vector3d sigma_rad_s;
@@ -24,10 +25,10 @@ struct WindowRate {
 };
 
 /// Appends samples that fill the gap from the end of `before` to the start of `after`. The function interpolates the
-/// angular rate linearly. The standard deviation of the interpolated rate is that of a random walk with known ends, see
+/// angular rate linearly. The interpolated rate has the standard deviation of a random walk whose ends are known, see
 /// mapping.md (R44). All axes of the appended samples count as clipped. A registration that estimates the saturation
-/// deficit therefore also estimates the interpolation error. The appended samples have an unknown specific force
-/// (`bridges_gap`). The appended samples are 10 ms long, or longer in gaps beyond 0.64 s.
+/// deficit therefore also estimates the interpolation error. The specific force of the appended samples is unknown
+/// (`bridges_gap`). Each appended sample is 10 ms long, or longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

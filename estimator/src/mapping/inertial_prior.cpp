@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 namespace u = unknowns;
 
-/// Computes the covariance of the inertial prediction: mapping.md (R39), (R40), (R41), (R43).
+/// Computes the process noise of the inertial prediction of a sweep: mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
@@ -61,7 +61,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
   std::size_t hint = 0;
-  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: duration of the saturation of axis j, in W
+  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: saturated time of axis j, as a vector in W
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
     const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());

@@ -21,24 +21,25 @@ class InertialTrack {
 
   /// Returns `time_order` unless the sample is later than all earlier samples.
   Status check(const ImuSample& sample) const;
-  /// Adds a sample that check() accepted, with its angular rate.
+  /// Adds a sample that check() accepted, with its estimated rate.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
-  /// Returns the stored samples, starting with the IMU window that contains the end of the last sweep.
+  /// Returns the stored samples, starting with the sample whose averaging window contains the end of the last sweep.
   std::span<const MotionSample> samples() const { return samples_; }
   /// Returns the samples that end after `from_ns`.
   std::span<const MotionSample> samples_from(TimeNs from_ns) const;
   /// Returns the end time of the last sweep, or nothing before the first sweep.
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
-  /// Returns the mean specific force of the current rest if the rest had lasted at least `lasted_s` by `time_ns`.
+  /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the first `lasted_s` seconds of samples (or all samples, if fewer) show rest.
+  /// Returns whether the robot was at rest during the first `lasted_s` seconds of samples, or all samples if there are
+  /// fewer.
   bool starts_at_rest(double lasted_s) const;
   /// Returns whether the initial rest continues.
   bool has_not_moved() const { return initial_.lasts; }
   /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.
   std::optional<TimeNs> last_ns() const;
-  /// Returns whether the IMU measures only gravity up to `end_ns`.
+  /// Returns whether the IMU was at rest, and measured only gravity, up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
   bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
   /// Marks the specific forces before `end_ns` as unknown, as in a gap, and keeps the angular rates.
@@ -50,12 +51,12 @@ class InertialTrack {
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// InitialRest is the rest at the start of a recording. The initial rest cannot resume after its end, but its results
-  /// remain.
+  /// InitialRest is the rest at the start of a recording. After its end, the initial rest does not resume, but its
+  /// results remain.
   struct InitialRest {
     bool lasts = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording
-    std::optional<TimeNs> run_ns;    ///< first sample of the current run of the rest detector
+    std::optional<TimeNs> run_ns;    ///< first sample of the current rest
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
@@ -72,7 +73,7 @@ class InertialTrack {
   RestDetector rest_detector_;
   RestDetector::State rest_;
   InitialRest initial_;
-  std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates since the last averaged reading of the rest detector
+  std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates since the last averaged reading
   std::optional<WindowRate> before_newest_, newest_;
 };
 

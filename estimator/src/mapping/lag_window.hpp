@@ -14,11 +14,12 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// WindowSweep is a sweep that later sweeps still refine. The unknowns of a WindowSweep refer to the start of the
-/// sweep.
+/// WindowSweep is a sweep of the lag window. Later sweeps refine the estimate of this sweep. The unknowns of a
+/// WindowSweep refer to the start of the sweep.
 struct WindowSweep {
   Estimated predicted;
-  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();  ///< derivative by the previous sweep
+  /// derivative of the unknowns with respect to the previous sweep's
+  Registration::Matrix jacobian_previous = Registration::Matrix::Identity();
   Estimated filtered, smoothed;
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
@@ -34,7 +35,7 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep to the lag window. If the lag window is full, its oldest sweep leaves.
+  /// Adds an empty sweep to the lag window. If the lag window is full, the function first removes the oldest sweep.
   WindowSweep& enter();
   /// Returns whether the oldest sweep of the lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
@@ -42,7 +43,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Makes the positions of all inserted points final, because the map's point indices have changed.
+  /// Clears the lists of inserted points after the point indices of the map have changed. Smoothing then no longer
+  /// moves the points.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

@@ -56,7 +56,7 @@ const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start() const {
 }
 
 std::optional<LidarInertialOdometry::StartTilt> LidarInertialOdometry::start_tilt() const {
-  constexpr double kBetter = 0.5;  // maximum ratio of the new standard deviation of the tilt to the initial one
+  constexpr double kBetter = 0.5;  // maximum ratio of the standard deviations of the new tilt and the initial tilt
   namespace u = mapping::unknowns;
   const Eigen::Vector3d& gravity = impl_->boundary.state_estimate.mean.calibration.gravity_W_m_s2;
   const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// RangeNoise is the standard deviation of a measured range: the larger of a length and a fraction of the range.
+/// RangeNoise is the standard deviation of a measured range: a length, or a fraction of the range if that is larger.
 struct RangeNoise {
   double sigma_m, share;
 };
@@ -21,9 +21,9 @@ struct RangeNoise {
 /// adjacent return forms a large enough angle with the beam to be a surface (Bogoslavskyi and Stachniss, IROS 2016).
 /// Third, the return is on the line between an earlier and a later return, as on ground at a grazing angle. The three
 /// tests are equations (R13), (R14), (R15) of mapping.md. Neighbours are at most one angular step of the lidar apart,
-/// so a return whose neighbouring beams miss is a lone return. LoneReturns keeps all returns if successive returns are
-/// too far apart for a comparison. LoneReturns also keeps all returns if there are no more lone returns than in clear
-/// air. Returns of larger moving objects (people, cars) are not lone returns.
+/// so a return without returns in the next beams is a lone return. LoneReturns keeps all returns if successive returns
+/// are too far apart for a comparison. LoneReturns also keeps all returns if there are no more lone returns than in
+/// clear air. Returns of larger moving objects (people, cars) are not lone returns.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points` and returns their number. Cost: O(number of points). The remaining points

@@ -7,10 +7,10 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
+constexpr double kSameLineCosine = 0.9988;  // cosine of 0.05 rad, which is less than the angle between two rings
 constexpr int kRingBits = 16;
-// A map point is omitted from the drawing if at least kSeenThrough sweeps saw through it. A single sweep may be wrong
-// near an edge.
+// to_map_points() omits a map point if at least kSeenThrough sweeps saw through it. A single sweep may be wrong near an
+// edge.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

@@ -8,22 +8,23 @@ namespace tumble::mapping {
 
 namespace {
 
-// At a wrong pose, a covered surface point agrees with the prior map by chance with at most probability
-// kChanceAgreementMax.
+// At a wrong pose, a surface point near the prior map's surfaces agrees with them by chance, with at most the
+// probability kChanceAgreementMax.
 constexpr double kChanceAgreementMax = 0.8;
-// The second best pose shows how many points agree with the prior map by chance in these surroundings. The fraction
-// kChanceMargin of the second pose's disagreeing points is a margin for sampling error.
+// The second best pose of a search shows how many points agree with the prior map by chance. As a margin for sampling
+// errors, the fraction kChanceMargin of the points that disagree at the second pose also counts as agreeing.
 constexpr double kChanceMargin = 0.3;
-constexpr double kFalseAcceptance = 1e-6;  // bound for one search
-constexpr std::size_t kMinPoints = 100;    // number of surface points for a search
-constexpr double kMinCoveredRatio = 0.4;   // least share of surface points that the prior map covers
+constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
+constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
+constexpr double kMinCoveredRatio = 0.4;   // minimum fraction of surface points that the prior map covers
 constexpr int kAcceptSweeps = 3;           // number of successive sweeps that accept a pose
 constexpr int kRejectSweeps = 2;           // number of successive sweeps that reject a pose
 constexpr int kSearchSweeps = 5;           // number of sweeps between two searches
-constexpr double kSigmas = 3.0;            // limits of the search about an approximate pose
+// half size of the search region about an approximate pose, in standard deviations
+constexpr double kSigmas = 3.0;
 constexpr double kMinReach_m = 1.0, kMinReach_rad = 0.15;
 
-/// Returns the relative entropy of two Bernoulli distributions.
+/// Returns the relative entropy of two Bernoulli distributions with the probabilities `share` and `chance`.
 double relative_entropy(double share, double chance) {
   double out = 0.0;
   if (share > 0.0) out += share * std::log(share / chance);
@@ -74,7 +75,7 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
 /// therefore measures how many points agree by chance.
 void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
-  if (map().T_MI) {  // the local frame was placed at the stated pose, so that the heading of W in M is about zero
+  if (map().T_MI) {  // the stated pose has already defined the local frame, so the heading of W in M is about zero
     region.p_WI_m = region.p_MI_m = map().T_MI->translation();
     region.reach_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
     region.reach_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
@@ -91,8 +92,8 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   chance_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
-/// Tests a pose with the Chernoff bound of the binomial test, and Bonferroni's correction for the number of compared
-/// poses.
+/// Returns whether more points agree with the prior map than chance allows. The test uses the Chernoff bound of the
+/// binomial distribution, with Bonferroni's correction for the number of compared poses.
 bool MapLocaliser::passes(const FramePose& pose) const {
   if (pose.ratio() <= chance_ || chance_ >= 1.0) return false;
   return double(pose.covered) * relative_entropy(pose.ratio(), chance_) >= std::log(compared_poses_ / kFalseAcceptance);

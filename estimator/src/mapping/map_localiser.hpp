@@ -8,12 +8,11 @@
 
 namespace tumble::mapping {
 
-/// MapLocaliser decides whether the current run is inside a prior map, and where: mapping.md, "Localisation in a prior
-/// map".
+/// MapLocaliser finds the pose of the current run in a prior map: mapping.md, "Localisation in a prior map".
 ///
 /// MapLocaliser proposes a pose of the local frame W in the frame M of the prior map. MapLocaliser accepts a pose that
-/// passes a test against chance after several successive sweeps. MapLocaliser rejects a pose that fails the test twice
-/// in succession.
+/// passes a statistical test after several successive sweeps. MapLocaliser rejects a pose that fails the test twice in
+/// succession.
 class MapLocaliser {
  public:
   MapLocaliser() = default;
@@ -25,9 +24,9 @@ class MapLocaliser {
   /// Restarts the localisation in the same map, from the given pose or with a search of the whole map.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Compares the local map with the prior map after a sweep. Returns the pose of the local frame in the prior map once
-  /// MapLocaliser accepts the pose. Cost: a few milliseconds, or about a second for every fifth sweep while no pose is
-  /// proposed.
+  /// Compares the local map with the prior map after a sweep. When MapLocaliser accepts a pose, the function returns
+  /// the pose of the local frame in the prior map. Cost: a few milliseconds, or about a second for every fifth sweep
+  /// while no pose is proposed.
   std::optional<FramePose> observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
   /// Returns `ok` if there is no prior map, or if the run is localised in the prior map. Returns `degenerate` while the
   /// run is not localised.
@@ -43,7 +42,7 @@ class MapLocaliser {
   std::shared_ptr<const PriorScene> scene_;
   bool localised_ = false;
   std::optional<Eigen::Isometry3d> T_MW_;  // proposed pose
-  double chance_ = 0.0;                    // share of surface points that agree at a wrong pose
+  double chance_ = 0.0;                    // fraction of surface points that agree with the prior map at a wrong pose
   double compared_poses_ = 1.0;            // number of poses that the search compared
   int passed_ = 0, failed_ = 0;            // successive sweeps that passed or failed the test
   int attempts_ = 0, sweeps_since_search_ = 0;

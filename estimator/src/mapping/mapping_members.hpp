@@ -7,7 +7,7 @@
 #include "odometry_members.hpp"
 #include "sweep_members.hpp"
 
-/// mapping_members.hpp lists those members of the odometry that persist between sweeps, as state_visitor.hpp describes.
+/// mapping_members.hpp lists the members of the odometry's state between sweeps, for saving (see state_visitor.hpp).
 /// The file README.md in this folder explains the parts of the odometry.
 namespace tumble {
 
@@ -115,7 +115,7 @@ void LidarInertialOdometry::StartTilt::members(Self& s, Visitor& visit) {
   visit("start_tilt.sigma_rad", s.sigma_rad, 0.0, 10.0);
 }
 
-/// Visits the members except the parameters, which are set at construction.
+/// Visits all members of the odometry's state except the parameters, which the constructor sets.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);

@@ -12,10 +12,9 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// motion_prior.hpp defines types of information about a sweep's motion, in addition to the previous sweeps. Each type
-/// of information has a function `apply_velocity_prior` or `weigh`. The function `apply_velocity_prior` replaces the
-/// state at the start of the sweep, before the sweep's noise is added. The function `weigh` fuses a measurement with
-/// the prediction, after all noise has been added.
+/// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps. The
+/// function `apply_velocity_prior` replaces the velocity at the start of the sweep, before the sweep's process noise is
+/// added. The function `weigh` fuses a measurement with the prediction, after the process noise has been added.
 
 /// InertialPrior adds no information: the IMU propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
@@ -27,9 +26,9 @@ struct KnownVelocity {
   double sigma_m_s = 0.0;
 };
 
-/// ConstantVelocity assumes a constant velocity, with the uncertainty of impacts, if the accelerometer is absent or
-/// always saturated. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples like those of a gap
-/// (InertialTrack::exclude_accelerometer), so it has neither `apply_velocity_prior` nor `weigh`.
+/// ConstantVelocity is for an absent or always saturated accelerometer. ConstantVelocity assumes a constant velocity,
+/// with the uncertainty that impacts cause. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples
+/// like those of a gap (InertialTrack::exclude_accelerometer), so it has neither `apply_velocity_prior` nor `weigh`.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
@@ -43,8 +42,8 @@ inline void apply_velocity_prior(const MotionPrior& prior, Prediction& predictio
 }
 
 /// Updates the prediction of a sweep by an odometer reading from within the sweep, see mapping.md (R34) to (R37).
-/// `within` is a part of the sweep's process noise. The function ignores an unusable reading, and a reading outside of
-/// the motion window.
+/// `within` is the part of the process noise that arises within the sweep. The function ignores an unusable reading,
+/// and a reading outside of the motion window.
 void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,

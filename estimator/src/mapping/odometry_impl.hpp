@@ -28,8 +28,8 @@ struct UpdatedSweep {
   const SweepTrajectory& trajectory;
 };
 
-/// SweepScratch contains work buffers of a sweep, which are kept to avoid allocations. Each sweep first overwrites the
-/// buffers.
+/// SweepScratch contains work buffers for processing a sweep, so that sweeps allocate no memory. The contents do not
+/// matter between sweeps.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -48,7 +48,7 @@ struct LidarInertialOdometry::Impl {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
-  /// Initialises the state from an IMU at rest, before the first sweep.
+  /// Computes the initial state from the IMU at rest, before the first sweep.
   Status level_at_first();
   Status level_start(MotionState& levelled) const;
   /// Starts the map if the sweep has enough usable points. If the sweep has too few points, the function propagates the
@@ -57,31 +57,31 @@ struct LidarInertialOdometry::Impl {
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// Registers a sweep to the map. On entry, `trajectory` is the IMU's predicted motion from the start of the sweep on.
-  /// On return, `trajectory` is the aligned motion, or the motion of a failed attempt.
+  /// On return, `trajectory` is the registered motion, or the motion of a failed attempt.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
   /// Returns the state after the update by the registered sweep. If the robot is at rest after a tracking failure, the
-  /// prediction assumes zero velocity.
+  /// predicted velocity is zero.
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
                                              bool has_ring_numbers, const mapping::Placed& placed, SweepReport& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  /// Adds a sweep to the lag window; the new sweep continues from the start of the updated sweep.
+  /// Adds a registered sweep to the lag window.
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
-  /// Sets the predicted velocity to zero if the robot rests after a tracking failure and only the IMU provides the
-  /// motion.
+  /// Sets the predicted velocity to zero if the robot is at rest after a tracking failure, and only the IMU measures
+  /// the motion.
   void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                           mapping::Prediction& prediction) const;
   void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
   void revert_to_inertia();
-  /// Returns the state at the sweep boundary according to a contradicted relocalisation, after a tracking failure.
-  /// Returns null if no relocalisation was contradicted.
+  /// Returns the state at the sweep boundary that follows from a relocalisation which later sweeps contradicted, or
+  /// null. The state is an initial pose of the search after a tracking failure.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
@@ -101,7 +101,7 @@ struct LidarInertialOdometry::Impl {
 
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants that relate several members, and returns the first violation.
+  /// Checks that the members of a loaded state are consistent with each other. Returns the first violated condition.
   Status check_state() const;
   Status check_other() const;
 
@@ -111,12 +111,12 @@ struct LidarInertialOdometry::Impl {
   mapping::TrackingState tracking;
   mapping::InertialTrack track;
   mapping::SweepBoundary boundary;  // boundary between the last sweep and the next sweep
-  mapping::MotionPrior known;       // additional information about the next sweep
+  mapping::MotionPrior known;       // additional information about the motion of the next sweep
   int resting_sweeps = 0;           // number of consecutive sweeps at rest, detected by the IMU
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> other;  // alternative pose for an unconfirmed or a contradicted relocalisation
+  std::optional<mapping::DeadReckoning> other;  // second pose, see DeadReckoning
   mapping::MapLocaliser localiser;              // localiser in a prior map, if any
   mapping::SweepScratch scratch;
 };

@@ -8,8 +8,8 @@
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// odometry_members.hpp lists the members of sweeps and reports, and members of the mapper's Params that are not
-/// Fields, as state_visitor.hpp describes.
+/// odometry_members.hpp lists the members of sweeps and reports, and further members of the mapper's Params, for saving
+/// (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<LidarPoint> Self, class Visitor>

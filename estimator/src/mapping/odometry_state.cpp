@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-/// Visits parameters that an earlier run may have estimated, which are those of SecondPass.
+/// Visits the parameters that may come from an earlier estimate, which a SecondPass also replaces.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);

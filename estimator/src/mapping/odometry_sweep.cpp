@@ -18,7 +18,7 @@ using mapping::UpdatedSweep, mapping::WindowSweep;
 namespace {
 
 constexpr double kFirstSweepDelayMax_s = 0.5;  // maximum delay between first sample and first sweep
-constexpr TimeNs kStep_ns = 100'000'000;       // time step of dead reckoning, for which the inertial noise is stated
+constexpr TimeNs kStep_ns = 100'000'000;       // step of dead reckoning, for which the inertial noise is stated
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
-  // The initial trajectory is the inertial prediction from the end of the last sweep, which the alignment then refines.
+  // The initial trajectory, which the registration refines, is the inertial prediction from the end of the last sweep.
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -61,7 +61,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.verdict = placed->verdict;
   report.in_prior_map = localiser.is_localised();
 
-  // The updated state determines the motion, the map update, and the start of the next sweep.
+  // The motion, the map update, and the start of the next sweep follow from the updated state.
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
   if (!placed->alignment) {  // a failed attempt may have changed the trajectory
     const Registration::Estimate& mean = start->mean;
@@ -70,8 +70,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // If the map has too few points, LocalMap inserts the sweep at its predicted pose. LocalMap omits points whose
-  // position is too uncertain.
+  // If the map has too few points for a registration, LocalMap inserts the sweep at its predicted pose. LocalMap omits
+  // points whose position is too uncertain.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
@@ -92,8 +92,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // With a wrong lidar clock, the first sweep may start before the first IMU sample. The function then extends the
-  // initial rest backwards to the start of the sweep.
+  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. The function then assumes
+  // rest from the start of the sweep to the first sample.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -118,7 +118,7 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Levels the initial attitude by the mean specific force, which is gravity only if the robot is at rest.
+/// Levels the initial attitude by the mean specific force. The covariance is larger if the robot moves.
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, track.samples(), levelled);
   if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_for_motion(levelled);
@@ -154,8 +154,8 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {ErrorCode::too_few, "points", double(points), double(params.expert.matching.matches_min)};
 }
 
-/// Propagates the state to `end_ns` by inertial integration, without a map. If the IMU is at rest, the measured gravity
-/// levels the attitude again.
+/// Propagates the state to `end_ns` by inertial integration, without a map. While the IMU is at rest, the function
+/// levels the attitude by the measured gravity.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
@@ -183,7 +183,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU measures only gravity, in agreement with the estimated attitude.
+/// Returns whether the IMU is at rest and measures only gravity, in the direction that the estimated attitude predicts.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -219,12 +219,12 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// Returns the state at the sweep's start. After a tracking failure at rest, the prediction is corrected first, because
-/// the lag window also uses the prediction.
+/// Returns the updated state at the start of a sweep. At rest after a tracking failure, the function also corrects
+/// `prediction`, because the lag window uses it.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // The inertial prediction is the only estimate of the motion. At rest, a velocity of zero prevents drift.
+  // Without a registration, the motion is the inertial prediction. At rest, a velocity of zero prevents drift.
   if (mapping::is_lost(tracking)) predict_stationary(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -252,8 +252,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the state that persists between sweeps. The lag window needs the old boundary between this sweep and the
-/// previous sweep. The sweep therefore enters the lag window before boundary_after() replaces the boundary.
+/// Updates the state that persists between sweeps. The sweep enters the lag window first, because the lag window needs
+/// the boundary to the previous sweep, which boundary_after() replaces.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -285,8 +285,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Adds the pose error of a sweep to the map error at the robot's position. Map points that the sweep adds share the
-/// pose error of the sweep.
+/// Increases the map's covariance relative to the world after a sweep. The points that the sweep adds to the map share
+/// its pose error.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -294,18 +294,18 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// Deletes the input data up to `end_ns`, which the odometry has already used.
+/// Deletes the IMU samples up to `end_ns`, and distant map points, which the odometry no longer needs.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
   if (mapping::is_unconfirmed(tracking))
-    return;                              // withdrawing the points needs their sweep numbers, which pruning changes
-  if (localiser.is_localised()) return;  // the prior map is kept as a whole
+    return;                              // pruning would change the sweep numbers by which the points may be withdrawn
+  if (localiser.is_localised()) return;  // the prior map is never pruned
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// Propagates the alternative pose by inertial prediction. The alternative is the pose without an unconfirmed
-/// relocalisation. After a second tracking failure, the alternative is the contradicted pose.
+/// Propagates the second pose (see DeadReckoning) by inertial prediction. While a relocalisation is unconfirmed, the
+/// second pose is that without it. After a contradiction, the second pose is the relocalised pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   if (relocalisation_unconfirmed && !unconfirmed_before) {
@@ -345,8 +345,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Reverts a contradicted relocalisation. The function removes the map points inserted since the relocalisation, and
-/// resumes inertial prediction. The contradicted pose remains an initial pose of the search.
+/// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since then, and
+/// continues from the inertial prediction. The relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
   map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
   std::swap(boundary, other->boundary);

@@ -9,9 +9,10 @@
 
 namespace tumble::mapping {
 
-/// OuterProducts computes a sum of outer products of columns with up to `Rows` numbers. The sum equals the result of
-/// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack, which needs 86 KiB
-/// for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls Eigen's kernel directly.
+/// OuterProducts computes the sum of the outer products v v^T of many columns v with up to `Rows` numbers. The sum
+/// equals the result of SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the
+/// stack, which needs 86 KiB for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls
+/// Eigen's kernel directly.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -43,7 +44,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Spare is a pool of work buffers for threads, which grows to the number of concurrent users.
+/// Spare is a pool of work buffers for threads. The pool grows to the number of threads that use it at the same time.
 template <class Work>
 class Spare {
  public:

@@ -11,8 +11,8 @@
 
 namespace tumble::mapping {
 
-/// PointMotion computes the derivative of a sweep point's position with respect to the unknowns, one direction at a
-/// time.
+/// PointMotion computes the derivative of a sweep point's position in the world with respect to the unknowns of the
+/// sweep.
 class PointMotion {
  public:
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,

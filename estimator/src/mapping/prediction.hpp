@@ -8,23 +8,25 @@
 
 namespace tumble::mapping {
 
-/// SweepBoundary is the state between two sweeps, with all data that the next sweep needs.
+/// SweepBoundary is the state at the boundary between two sweeps, with all data that the next sweep needs.
 struct SweepBoundary {
-  StateEstimate state_estimate;                                                ///< estimate at the boundary
-  Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();  ///< derivative by the last sweep's start
-  /// Magnitude |s_j| of the saturation deficit's factor at the end of the last sweep, on saturated axes; 0 if the sweep
-  /// was not aligned.
+  /// estimate of the unknowns at the boundary
+  StateEstimate state_estimate;
+  /// derivative with respect to the unknowns at the last sweep's start
+  Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
+  /// Magnitude |s_j| of the saturation deficit's factor, mapping.md (R8), at the end of the last sweep; 0 for
+  /// unsaturated axes and without registration.
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_m2_s2 =
-      Eigen::Matrix3d::Zero();  ///< variance from the accelerometer's saturation, W
-  bool constrained = false;     ///< the last sweep was constrained in all directions
+      Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W
+  bool constrained = false;     ///< surfaces constrained the last sweep in all directions
 
   TimeNs time_ns() const { return state_estimate.mean.state.time_ns; }
 };
 
 /// MotionWindow is the motion that the IMU measures from the last sweep to the end of the current sweep.
 struct MotionWindow {
-  std::span<const MotionSample> samples;  ///< samples from the boundary on, also beyond the end
+  std::span<const MotionSample> samples;  ///< samples from the boundary on, also beyond the sweep's end
   TimeNs end_ns = 0;
   int resting_sweeps = 0;  ///< consecutive sweeps at rest, including the current sweep
 };
@@ -32,12 +34,12 @@ struct MotionWindow {
 /// Prediction contains the predicted unknowns of the next sweep.
 struct Prediction {
   Registration::Prior prior;
-  Registration::Matrix jacobian_boundary =
-      Registration::Matrix::Identity();                        ///< derivative by the unknowns at the boundary
+  /// derivative with respect to the unknowns at the boundary
+  Registration::Matrix jacobian_boundary = Registration::Matrix::Identity();
   Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
-  Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the mean's errors
+  Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 
-  /// Computes the predicted covariances from those at the end of the last sweep, after all other members are set.
+  /// Computes the predicted covariances from those at the boundary. Call compose() after all other members are set.
   void compose(const StateEstimate& at_boundary);
   /// Sets the velocity to zero and removes its correlations, for a robot that is known to be at rest. Call
   /// zero_velocity_update() before compose().
@@ -51,21 +53,22 @@ Prediction predict(const LidarInertialOdometry::Params& params, const SweepBound
 /// Predicts zero motion if the IMU is at rest after a tracking failure, which stops the drift of the velocity.
 void predict_rest(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary, Prediction& prediction);
 
-/// Returns whether the prior alone is accurate enough to insert points into the map. Clipped axes count with their full
-/// standard deviation, even if the registration estimates their saturation deficit.
+/// Returns whether the prior alone is accurate enough to insert points into the map. For clipped axes, the full
+/// reported standard deviation counts.
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                       const MotionWindow& window, const SweepTrajectory& trajectory);
 
-/// Returns the estimate for a sweep without alignment, which is the prediction.
+/// Returns the estimate for a sweep without registration, which is the prediction.
 StateEstimate posterior(const Prediction& prediction);
-/// Returns the estimate after the alignment of a sweep, see mapping.md (R52).
+/// Returns the estimate after the registration of a sweep, see mapping.md (R52).
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned);
 
-/// Returns the normalised innovation that SweepReport::innovation reports, see mapping.md (R62).
+/// Returns the normalised difference between registered and predicted motion (SweepReport::innovation), see mapping.md
+/// (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// Returns whether a pose agrees with the prediction, within the predicted covariance and the matching distance.
-/// Farther than the matching distance, any nearby surface may match by chance. `innovation` is the normalised
+/// Returns whether a registered pose agrees with the prediction, within the predicted covariance and the matching
+/// distance. Beyond the matching distance, any nearby surface may match by chance. `innovation` is the normalised
 /// innovation of the pose, see mapping.md (R67).
 bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
@@ -75,7 +78,7 @@ bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& 
 void boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
 
-/// Returns the correlation of the saturation deficit between adjacent samples of its process, see mapping.md (R46).
+/// Returns the correlation of the saturation deficit between adjacent knots of a sweep, see mapping.md (R46).
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

@@ -31,7 +31,8 @@ bool LidarInertialOdometry::has_prior_map() const {
   return impl_->localiser.has_map();
 }
 
-/// The local map may be wrong after a tracking failure or with an unconfirmed relocalisation, so it is not compared.
+/// After a tracking failure, and during an unconfirmed relocalisation, the local map may be wrong and is not compared
+/// with the prior map.
 void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
   if (!localiser.has_map() || localiser.is_localised()) return;
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;

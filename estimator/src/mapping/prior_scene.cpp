@@ -23,25 +23,26 @@ constexpr float kCell_m = 0.5f;  // edge of a grid cell, unless the grid becomes
 constexpr double kCellsMax = 32.0 * 1024 * 1024;
 constexpr std::uint8_t kOnSurface = 2, kNextToSurface = 1;
 constexpr int kYaws = 72;
-constexpr std::size_t kCoarsePoints = 240;  // surface points of a coarse score
+constexpr std::size_t kCoarsePoints = 240;  // number of surface points for a coarse score
 constexpr std::size_t kKept = 4000, kRefined = 96;
-constexpr float kApart_m = 1.0f;  // poses that differ less are one pose
+constexpr float kApart_m = 1.0f;  // minimum distance of two distinct poses
 constexpr double kApart_rad = 0.12;
-constexpr float kNormalZ = 0.3f;  // largest difference of the vertical part of an anchor's normal
+// largest difference between the vertical components of an anchor's normal and a cell's normal
+constexpr float kNormalZ = 0.3f;
 
-constexpr float kCovered_m = 1.0f;  // a point with a prior surface at this distance is covered
+constexpr float kCovered_m = 1.0f;  // a point is covered if the prior map has a surface within this distance
 constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 0.7f;
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
-/// Returns the slope class of a surface normal. All slope classes have equal shares in a coarse score (normal-space
-/// sampling), because trunks and rocks determine the pose better than the ground.
+/// Returns the slope class of a surface normal. A coarse score uses equally many points of each slope class
+/// (normal-space sampling), because trunks and rocks determine the pose better than the ground.
 int slope_class(const Eigen::Vector3f& normal) {
   const float z = std::abs(normal.z());
   return z < 0.3f ? 0 : z < 0.6f ? 1 : z < 0.85f ? 2 : 3;
 }
 
-/// Selects points of all slope classes in turn, each class in the order of the list.
+/// Selects points from each slope class in turn, and within each class in the order of `points`.
 std::vector<SurfacePoint> select_by_slope(const std::vector<SurfacePoint>& points, std::size_t most) {
   std::array<std::vector<std::size_t>, 4> classes;
   for (std::size_t k = 0; k < points.size(); ++k)
@@ -109,8 +110,8 @@ PriorScene::PriorScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxels) {
   build_grid();
 }
 
-/// Marks the grid cells that contain surfaces, and the neighbours of these cells. The margin of the grid makes range
-/// checks in the search unnecessary.
+/// Marks the grid cells that contain surfaces, and the neighbours of these cells. Because the grid has a margin, the
+/// search needs no range checks.
 void PriorScene::build_grid() {
   Eigen::AlignedBox3f box;
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index)
@@ -174,7 +175,7 @@ Eigen::Isometry3d PriorScene::pose_of(const Candidate& candidate, const SurfaceP
   return T_MW;
 }
 
-/// Scores every pose that moves the anchor point to a surface cell of the prior map, for every heading.
+/// Scores every pose that moves the anchor (one surface point) to a surface cell of the prior map, with every heading.
 std::vector<PriorScene::Candidate> PriorScene::best_candidates(const std::vector<SurfacePoint>& points,
                                                                const SurfacePoint& anchor, const SearchRegion* region,
                                                                std::size_t& tried) const {
@@ -299,7 +300,7 @@ FramePose PriorScene::refined(const FramePose& start, const std::vector<SurfaceP
     kernel_m = std::max(kLastKernel_m, 0.75f * kernel_m);
   }
   count(points, pose);
-  constexpr double kSigma_m = 0.05;  // of a point, with the errors of both maps
+  constexpr double kSigma_m = 0.05;  // standard deviation of a point, with the errors of both maps
   pose.covariance = kSigma_m * kSigma_m * H.inverse();
   return pose;
 }
@@ -313,7 +314,7 @@ void PriorScene::count(const std::vector<SurfacePoint>& points, FramePose& pose)
     voxels_.nearest(x, 1, kCovered_m, found);
     if (found.count == 0) continue;
     const Eigen::Vector3f& n = normals_[found.index[0]];
-    if (n.isZero(0.0f)) continue;  // a rough surface supports no pose
+    if (n.isZero(0.0f)) continue;  // a point on a rough surface has no normal and supports no pose
     ++pose.covered;
     if (found.distance2_m2[0] > kNearSurface_m * kNearSurface_m) continue;
     pose.agreeing += std::abs(n.dot(x - voxels_.position_W_m(found.index[0]))) <= kAgreeDistance_m &&

@@ -22,12 +22,13 @@ struct SurfacePoint {
 /// Returns the surface points of `map` within `radius_m` of a position, nearest cube first.
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
-/// FramePose is a hypothesis for the pose of the local frame W in the prior map, with its goodness of fit.
+/// FramePose is a possible pose of the local frame W in the prior map, with the number of surface points that support
+/// it.
 struct FramePose {
   Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
   std::size_t covered = 0;   ///< surface points near the prior map's surfaces
   std::size_t agreeing = 0;  ///< covered points that lie on the prior map's surfaces
-  /// Covariance of a displacement and rotation of the local frame about the sensor, in frame M.
+  /// Covariance of the pose: displacement and rotation of the local frame about the sensor, in frame M.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   double ratio() const { return covered == 0 ? 0.0 : double(agreeing) / double(covered); }
@@ -40,14 +41,14 @@ struct SearchRegion {
   double reach_m = 0.0, reach_rad = 0.0;
 };
 
-/// PriorScene is a prior map that is prepared for a pose search.
+/// PriorScene is a prior map with a search structure for finding the pose of a local map.
 class PriorScene {
  public:
   explicit PriorScene(PriorMap map);
 
   const PriorMap& map() const { return map_; }
-  /// Returns at most two distinct best poses of the local frame in the prior map, best first. Cost: O(surface area of
-  /// the map) for a search in the whole map, about a second for a map of 100 m.
+  /// Returns at most two distinct poses of the local frame in the prior map, best first. Cost: O(surface area of the
+  /// map) for a search in the whole map, about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position, about which poses are refined
   /// @param attempt     the search anchors the local map at another surface point for each attempt

@@ -24,11 +24,11 @@ using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMos
 template <int Values>
 using MotionJacobian = Eigen::Matrix<double, Values, kMotionSize>;
 
-constexpr int kIterations = 6;              // two or three iterations are usually enough
+constexpr int kIterations = 6;              // maximum number; two or three iterations are usually enough
 constexpr double kConvergenceLimit = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// Offsets is the change of the unknowns relative to the prediction: those at the sweep boundary, and the noise since
-/// then.
+/// Offsets contains the differences from the prediction: of the unknowns at the sweep boundary, and of the process
+/// noise since.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotionSize, 1> noise = Eigen::Matrix<double, kMotionSize, 1>::Zero();
@@ -41,7 +41,7 @@ struct Expected {
   Covariance variance;
 };
 
-/// MotionInstant is the state of the IMU at a time within the sweep.
+/// MotionInstant is the motion of the IMU at one time within the sweep.
 struct MotionInstant {
   double noise_fraction = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
@@ -58,8 +58,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviations of the process noise
-  /// grow in proportion to time.
+  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviation of the process noise
+  /// grows in proportion to time.
   MotionInstant at(TimeNs time_ns, const Offsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -92,8 +92,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// Adds the derivatives of the odometer reading with respect to the unknowns at the boundary and to the noise.
-/// `by_moment` is the derivative with respect to errors of the motion at the time of the reading.
+/// Adds the derivatives of the predicted odometer reading with respect to the unknowns at the sweep boundary, and to
+/// the process noise. `by_moment` is its derivative with respect to the motion at the time of the reading.
 template <int Size>
 void add(const MotionJacobian<Size>& by_moment, const MotionInstant& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
@@ -152,13 +152,13 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Work contains the buffers of an update. The buffers are on the heap, because propagate_covariance() needs the stack.
+/// Work contains the buffers of an update on the heap, because propagate_covariance() already uses much of the stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
   Expected expected;
-  Gain<kUnknowns> jacobian_start;  ///< gain of the unknowns at the boundary
-  Gain<kMotionSize> by_noise;      ///< gain of the noise since the boundary
+  Gain<kUnknowns> jacobian_start;  ///< Kalman gain of the unknowns at the boundary
+  Gain<kMotionSize> by_noise;      ///< Kalman gain of the process noise since the boundary
 };
 
 /// Computes the Kalman gains at the current linearisation point: mapping.md (R37).
@@ -175,7 +175,7 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to the unknowns that best fit the odometer reading and the prediction. Returns false if there is no
+/// Iterates to the unknowns that best fit the odometer reading and the prediction. Returns false if the update has no
 /// solution.
 [[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const Sweep& sweep,
                                               const MotionNoise& within, Work& work) {
@@ -194,19 +194,20 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update to the unknowns and their errors at the sweep boundary: mapping.md (R38).
+/// Applies the update to the predicted unknowns and the covariance of their errors: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
-  work.jacobian_start.topRows<kMotionSize>() += work.by_noise;  // from here on, the gain of the sum
+  work.jacobian_start.topRows<kMotionSize>() += work.by_noise;  // from here on, the gain of the sum of both
   const Rows<kUnknowns> jacobian_boundary = work.expected.jacobian_start * prediction.jacobian_boundary;
   prediction.jacobian_boundary.noalias() -= work.jacobian_start * jacobian_boundary;
   work.left.setIdentity();
   work.left.noalias() -= work.jacobian_start * work.expected.jacobian_start;
 }
 
-/// Adds the noise of the reading, and the noise within the sweep as reduced by the gains: mapping.md (R38).
+/// Adds the noise of the odometer reading, and the remaining process noise of the sweep, to the covariance of the
+/// errors: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.jacobian_start;
   Eigen::Matrix<double, kUnknowns, kMotionSize> left = -K * work.expected.by_noise;

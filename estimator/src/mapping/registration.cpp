@@ -42,7 +42,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Returns whether the registered motion agrees with the prior within the prior's uncertainty: mapping.md (R25).
+/// Returns whether the registered motion `now` agrees with the prior, within the prior's covariance: mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotionSize = Registration::kMotionSize;
   const Vector moved = now.minus(prior.mean);
@@ -119,7 +119,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   Problem& problem = *posed;
   problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.match_ratio_min *
                                                                                   static_cast<double>(points.size())));
-  std::destroy_at(&result);  // reconstructed in place, because it takes 22 KiB
+  std::destroy_at(&result);  // reconstructed in place, because a Result needs 22 KiB
   std::construct_at(&result);
   result.mean = prior.mean;
   result.covariance = prior.covariance;
@@ -188,7 +188,7 @@ RegistrationVerdict Registration::classify_result(const Problem& problem, const 
   return RegistrationVerdict::converged;
 }
 
-/// Computes mean, covariance and diagnostics of an accepted optimisation.
+/// Computes mean, covariance and diagnostics of an accepted registration.
 Status Registration::finalise(const Problem& problem, const IterationState& at, SweepTrajectory& trajectory,
                               Result& result) {
   Matrix posterior = Matrix::Identity();  // posterior covariance: mapping.md (R24)

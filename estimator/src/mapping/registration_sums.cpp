@@ -73,14 +73,15 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Computes the variance of a point due to range errors and skew errors: first part of mapping.md (R18).
+/// Computes the variance of a point due to errors of range and deskewing: first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_ratio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
   return range * range + skew * skew;
 }
 
-/// Computes the distance of a point from a plane and the derivative of the distance: mapping.md (R16), (R17).
+/// Computes the distance of a point from its matched plane, and the derivatives of the distance with respect to the
+/// unknowns: mapping.md (R16), (R17).
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
@@ -96,8 +97,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The search radius contains the neighbours that the previous search found, so it contains the nearest neighbours.
-    // A small margin of the search radius covers rounding.
+    // The radius includes all neighbours of the previous search, so it also includes the nearest neighbours now. A
+    // small margin covers rounding.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -116,7 +117,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// Computes the information of a matched point with its robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
+/// Computes the weight of a matched point, inverse variance times robust weight (Geman, McClure, 1987): mapping.md
+/// (R19), (R21).
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -125,8 +127,8 @@ Registration::Weight Registration::compute_weight(const SweepPoint& point, const
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Computes for each point its position on the trajectory, the plane of its neighbours, and the distance: mapping.md
-/// (R3), (R16).
+/// Computes for each point its world position, the plane through the nearest map points, and the distance from this
+/// plane: mapping.md (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
   lever_arm_vectors_.resize(points.size());
@@ -159,7 +161,7 @@ double Registration::kernel_width_m() {
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
-/// Computes the sums of the normal equations over a block of points: mapping.md (R23).
+/// Computes the sums for the normal equations over a block of consecutive points: mapping.md (R23).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
@@ -216,9 +218,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 }
 
 /// NormalNoise is the part of the normal matrix that noise of the surface normals causes, for all free unknowns:
-/// mapping.md (R28), (R29). If NormalNoise covered only the motion, it would constrain unobservable combinations of
-/// motion and calibration. One unobservable combination is that of attitude and mounting rotation. The covariance (R52)
-/// of unobservable combinations would then grow without bound.
+/// mapping.md (R28), (R29). The noise must cover all free unknowns, not only the motion. Otherwise the noise would seem
+/// to determine combinations of unknowns that surfaces cannot determine, for example attitude with mounting rotation.
+/// The covariance (R52) of such combinations would then grow without bound.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -256,7 +258,8 @@ struct Registration::NormalNoise {
   }
 };
 
-/// Pulls contains the gradient sums q of clusters of points, which determine the score covariance: mapping.md (R26).
+/// Pulls contains the gradient sum q of each cluster of points, which determine the covariance of the gradient:
+/// mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;
@@ -283,7 +286,7 @@ struct Registration::Pulls {
   }
 };
 
-/// Evaluates the errors of each matched point at the registered pose.
+/// Computes error statistics from the distances of all matched points at the registered pose.
 void Registration::compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                             const SweepCalibration& calibration, const Unknowns& unknowns,
                                             double kernel_m, Result& result) {

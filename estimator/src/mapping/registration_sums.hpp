@@ -8,16 +8,18 @@
 
 namespace tumble {
 
-/// Unknowns lists the free unknowns of the registration, and their indices in the compact sums.
+/// Unknowns lists the free unknowns, which a registration estimates. Sums contains rows only for the free unknowns.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< indices of the free unknowns, ascending
   int count = 0;
   bool deficit = false, calibration = false;
 
-  /// The motion is always free; other unknowns are free if their prior variance is above 0.
+  /// Constructs from the prior covariance. The motion is always free; any other unknown is free if its prior variance
+  /// is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Expands the compact sums to normal equations over all unknowns. The rows of fixed unknowns are 0.
+  /// Copies the sums over the free unknowns to normal equations H, g over all unknowns. The rows of fixed unknowns are
+  /// 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
   /// Removes the fixed unknowns from the normal equations, so that their solution step is 0.
   void hold(Matrix& H, Vector& g) const;

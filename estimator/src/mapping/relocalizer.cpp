@@ -14,31 +14,31 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// kDeficitTries lists the saturation deficits that are tried, as multiples of deficit_try_rad_s. The list is dense
-// where most saturation deficits occur.
+// kDeficitTries lists the saturation deficits that are tried, as multiples of deficit_try_rad_s. Small deficits are the
+// most frequent, so the list has more small values.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
-constexpr double kDeficitSigmas = 5.0;  // deficits beyond this many standard deviations are not tried
+constexpr double kDeficitSigmas = 5.0;  // larger deficits, in standard deviations, are not tried
 
-constexpr int kStartsPerRound = 12;   // six axes, two directions
-constexpr double kStartSigmas = 1.5;  // distance of a start from the prior, in standard deviations, if within reach
+constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
+// distance of an initial pose from the prior, in standard deviations, up to the limit of the round
+constexpr double kStartSigmas = 1.5;
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Returns whether the matched surfaces fit the points of the sweep: mapping.md (R68).
+/// Returns whether enough matched points of a registration are close to their surfaces: mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }
 
-/// Registers the sweep while tracking. If the registration fails and a clipped axis may have a saturation deficit,
-/// track() tries larger deficits. A saturation within one sweep may cause an attitude error of a radian in the initial
-/// pose.
+/// Registers a sweep from its prior if tracking has not failed. If the registration fails and an axis is clipped,
+/// track() tries larger saturation deficits. Saturation within one sweep may rotate the initial pose by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // once an attempt has exceeded the correction limit, further attempts would also exceed it
+  // after an attempt that exceeds the correction limit, further attempts would also exceed it
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -63,7 +63,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 
 /// Registers the sweep from the predicted pose and from initial poses around it, until the surfaces fit. If no pose
 /// fits, the function returns the pose with the most inliers. An unsuccessful search continues with the next sweep,
-/// which limits the cost per sweep.
+/// because the number of initial poses per sweep is limited.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalisationParams& starts = params.expert.search;
@@ -80,7 +80,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   };
   std::unique_ptr<Best> best;
   aligner.align_coarse_to_fine(prior, prior, scene, trajectory, found);
-  const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search finds no pose
+  const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search fails
   const int moved = starts.starts_per_sweep - 1;
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))

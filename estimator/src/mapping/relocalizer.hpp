@@ -10,41 +10,42 @@
 namespace tumble::mapping {
 
 struct Attempt {
-  bool too_few_matches = false;  ///< whether an alignment failed because of too few map points
+  bool too_few_matches = false;  ///< an alignment failed because the map has too few points
   int iterations = 0;
   double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// SearchContext contains the candidates for the state at the start of a sweep.
+/// SearchContext contains the possible states at the start of a sweep, from which the search chooses initial poses.
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State according to a relocalisation that the sweep contradicted, as an initial pose of the search; or null.
+  /// State that follows from a contradicted relocalisation, as an initial pose of the search; or null.
   const MotionState* contradicted = nullptr;
 };
 
-/// Aligns a sweep to the map by all methods that its tracking state allows. `trajectory` is the aligned motion, or that
-/// of a failed attempt. `alignment` refers to the start of the sweep, and is empty if no alignment was found.
+/// Registers a sweep to the map, by tracking or by a search of initial poses, depending on the tracking state.
+/// `trajectory` is the aligned motion, or that of a failed attempt. `alignment` is the registration at the start of the
+/// sweep, and is empty if no registration succeeded.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
 /// Placed is the result of registering one sweep to the map.
 struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
-  bool expected = true;  ///< the alignment agrees with the inertial prediction
+  bool expected = true;  ///< the registered pose agrees with the inertial prediction
   RegistrationOutcome placement = RegistrationOutcome::not_tried;
   bool map_too_sparse = false;                    ///< the sweep has points, but the map has too few nearby points
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
-/// Sets the verdict of a registration attempt with `points` points. `placed` must contain the alignment, and whether
-/// the alignment agrees with the prediction. If the map has too few points, or after enough failed searches, inertial
-/// prediction continues the motion with verdict `degenerate`.
+/// Sets the verdict of `placed`, the result of registering a sweep with `points` points. `placed` must contain the
+/// registration, and whether it agrees with the prediction. If the map has too few points, or after enough failed
+/// searches, the verdict is `degenerate`, and the inertial prediction continues the motion.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Computes the initial pose number `index` of a search. Initial pose 0 is the predicted pose. All further initial
-/// poses are shifted along each axis by the standard deviation, closest first, mapping.md (R66).
+/// Computes the initial pose number `index` of a search. Number 0 is the predicted pose. All further initial poses are
+/// shifted or rotated along one axis, closest first, mapping.md (R66).
 void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -3,13 +3,13 @@
 
 #include <utility>
 
-/// rotation_series.hpp computes cosine and sine of half a small angle by power series. The series starts with c = s =
-/// 1; h is the square of the half angle. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s. The
-/// final s is sin(x) / x, where x is the half angle.
+/// rotation_series.hpp computes cosine and sine of half a small angle by power series. Let h be the square of the half
+/// angle x, and c = s = 1. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s. The final c is cos(x),
+/// and the final s is sin(x) / x.
 namespace tumble::rotation_series {
 
-/// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. For larger angles, the series
-/// would need more terms.
+/// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. Larger angles would need more
+/// terms.
 inline constexpr double kAngle2_rad2 = 1.0;
 /// kRatios contains the ratios of successive terms in the series of cos(x) and of sin(x) / x, last term first.
 inline constexpr std::pair<double, double> kRatios[] = {

@@ -9,13 +9,14 @@ namespace tumble::mapping {
 
 namespace {
 
-// kMinRangePerMotion is the minimum ratio of a return's range to the sensor's motion before or after the middle of the
-// sweep. FreeSpaceGrid sorts returns into bins by their direction from one position. At larger ratios, the direction
-// error is below 0.1 rad, which is the size of the checked bins.
+// FreeSpaceGrid sorts returns into bins by their direction from one position, although the sensor moves during the
+// sweep. If a return's range is at least kMinRangePerMotion times this motion, the direction error is below 0.1 rad,
+// the size of the checked bins.
 constexpr float kMinRangePerMotion = 10.0f;
-constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins
-// All returns must be this distance behind a map point before the point counts as no longer present. The distance
-// covers errors of the relative pose of two sweeps, noise of a return, and slope of the ground within a bin.
+constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
+// A map point counts as no longer present if all returns in its direction are farther away by at least this distance.
+// The distance covers errors of the relative pose of two sweeps, noise of a return, and slope of the ground within a
+// bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -48,8 +49,8 @@ void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns the smallest range of the returns around a direction. The function returns 0 if there are too few returns,
-/// or at the edge of the cube of directions.
+/// Returns the smallest range of the returns around a direction. The result is 0 if there are too few returns, or if
+/// the direction is at an edge of the cube that contains the bins.
 float FreeSpaceGrid::free_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;

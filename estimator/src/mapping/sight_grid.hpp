@@ -7,9 +7,10 @@
 
 namespace tumble::mapping {
 
-/// FreeSpaceGrid is the free space that a sweep observed: the nearest return per direction, in bins of a world-aligned
-/// cube around one position. A map point that is closer than all returns around its direction is no longer present, see
-/// mapping.md (R65). Directions with few returns, and directions at an edge of the cube, provide no information.
+/// FreeSpaceGrid is the free space that a sweep observed. Bins on the faces of a cube around the sensor contain the
+/// nearest return in each direction. A map point that is closer than all returns around its direction is no longer
+/// present, see mapping.md (R65). FreeSpaceGrid makes no statement about directions with few returns, and about
+/// directions at an edge of the cube.
 class FreeSpaceGrid {
  public:
   /// Sets the ray origin of the following points, and how far the sensor moved around this origin during the sweep.
@@ -17,8 +18,8 @@ class FreeSpaceGrid {
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown, seen, seen_through };
-  /// Checks whether the sweep saw a map point or saw through it. `sigma_m` is the standard deviation of the map point's
-  /// position. Cost: O(1).
+  /// Checks whether the sweep saw a map point, or saw through its position. `sigma_m` is the standard deviation of the
+  /// map point's position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:

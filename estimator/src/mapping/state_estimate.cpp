@@ -10,8 +10,8 @@ namespace tumble::mapping {
 using Matrix = Registration::Matrix;
 
 /// Returns the estimate at the start of the map: mapping.md (R54), (R55). The first pose of the lidar defines the map
-/// and is therefore exact. An error of the lidar's mounting is therefore an error of the IMU's pose and of gravity in
-/// the map.
+/// and is therefore exact. A wrong mounting of the lidar is therefore an error of the IMU's pose, and of gravity's
+/// direction, in the map.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -47,7 +47,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
   return state_estimate;
 }
 
-/// Returns the transition matrix of all unknowns: mapping.md (R11).
+/// Returns the transition matrix of all unknowns from the start of a trajectory to `t_s`: mapping.md (R11).
 Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   namespace u = unknowns;
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
@@ -64,7 +64,8 @@ MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// The velocity error in IMU axes is R_IW (δv + v × φ), with the velocity error δv and attitude error φ in frame W.
+/// Computes the covariance of the velocity error in IMU axes, R_IW (δv + v × φ). The velocity error δv and the attitude
+/// error φ are in frame W.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
@@ -74,9 +75,9 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// Computes the covariance of pose and mounting after propagation by the transition matrix F. The matrix blocks have
-/// the size of whole SIMD packets, which keeps the summation order of the full matrix product. The rows of F for
-/// mounting and other constants are rows of the identity: mapping.md (R11).
+/// Computes the covariance of pose and mounting after propagation by the transition matrix F. The blocks have the size
+/// of whole SIMD packets, so the sums have the same order as in the full matrix product. The rows of F for mounting and
+/// other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&

@@ -7,14 +7,14 @@
 
 namespace tumble::mapping {
 
-/// StateEstimate is the estimate of all unknowns at one time. The covariances `weight` and `error` of a StateEstimate
-/// are C and E of mapping.md (section 6).
+/// StateEstimate is the estimate of all unknowns at one time. The covariances `weight` and `error` are C and E of
+/// mapping.md (section 6).
 struct StateEstimate {
-  Registration::Estimate mean;  ///< the covariance of its state is the motion block of `weight`
-  /// Covariance that weights the mean against the next sweep. `weight` assumes that points carry less information than
-  /// independent points, for robustness to outliers.
+  Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`
+  /// Covariance that weights the mean against the next sweep. For robustness to outliers, `weight` assigns less
+  /// information to the points than independent points would have.
   Registration::Matrix weight = Registration::Matrix::Zero();
-  /// Covariance of the actual errors of the mean, propagated through the gains that `weight` determines.
+  /// Covariance of the actual errors of the mean; the gains of the updates follow from `weight`.
   Registration::Matrix error = Registration::Matrix::Zero();
 };
 
@@ -22,7 +22,8 @@ struct StateEstimate {
 /// (R55).
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Returns the derivative of the unknowns at `t_s` after the start with respect to the unknowns at the start.
+/// Returns the derivative of the unknowns `t_s` after the start of a trajectory, with respect to the unknowns at its
+/// start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
 /// Computes F P F^T into `out`; `out` and P must be different matrices. The function needs 32 KiB of stack, so callers
@@ -31,22 +32,20 @@ void propagate_covariance(const Registration::Matrix& F, const Registration::Mat
 
 /// Returns the blocks of the product F errors F^T that involve the pose or the mounting. F is the transition matrix of
 /// unknowns_at(). All other blocks of the result are zero. The returned blocks equal those of the full product bit for
-/// bit, at a third of the cost. The cost matters because this function runs for each pose of a recording.
+/// bit, at a third of the cost.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// MotionErrors is the covariance of the errors of position, attitude and velocity in frame W.
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
-/// Returns the block of the product F errors F^T that belongs to the motion. F is the transition matrix of
+/// Returns the block of the product F errors F^T for position, attitude and velocity. F is the transition matrix of
 /// unknowns_at().
 MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// Returns the covariance of the velocity error in IMU axes, R_IW v_WI_W. An error of the attitude rotates this
-/// velocity.
+/// Returns the covariance of the error of the velocity in IMU axes, R_IW v_WI_W, which includes the attitude error.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors);
 
-/// Propagates the estimate to the end of the segment at time `end_ns`. `trajectory` is the motion of the estimate's
-/// mean.
+/// Propagates the estimate from the start of `trajectory`, the motion of its mean, to `end_ns`.
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
             const Registration::Matrix& end_start_jacobian, TimeNs end_ns, StateEstimate& end);
 
@@ -54,7 +53,7 @@ void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
 /// attitude. The derivative is the matrix K of mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
-/// Returns the covariance with small variances in place of zeros, so that the matrix is make_invertible.
+/// Returns the covariance with small variances in place of zeros, so that the matrix is invertible.
 Registration::Matrix make_invertible(const Registration::Matrix& covariance);
 
 }  // namespace tumble::mapping

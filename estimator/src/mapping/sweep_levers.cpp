@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The operations and their
-// order are those of Eigen's quaternions on a processor with packets of two doubles.
+// sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The results equal those of
+// Eigen's quaternions, because the operations and their order are the same.
 #include <algorithm>
 #include <limits>
 
@@ -16,8 +16,8 @@ constexpr int kLanes = 8;
 constexpr double kNoEnd_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-/// Lanes contains points in one interval of the trajectory: seconds since the interval's start, positions in frame I,
-/// and results.
+/// Lanes contains points within one interval of the trajectory: times since the interval's start [s], positions in
+/// frame I, and results.
 struct Lanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
@@ -40,7 +40,8 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 
 }  // namespace
 
-/// Evaluates the trajectory at the time of each point: mapping.md (R2), (R4), (R6).
+/// Computes the world position of each point of a sweep, without the parts due to start state and gravity: mapping.md
+/// (R2), (R4), (R6).
 void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
                                         std::span<Eigen::Vector3f> levers_W_m) const {
   const double from_s = -kExtrapolation_s, to_s = duration_s_ + kExtrapolation_s;

@@ -5,7 +5,7 @@
 #include "odometry_impl.hpp"
 #include "odometry_members.hpp"
 
-/// sweep_members.hpp lists the members of the odometry's sweeps and readings, as state_visitor.hpp describes.
+/// sweep_members.hpp lists the members of the odometry's sweeps and readings, for saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<MotionSample> Self, class Visitor>

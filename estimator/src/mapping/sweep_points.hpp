@@ -11,7 +11,7 @@
 
 namespace tumble::mapping {
 
-/// SweepPoints contains the usable returns of the current sweep, and the subset that is registered.
+/// SweepPoints contains the usable returns of the current sweep, and the subset for the registration.
 class SweepPoints {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -27,7 +27,8 @@ class SweepPoints {
   /// of check_selection().
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
-  /// Selects the points to register, one per cube in the world, positioned by the predicted motion.
+  /// Selects the points for the registration, one per cube of the world, at the positions that the predicted motion
+  /// gives.
   void choose(const Params& params, const SweepTrajectory& predicted);
   void move(const SweepCalibration& calibration, double later_s) { apply_calibration(calibration, later_s, all_); }
 

@@ -15,21 +15,22 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// kSpan_s is the duration of a time span over which velocities are compared. Over short spans, the inertial prior of
-// the mapper hides scale errors. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08
-// over 0.4 s. If ranges are correct, the estimated scale is 0.998 to 1.006.
+// kSpan_s is the duration of a time span over which velocities are compared. Over short spans, the IMU's weight in the
+// mapping hides errors of the lidar's scale. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1
+// s, and 1.08 over 0.4 s. If ranges are correct, the estimated scale is 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
-constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration: bias of the accelerometer, tilt
-constexpr double kMemory_s = 60.0;   // age of a change that is still compared: a finding ends
-constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per median absolute deviation
+constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration, from accelerometer bias and tilt
+constexpr double kMemory_s = 60.0;   // age up to which a change is compared, so that a finding ends
+// width of the robust kernel in standard deviations; ratio of standard deviation to median absolute deviation
+constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
 using Change = SweepScaleEstimator::Change;
 
-/// ImuMotion integrates the specific force with the estimated attitudes of the run.
+/// ImuMotion integrates the specific force to velocity, with the attitudes that the run has estimated.
 class ImuMotion {
  public:
   template <class Sweeps>
@@ -90,8 +91,8 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Returns the change of velocity between the two time spans before the end of sweep `last`. The function returns
-/// nothing if the change is unknown or too small.
+/// Returns the change of velocity between the two time spans before the end of sweep `last`. Returns nothing if the
+/// change is unknown or too small.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {
@@ -165,7 +166,7 @@ SweepScaleEstimator::SweepScaleEstimator(double gravity_m_s2, std::size_t sample
 }
 
 void SweepScaleEstimator::add(const ImuSample& sample) {
-  if (samples_.size() >= samples_max_) {  // the lidar provides no sweeps
+  if (samples_.size() >= samples_max_) {  // the lidar has stopped delivering sweeps
     samples_.clear();
     sweeps_.clear();
   }

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns for each axis the largest standard deviation among the samples of the segment in which the axis was clipped.
-/// Samples after the segment are ignored.
+/// Returns for each axis the largest standard deviation of the rate among the samples up to `end_ns` in which the axis
+/// is clipped.
 Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -25,8 +25,8 @@ Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end
   return sigma;
 }
 
-/// Returns the signed factors s_j of the saturation deficit for a sample: mapping.md (R8). The factors are proportional
-/// to the standard deviation of the sample's rate.
+/// Returns for a sample the signed factors s_j by which the saturation deficit of each axis applies: mapping.md (R8).
+/// The factors are proportional to the standard deviation of the rate.
 Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -38,8 +38,8 @@ Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3
   return share;
 }
 
-/// Returns the interpolation weights of the saturation deficit at a fraction of the segment. The saturation deficit is
-/// linear between neighbouring knots of the segment: mapping.md (R7).
+/// Returns the interpolation weights of the knots at the fraction `share` of a sweep. The saturation deficit is linear
+/// between neighbouring knots: mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -47,8 +47,8 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. The power series saves time, because each
-/// point of a sweep needs one rotation by a small angle.
+/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. Each point of a sweep needs one rotation by
+/// a small angle, for which the power series is fast.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -207,7 +207,7 @@ MotionState SweepTrajectory::state(double t_s) const {
   return state;
 }
 
-/// Returns the transition matrix from the start of the segment: mapping.md (R11).
+/// Returns the transition matrix of the motion from the start of the trajectory to `t_s`: mapping.md (R11).
 SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   std::size_t hint = 0;

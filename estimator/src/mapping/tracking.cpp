@@ -5,7 +5,7 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation: a single sweep may fit by chance
+constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation; a single sweep may fit by chance
 
 bool is_registered(RegistrationOutcome placement) {
   return placement == RegistrationOutcome::found || placement == RegistrationOutcome::relocalisation_unconfirmed;

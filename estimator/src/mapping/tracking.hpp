@@ -10,8 +10,8 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the state in normal operation. During tracking, a certain prior or an abandoned search may make a sweep
-/// acceptable without registration.
+/// Tracking is the state in normal operation. A sweep without registration is acceptable if its prior is certain, or if
+/// the search was abandoned.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
@@ -22,11 +22,12 @@ struct Lost {
 };
 
 /// Relocalised is the state after a relocalisation that is not confirmed yet. Inertial prediction continues in parallel
-/// (DeadReckoning), and replaces the relocalisation if a sweep contradicts it: mapping.md (R67), (R68).
+/// (DeadReckoning). If a sweep contradicts the relocalisation, the inertial prediction replaces it: mapping.md (R67),
+/// (R68).
 struct Relocalised {
   int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;
-  int agreeing = 0;  ///< number of confirming sweeps
+  int agreeing = 0;  ///< number of sweeps that agree with the relocalisation
 };
 
 using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>;
@@ -41,15 +42,15 @@ enum class RegistrationOutcome : std::uint8_t {
 
 TrackingState after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict);
 
-/// Returns whether a sweep with the given registration result contradicts the relocalisation.
+/// Returns whether a sweep with the registration result `placement` contradicts an unconfirmed relocalisation.
 bool contradicts(const TrackingState& before, RegistrationOutcome placement);
-/// Returns the tracking state after a relocalisation is reverted.
+/// Returns the tracking state after a contradicted relocalisation was reverted.
 Lost after_reverted_relocalisation(const TrackingState& relocalised);
 
 bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);
 bool is_unconfirmed(const TrackingState& state);
-int consecutive_rejected_sweeps(const TrackingState& state);  ///< 0 unless tracking failed
+int consecutive_rejected_sweeps(const TrackingState& state);  ///< number of rejected sweeps; 0 unless tracking failed
 int failed_searches(const TrackingState& state);              ///< number of consecutive failed searches
 
 }  // namespace tumble::mapping

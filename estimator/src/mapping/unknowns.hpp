@@ -3,18 +3,17 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// unknowns.hpp names the blocks of vectors and matrices over all unknowns of a sweep (docs/maths/mapping.md), or over
-/// their first part. Use `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector, instead of
-/// indices.
+/// unknowns.hpp names the blocks of vectors and matrices over the unknowns of a sweep (docs/maths/mapping.md). Use
+/// `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector, instead of indices.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
 struct Block {};
 
-inline constexpr Block<0, 3> position;  ///< W
+inline constexpr Block<0, 3> position;  ///< position in W
 inline constexpr Block<3, 3> attitude;  ///< left perturbation in W
 inline constexpr Block<3, 2> tilt;      ///< attitude about W's horizontal axes
-inline constexpr Block<6, 3> velocity;  ///< W
+inline constexpr Block<6, 3> velocity;  ///< velocity in W
 inline constexpr Block<0, 6> pose;      ///< position, attitude
 inline constexpr Block<0, Registration::kMotionSize> motion;
 inline constexpr Block<Registration::kDeficitStart, SweepTrajectory::kDeficitSize> deficit;
@@ -26,14 +25,15 @@ inline constexpr Block<Registration::kCalibrationStart + 3, 3> mounting_translat
 inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
 inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
-/// kMinVariance is the variance of an exactly known unknown; it is above 0 so that the prior can be inverted.
+/// kMinVariance is the variance of an exactly known unknown; the value is above 0 so that the prior covariance is
+/// invertible.
 inline constexpr double kMinVariance = 1e-12;
 /// kAgreementChi2Max is the largest squared Mahalanobis distance at which a sweep's motion agrees with its prior,
 /// mapping.md (R25), (R71). kAgreementChi2Max is the 95 % quantile of chi-square with nine degrees of freedom.
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 
-/// Returns the index of the saturation deficit of an axis at a knot.
+/// Returns the index of an axis' saturation deficit at a knot, in the vector of all unknowns.
 constexpr int deficit_at(int axis, int knot) {
   return Registration::kDeficitStart + 3 * knot + axis;
 }

@@ -41,8 +41,8 @@ void VoxelMap::load(StateReader& in) {
   if (in.going()) *this = std::move(map);
 }
 
-/// Loads the next chunk of map points. The chunks of a cell are saved in the order in which they were filled. Only the
-/// last saved chunk of a cell has free slots, so the number of used slots suffices.
+/// Loads the next chunk (block of map points). The chunks of a cell were saved in the order in which they were filled,
+/// so only the last chunk of a cell has unused slots.
 void VoxelMap::load_chunk(StateReader& in) {
   std::uint8_t count = 0;
   in("map.chunk.count", count, 1.0, kPointsPerChunk);

@@ -13,11 +13,11 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-// kScale is the standard deviation of the map's scale. The position error grows in proportion to the distance (0.24 %
-// in a hall with pillars), because successive sweeps share causes of errors, such as ranges.
+// kScale is the standard deviation of the map's scale. Successive sweeps share causes of errors, such as range errors,
+// so the position error grows in proportion to the distance (0.24 % in a hall with pillars).
 constexpr double kScale = 0.003;
 
-/// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
+/// Returns the covariance of the pose error minus `by_mounting` times the mounting error: mapping.md (R57).
 Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
   unknowns::columns(G, unknowns::pose).setIdentity();
@@ -28,7 +28,8 @@ Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mountin
 
 }  // namespace
 
-/// A rotation of the map about the start moves distant points of the map: mapping.md (R56).
+/// Returns the derivative of the map's error at the IMU with respect to the mounting error at the start: mapping.md
+/// (R56).
 Pose WorldCovariance::start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const {
   Pose start = start_mounting_jacobian_;
   start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_mounting_jacobian_.bottomRows<3>();
@@ -48,7 +49,8 @@ double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const 
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
 }
 
-/// Adds the map's error at the position of the pose, and the tilt error of the start: mapping.md (R58).
+/// Returns the covariance of a pose in the world, which includes the map's error at its position and the tilt error of
+/// the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
   const Eigen::Vector3d from_start_m = p_WI_m - start_W_m_;
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
@@ -69,12 +71,12 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 }
 
 /// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
-/// The pose is more certain in the middle of a sweep than at its start or end. An error of the lidar's mounting is not
-/// an error of the map.
+/// The pose is most certain in the middle of a sweep. Mounting errors of the lidar are excluded, because they do not
+/// change the map.
 void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
-  // a rotation of the map about its last extension moves the map at the robot's position
+  // a rotation of the newest part of the map also displaces the map at the robot's position
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
   Pose moved = Pose::Identity();
   moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - map_at_W_m_);

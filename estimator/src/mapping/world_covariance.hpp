@@ -5,14 +5,15 @@
 
 namespace tumble::mapping {
 
-/// WorldCovariance is the error of the map relative to the world: mounting, tilt of the start, scale, errors at
-/// insertion, and drift in unconstrained directions. The first pose of the IMU defines the world frame.
+/// WorldCovariance is the covariance of the map relative to the world. The covariance includes errors of mounting,
+/// initial tilt, scale, pose errors of inserted sweeps, and drift in unconstrained directions. The first pose of the
+/// IMU defines the world frame.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
 
   WorldCovariance() = default;
-  /// Starts at the first pose of the IMU.
+  /// Constructs the covariance at the first pose of the IMU.
   WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m,
                   const Eigen::Vector3d& p_WI_m = Eigen::Vector3d::Zero())
       : params_(params),
@@ -20,21 +21,21 @@ class WorldCovariance {
         map_at_W_m_(p_WI_m),
         start_mounting_jacobian_(pose_mounting_jacobian(q_WI, p_IL_m)) {}
 
-  /// Returns the errors of a run that continues at a position in a prior map, which is assumed exact.
+  /// Returns the covariance of a run that is localised at a position in a prior map. The prior map is assumed exact.
   static WorldCovariance of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
   /// Returns the covariance of a pose's error relative to the world. `joint` is the covariance of all unknowns in the
   /// map at the time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Returns the standard deviation of a position relative to the map around it [m].
+  /// Returns the standard deviation of a position relative to the nearby part of the map [m].
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Adds the drift of a moving sweep, given its least constrained standard deviation and direction (position, scaled
-  /// attitude).
+  /// Adds the drift of a sweep in motion. The arguments are the direction that the surfaces constrain least (position,
+  /// scaled attitude), and its standard deviation.
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
-  /// Adds the error of a sweep that inserted a fraction of the visible map, evaluated in the middle of the sweep.
-  /// `errors` is the covariance of the unknowns at the start of the sweep.
+  /// Adds the pose error of a sweep, in the middle of the sweep, if the fraction `inserted_fraction` of its points was
+  /// inserted into the map. `errors` is the covariance of the unknowns at the start of the sweep.
   void add_insertion(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 
@@ -48,11 +49,11 @@ class WorldCovariance {
   Pose start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const;
 
   WorldCovarianceParams params_;
-  Eigen::Vector3d start_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose
+  Eigen::Vector3d start_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose of the IMU
   Eigen::Vector3d map_at_W_m_ = Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
   Pose start_mounting_jacobian_ = Pose::Zero();
   Pose map_ = Pose::Zero();  // covariance of the map relative to the world, at map_at_W_m_
-  Eigen::Matrix3d drift_covariance_m2_ = Eigen::Matrix3d::Zero();  // covariance of the drift of the position
+  Eigen::Matrix3d drift_covariance_m2_ = Eigen::Matrix3d::Zero();  // covariance of the position drift
 };
 
 }  // namespace tumble::mapping

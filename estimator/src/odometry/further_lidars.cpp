@@ -16,7 +16,8 @@ namespace tumble {
 
 namespace {
 
-constexpr std::uint16_t kRingsPerLidar = 4096;  // a lone return is detected by comparison within one ring
+// ring numbers per lidar, so that rings of two lidars differ: LoneReturns compares returns within one ring
+constexpr std::uint16_t kRingsPerLidar = 4096;
 constexpr double kOffsetMax_s = 1.0;
 
 bool is_return(const FurtherLidar& lidar, const LidarPoint& point) {

@@ -18,9 +18,9 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// A recording counts as hand-held if a larger fraction of its samples is classified as hand-held. For hand-held motion,
-// the measured fraction is at least 0.91. For thrown bodies, the measured fraction is at most 0.25 with correct axes,
-// and mostly below 0.6 with wrong axes.
+// A recording counts as hand-held if at least this fraction of its samples is classified as hand-held. The fraction was
+// at least 0.91 for hand-held motion. For thrown bodies, it was at most 0.25 with correct axes, and mostly below 0.6
+// with wrong axes.
 constexpr double kRepeatedFraction = 0.8;
 
 double largest_rate_rad_s(std::span<const ImuSample> samples) {
@@ -43,7 +43,7 @@ RestGravity rest_gravity(const CheckedImu& imu) {
   return RestGravity(params);
 }
 
-/// Returns the error of a specific force in g, by the criterion of RateReport::force_unit_suspect.
+/// Returns an error if the specific forces seem to be in g instead of m/s^2 (RateReport::force_unit_suspect).
 Status force_unit(std::span<const ImuSample> samples) {
   constexpr double kLeast_m_s2 = 0.5, kMost_m_s2 = 2.0;
   std::vector<double> forces;
@@ -55,14 +55,14 @@ Status force_unit(std::span<const ImuSample> samples) {
   return {ErrorCode::out_of_range, "median of the specific force in m/s^2", *middle, kMost_m_s2};
 }
 
-/// Returns the kind of the finding of ImuPlausibility::verdict(), in the order in which verdict() tests.
+/// Returns the kind of the finding that ImuPlausibility::verdict() reports.
 Kind kind_of(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const Status& verdict) {
   if (verdict.value == plausibility.force_ratio(state)) return Kind::force_at_rest;
   if (plausibility.frozen_s(state) > 0.0) return Kind::frozen_sensor;
   return plausibility.better_axis_labels(state) ? Kind::axes_or_signs : Kind::rotation;
 }
 
-/// Returns the error of a rate in degrees per second, by the criterion of RateReport::rate_unit_suspect.
+/// Returns an error if the rates seem to be in degrees per second instead of rad/s (RateReport::rate_unit_suspect).
 Status rate_unit(std::span<const ImuSample> samples) {
   const double largest = largest_rate_rad_s(samples), most = RateModelParams{}.rate_max_rad_s;
   return largest > most ? Status{ErrorCode::out_of_range, "angular_velocity_rad_s", largest, most} : Status{};

@@ -11,11 +11,13 @@ namespace tumble {
 
 namespace {
 
-constexpr int kExtraPassesMax = 3;              // additional passes for a calibration that has not converged
-constexpr std::size_t kSweepsPerRejection = 5;  // more rejections: the pass does not determine the calibration
+// maximum number of additional passes until the calibration has converged
+constexpr int kExtraPassesMax = 3;
+// if more than one in this many sweeps is rejected, the pass does not determine the calibration
+constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut of the last sweep, a clock
-/// offset would discard the whole sweep.
+/// Cuts the last sweep at the end of the IMU data if most of the sweep remains. Otherwise a small clock offset would
+/// make the whole sweep unusable.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
@@ -61,7 +63,7 @@ class Pass {
     if (out_.status.ok()) add_points(sweep);
   }
 
-  /// Adds empty sweeps while the lidar is silent until `to_ns`, as TumblingOdometry does live.
+  /// Adds empty sweeps up to `to_ns` while the lidar provides no sweeps, as TumblingOdometry does live.
   void add_silence(TimeNs to_ns) {
     while (out_.status.ok() && last_end_ns_) {
       const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);
@@ -97,7 +99,7 @@ class Pass {
     apply_next(std::exchange(added.report.smoothed, {}));
   }
 
-  /// Replaces the trajectory of the oldest sweep in the lag window by its smoothed trajectory.
+  /// Replaces the trajectory of the next unsmoothed sweep by its smoothed trajectory.
   void apply_next(std::vector<PoseState> smoothed) {
     if (smoothed.empty()) return;
     while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
@@ -110,13 +112,13 @@ class Pass {
   const MappingInput& input_;
   TimeNs offset_ns_;
   MappedRecording out_;
-  std::size_t next_ = 0;      ///< next sample
-  std::size_t smoothed_ = 0;  ///< next sweep without a smoothed trajectory
+  std::size_t next_ = 0;      ///< index of the next sample
+  std::size_t smoothed_ = 0;  ///< index of the next sweep without a smoothed trajectory
   std::optional<TimeNs> last_pose_time_ns_;
   std::optional<TimeNs> last_end_ns_;  ///< end of the last sweep with a pose, in the lidar's clock
 };
 
-/// Returns the initial calibration of a pass with the stated uncertainty.
+/// Returns the calibration from which a pass starts, with its stated uncertainty.
 StatedCalibration stated_calibration(const LidarInertialOdometry::Params& started,
                                      const LidarInertialOdometry::Params& given) {
   StatedCalibration out;
@@ -128,7 +130,7 @@ StatedCalibration stated_calibration(const LidarInertialOdometry::Params& starte
   return out;
 }
 
-/// Returns whether a mapper pass rejected few enough sweeps that its calibration is usable.
+/// Returns whether the calibration of a pass is usable, because the pass rejected few sweeps.
 bool determines_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;

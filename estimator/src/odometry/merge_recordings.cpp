@@ -17,9 +17,10 @@ namespace {
 
 using Kind = HealthFinding::Kind;
 
-constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
-// An element without an observed saturation plane is assumed to be exactly aligned with its axis. If the cross-axis
-// sensitivity were uncertain by 0.03, three clipped IMUs could no longer determine the rate.
+constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
+// Standard deviation of an element's cross-axis sensitivity without an observed saturation plane: the element is
+// assumed to be aligned with its axis. With a standard deviation of 0.03, three clipped IMUs could not determine the
+// rate.
 constexpr double kUnknownSlope = 0.0;
 
 /// Units contains the IMUs that provide samples, resampled to common times.
@@ -32,8 +33,8 @@ struct Units {
   std::vector<std::vector<FrozenAxis>> frozen;
 };
 
-/// Sets the clip flags in the readings of an IMU, and estimates the directions of its sensing elements. The IMU may
-/// have frozen axes.
+/// Sets the clip flags in the readings of an IMU, and estimates the directions of its sensing elements. Axes may be
+/// frozen.
 void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
   ClippingFinder::Params params;
@@ -50,7 +51,7 @@ void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, Sensin
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Resamples the readings of all IMUs to common times, in place.
+/// Resamples the readings of all IMUs to common times, and replaces `samples` by the result.
 Status align(std::vector<std::vector<ImuSample>>& samples) {
   const UnitAlignment alignment(samples.size());
   UnitAlignment::State state;
@@ -63,7 +64,7 @@ Status align(std::vector<std::vector<ImuSample>>& samples) {
     }
   };
   while (true) {
-    std::optional<std::size_t> first;  // the IMU with the earliest reading
+    std::optional<std::size_t> first;  // index of the IMU with the earliest reading
     for (std::size_t k = 0; k < samples.size(); ++k) {
       if (next[k] == samples[k].size()) continue;
       if (!first || samples[k][next[k]].time_ns < samples[*first][next[*first]].time_ns) first = k;
@@ -102,13 +103,13 @@ void set_units(const Units& units, ImuMerge::Params& params) {
   std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
 }
 
-/// Removes the gaps of a recording from the time of ImuMerge, whose calibration continues after a gap.
+/// Removes the gaps of a recording from the time stamps, so that the calibration of ImuMerge continues after a gap.
 class TimeWithoutGaps {
  public:
   explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Returns the time of the next sample, and whether the sample follows a gap. A gap becomes as short as the step
-  /// before the gap.
+  /// Returns the time of the next sample, and whether the sample follows a gap. After the removal, a gap is as long as
+  /// the time step before it.
   std::pair<TimeNs, bool> next(TimeNs time_ns) {
     const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
     if (after_gap) {
@@ -132,7 +133,7 @@ class TimeWithoutGaps {
 
  private:
   struct Gap {
-    TimeNs end_ns, removed_ns;  ///< end without gaps; sum of all gaps so far
+    TimeNs end_ns, removed_ns;  ///< end of a gap, in time without gaps; total duration of all gaps so far
   };
   TimeNs removed() const { return gaps_.empty() ? 0 : gaps_.back().removed_ns; }
 
@@ -142,7 +143,7 @@ class TimeWithoutGaps {
   TimeNs last_ns_ = 0, step_ns_ = 1;
 };
 
-/// Deletes the averaging windows and the predicted motion at a gap, and keeps the calibration of the units.
+/// Deletes the averaging windows and the predicted motion at a gap, but keeps the calibration of the IMUs.
 void delete_motion(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.units) unit.window = {};
   state.recovery.running = false;
@@ -180,7 +181,7 @@ std::string name(const Units& units, std::size_t k) {
   return unit_name(units.index[k], units.count);
 }
 
-/// Marks the readings of an IMU between `from_ns` and `to_ns` as absent.
+/// Marks all readings of an IMU from `from_ns` to `to_ns` as absent.
 void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns)
@@ -243,7 +244,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether there are faulty IMUs.
+/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether ImuMerge found a faulty IMU.
 bool exclude_found(const ImuMerge& merge, const ImuMerge::State& state, Units& units, SensorHealth& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {

@@ -16,8 +16,8 @@ namespace tumble {
 
 namespace odometry {
 
-/// kSweepFields lists the field names that add_sweep() may report in a Status. A loaded Status needs a pointer to a
-/// static string.
+/// kSweepFields lists the field names that add_sweep() may report in a Status. A loaded Status points to a name in this
+/// list.
 inline constexpr std::array<const char*, 13> kSweepFields = {"",
                                                              "end_ns",
                                                              "start_ns",
@@ -47,7 +47,7 @@ void members(Self& s, Visitor& visit) {
   visit("status.field", field, 0.0, odometry::kSweepFields.size() - 1.0);
   if constexpr (!std::is_const_v<Self>)
     s.field = odometry::kSweepFields[std::min(field, odometry::kSweepFields.size() - 1)];
-  visit.scratch(s.field);  // visited by its index
+  visit.scratch(s.field);  // saved as an index of kSweepFields
   visit.with_nan("status.value", s.value);
   visit.with_nan("status.bound", s.bound);
 }

@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 constexpr double kMinGravity_m_s2 = 1e-3;
-constexpr double kPreallocated_s = 2.0;  // duration of preallocated sample memory, longer than any gap of a lidar
+constexpr double kPreallocated_s = 2.0;  // duration of the preallocated samples, longer than any gap of a lidar
 
 std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
@@ -18,8 +18,8 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
 
 /// Returns the angular rate that the mapper receives. If a clipped axis is too uncertain for the mapper, the function
 /// returns the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
-/// uncertain calibration, RateStream may extrapolate an impact by tens of rad/s, with a correspondingly large standard
-/// deviation.
+/// uncertain calibration, a rate that RateStream recovers at an impact may be wrong by tens of rad/s, with a
+/// correspondingly large standard deviation.
 RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
@@ -33,7 +33,7 @@ RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, doubl
   return out;
 }
 
-/// ClassifiedSamples provides the samples of a stream, with flags on specific forces that RateStream classified as
+/// ClassifiedSamples returns the samples in the window of a RateStream, with flags on specific forces that are
 /// saturated. Successive calls need increasing times.
 class ClassifiedSamples {
  public:
@@ -160,7 +160,7 @@ void OdometryPass::flush_until(TimeNs time_ns) {
 
 void OdometryPass::start_rate_estimation(const RegimeStream::Params& rate) {
   rates_ = RegimeStream(rate);
-  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // a frozen axis may remain frozen
+  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may stay frozen across the restart
   const FlightSignCheck::State sense = rate_state_.rate.sense;
   rate_state_ = rates_.start();
   rate_state_.rate.frozen = frozen;

@@ -12,7 +12,7 @@
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
-/// pass_members.hpp lists the members of the two passes of TumblingOdometry, as state_visitor.hpp describes.
+/// pass_members.hpp lists the members of the two passes of TumblingOdometry, for saving (see state_visitor.hpp).
 namespace tumble {
 
 namespace odometry {
@@ -34,7 +34,7 @@ void visit_estimated(Self& p, Visitor& visit) {
 
 }  // namespace odometry
 
-/// Visits only those samples that are still in use.
+/// Visits the samples of a queue that are still in use.
 template <class Self, class Visitor>
 void OdometryPass::Queue::members(Self& s, Visitor& visit) {
   if constexpr (std::is_const_v<Self>) {
@@ -69,7 +69,7 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.smoothed", s.smoothed_);
   visit("pass.last_mapped_ns", s.last_mapped_ns_);
   visit("pass.rejected_samples", s.rejected_samples_);
-  visit.scratch(s.rest_gravity_);  // of the parameters
+  visit.scratch(s.rest_gravity_);  // derived from the parameters
   visit("pass.gravity", s.rest_gravity_state_);
 }
 
@@ -110,7 +110,7 @@ void SecondPass::members(Self& s, Visitor& visit) {
     s.pass_.reset();
     if (is_running && visit.going()) s.pass_.emplace(s.delayed_rate_params(), s.mapping_);
   }
-  // the layout already contains the members of a pass, so the second pass is omitted
+  // StateLayout already contains the members of an OdometryPass, so the second one is omitted
   if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
   visit.scratch(s.pass_);
   visit("second_pass.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));

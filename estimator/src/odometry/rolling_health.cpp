@@ -14,8 +14,8 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kUnitSilent_s = 0.5;  // time without readings after which a unit counts as silent
 
-/// Adds findings about units whose force at rest contradicts gravity. If the forces of all units contradict gravity,
-/// the finding is about the merged IMU. Otherwise each contradicting unit gets the finding `unit_disagrees`.
+/// Adds findings about IMUs whose force at rest contradicts gravity. If the forces of all IMUs contradict gravity, the
+/// finding is about the merged IMU. Otherwise each contradicting IMU gets the finding `unit_disagrees`.
 void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHealth& health) {
   const auto verdict = [&](std::size_t unit) {
     return checks.rest_gravity.magnitude_verdict(checks.rest_gravity_state[unit]);
@@ -52,7 +52,7 @@ SensorHealth RollingOdometry::health() const {
   return out;
 }
 
-/// Adds the frozen axes. If other units replace the readings of the frozen unit, the finding is `unit_frozen`.
+/// Adds findings about frozen axes. If other IMUs replace the frozen IMU, the finding is `unit_frozen`.
 void RollingOdometry::add_frozen(const Frozen& frozen, SensorHealth& health) const {
   const std::size_t count = params_.units.size();
   const auto end = frozen.begin() + static_cast<std::ptrdiff_t>(count);

@@ -19,7 +19,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Marks the sample of an IMU as absent.
+/// Marks a sample as absent, because its IMU has no reading at this time.
 void mark_absent(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -144,7 +144,7 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// Adds the readings at all common times for which every IMU has a reading. If `ended` is true, no further readings
+/// Processes the readings at all common times that UnitAlignment has completed. `ended` states that no further readings
 /// follow.
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
@@ -156,8 +156,8 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// Adds the delayed samples, except for readings that the outlier filter rejects after comparison with the next
-/// samples.
+/// Processes the samples that the outlier filter delayed, except for readings that it rejects now that the next samples
+/// are known.
 Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
   if (!delayed_samples_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
@@ -186,7 +186,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   for (std::size_t k = 0; k < samples.size(); ++k) frozen_axis_detectors_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
-    frozen_ = frozen;  // health() reports the frozen axes
+    frozen_ = frozen;  // needed by health()
     return status;
   }
   if (Status status = imu_merge_.step(judged, *merge_state_buffer_, merged); !status.ok()) return status;
@@ -216,7 +216,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of frozen IMUs to NaN. Returns an error if no IMU remains.
+/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if no IMU remains.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -264,7 +264,7 @@ Status RollingOdometry::finish() {
   return status;
 }
 
-/// Smooths the poses that are still within the lag.
+/// Ends a run: smooths the poses that are still within the lag.
 void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rolling_recording.cpp implements RollingOdometry for a whole recording.
+// rolling_recording.cpp contains the functions of RollingOdometry that process a whole recording.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -49,7 +49,7 @@ Status RollingOdometry::finish_whole_recording() {
   whole->findings = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
-    // start_run() replaces state_
+    // start_run() will replace state_
     const TimeNs last_ns = state_->live.started ? state_->live.last_time_ns : sample.time_ns;
     if (seconds(sample.time_ns - last_ns) > params_.expert.rolling.filter.expert.gap.gap_max_s)
       restart_at_newest(seconds(sample.time_ns - last_ns));

@@ -12,12 +12,11 @@ namespace tumble {
 
 namespace {
 
-// The constants are standard deviations of the motion in a gap without data. They limit the horizontal speed in
-// addition to the last speed, and the rotation about the vertical. After a long gap, the heading is unknown (uniform
-// over a turn).
+// Standard deviations of the motion in a gap: horizontal speed in addition to the last speed, and rate about the
+// vertical. After a long gap, the heading is unknown (uniform over a turn).
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
-/// Returns the covariance without the tilt, which a restart levels again.
+/// Returns the covariance of position and heading. The tilt is omitted, because a restart levels the attitude.
 Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
   covariance.middleRows<2>(3).setZero();
   covariance.middleCols<2>(3).setZero();
@@ -26,7 +25,7 @@ Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> cov
 
 }  // namespace
 
-/// Restarts the run at the newest pose, after `gap_s` without data.
+/// Starts a new run at the newest pose, after `gap_s` without data.
 void RollingOdometry::restart_at_newest(double gap_s) {
   const std::size_t before = results_.size();
   end_run();
@@ -53,7 +52,7 @@ void RollingOdometry::restart_at_newest(double gap_s) {
   restart_ = restart;
 }
 
-/// Computes the pose of the run's origin, from the run's first pose.
+/// Computes the pose of the run's origin in the world from the first pose of the run.
 void RollingOdometry::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);
@@ -65,7 +64,7 @@ void RollingOdometry::initialise_pose() {
   start_.reset();
 }
 
-/// Converts an estimate of the filter or the smoother to the world.
+/// Converts an estimate of the filter or the smoother from the frame of the run to the world.
 RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restart_.has_value();
   if (!T_W_run_) return estimate;

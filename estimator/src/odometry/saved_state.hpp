@@ -25,8 +25,9 @@
 /// | 32 | checksum of all other bytes |
 /// | 40 | the parameters, then the state, as StateWriter writes them |
 ///
-/// Only a library with the same state layout can load a saved state. A new member changes the digest of the state
-/// layout. If the meaning of a member changes without a change of layout, the version of the format must change.
+/// A library can load a saved state only if its members have the same names, widths and order. A new member therefore
+/// changes the digest. If the meaning of a member changes without a change of layout, the version of the format must
+/// change.
 namespace tumble::odometry {
 
 enum class SavedKind : std::uint32_t {
@@ -43,13 +44,13 @@ enum class SavedKind : std::uint32_t {
 inline constexpr std::uint32_t kSavedVersion = 1;
 inline constexpr std::size_t kSavedHeader = 40;
 
-/// Fills in the header of `bytes`, whose first kSavedHeader bytes are reserved for it.
+/// Writes the header to the first kSavedHeader bytes of `bytes`, which are reserved for it.
 void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
 /// Checks the header of a saved state and returns the bytes after it.
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload);
 
-/// Saves `whole`, which is an odometry object or the state of a stream.
+/// Saves the object `whole`, an odometry object or the state of a stream, with its parameters.
 template <class Whole, class Params>
 std::uint64_t layout_of(const Whole& whole, const Params& params) {
   StateLayout layout;

@@ -28,8 +28,7 @@ constexpr SavedKind kKind<RollingFilter> = SavedKind::rolling_filter;
 template <>
 constexpr SavedKind kKind<RollingSmoother> = SavedKind::rolling_smoother;
 
-/// Creates the state of a stream before its first sample. The state is on the heap, because the state of
-/// RollingOdometry is too large for the stack.
+/// Creates on the heap the state of a stream before its first sample. Some states are too large for the stack.
 template <class Stream>
 std::unique_ptr<typename Stream::State> make_state(const Stream& stream) {
   using State = typename Stream::State;

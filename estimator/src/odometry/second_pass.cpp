@@ -12,14 +12,14 @@ namespace tumble {
 
 namespace {
 
-constexpr double kBufferLead_s = 0.1;  // time before the first buffered sweep, because the clocks may differ
+constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
-    20;  // the second pass may reject one sweep more than the first per this many sweeps
-// The second pass ignores the calibration if more than one in kSweepsPerRejection sweeps is rejected.
+    20;  // for each of this many sweeps, the second pass may reject one sweep more than the first pass
+// The second pass does not adopt an estimated calibration if more than one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Initialises the stream with the saturation levels that the first pass detected. The covariance of the saturation
-/// planes is multiplied by `inflation`, as for the calibration.
+/// Initialises the stream with the saturation levels that the first pass detected. The covariances of the saturation
+/// planes are multiplied by `inflation`.
 void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
@@ -150,8 +150,8 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffer, fewer samples follow than the lag needs. The second pass then processes the last samples
-  // without a lag.
+  // Near the end of the buffer, fewer samples remain than the lag of the rate estimation needs. The second pass then
+  // reports the last rates before the lag is full.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
@@ -187,7 +187,7 @@ void SecondPass::replace_first_pass(OdometryPass& first) {
       (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*pass_));
     applied_ = true;
-    // an early second pass takes the role of the first pass when the regular second pass follows
+    // the regular second pass, which follows, compares its result with the early second pass
     rejected_by_first_ = rejected_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

@@ -4,7 +4,7 @@
 #include "../common/state_visitor.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
 
-/// stamp_order_members.hpp lists the members of StampOrder's state, as state_visitor.hpp describes.
+/// stamp_order_members.hpp lists the members of StampOrder's state, for saving (see state_visitor.hpp).
 namespace tumble {
 
 template <StateOf<RejectedStamps> Self, class Visitor>

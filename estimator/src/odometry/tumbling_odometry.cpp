@@ -19,7 +19,7 @@ using odometry::rate_params;
 
 namespace {
 
-/// Returns the lidar points fired at `from_ns` or later. The times of the returned points are relative to `from_ns`.
+/// Returns the lidar points fired at `from_ns` or later. The returned times are relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -40,7 +40,7 @@ std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
 }
 
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
-constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits how many sweeps wait for the lag
+constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar, for the number of sweeps that wait for rates
 
 }  // namespace
 
@@ -75,7 +75,7 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::process_accepted_sample(const ImuSample& sample) {
-  SampleClock::State stamps = sample_clock_state_;  // a rejected sample must not change the clock
+  SampleClock::State stamps = sample_clock_state_;  // a copy, because a rejected sample must not change the clock
   ImuSample timed = sample;
   if (const Status status = sample_clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
@@ -191,7 +191,7 @@ SensorHealth TumblingOdometry::health() const {
 Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
   if (is_whole()) return finish_whole_recording(on_sweep);
   OutlierFilter::finish(outlier_filter_state_);
-  if (!newest_rate()) return {};  // no samples since the last call
+  if (!newest_rate()) return {};  // no rate since the last call
   flush_all();
   second_pass_.complete(pass_);
   start_rate_estimation();
@@ -212,16 +212,16 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   positions_.observe(out.report);
   out.position_frame = positions_.frame();
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  // the second pass has a separate local frame
+  // the second pass has no prior map, so its frame differs from the localised first pass
   if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.abandon();
   const bool applied_before = second_pass_.applied();
   second_pass_.advance(pass_);
   if (second_pass_.applied() != applied_before) positions_.restart_fit();
 }
 
-/// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, the newest sample
-/// must be at least the lag minus 1.5 periods later than the sample at the sweep's end. The condition on the newest
-/// sample delays the sweep after a gap.
+/// Returns whether a sweep that ends at `end_ns` would be older than lag_s when the next sample arrives. The newest
+/// sample must also be later than the sweep's end by at least the lag minus 1.5 periods. The condition on the newest
+/// sample delays a sweep after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -233,8 +233,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the end of the sweep may end up to one period later. The rate of this sample is therefore
-    // reported one period early.
+    // The sample that covers the end of the sweep may be up to one period later than this end. The rate of this sample
+    // is therefore reported one period before the lag is full.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -264,8 +264,8 @@ void TumblingOdometry::restart_rates() {
   start_rate_estimation();
 }
 
-/// Restarts the run at its newest pose after the clock has stepped back. The function first registers the sweeps that
-/// the IMU samples cover.
+/// Restarts the run at its newest pose after the clock has stepped back. Before the restart, the function registers the
+/// sweeps for which IMU samples exist.
 void TumblingOdometry::restart_at_newest() {
   ++restart_count_;
   PoseState pose;
@@ -286,7 +286,7 @@ void TumblingOdometry::restart_at_newest() {
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
-/// Restarts a run that consists of a single sample, which is an outlier.
+/// Restarts a run whose only sample is an outlier.
 void TumblingOdometry::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
@@ -303,7 +303,7 @@ void TumblingOdometry::restart_without_first_sample() {
   outlier_filter_state_ = outliers;
 }
 
-/// Restarts the run at rest from the same start, with the gyro's zero offset as nominal bias.
+/// Restarts the run, which is still at rest, with the measured zero offset of the gyro as nominal bias.
 void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   early_sweeps_ += waiting_.size();
@@ -340,7 +340,7 @@ void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::start_rate_estimation() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  // if the estimated calibration is out of bounds, the run restarts from the stated calibration
+  // an estimated calibration that is out of bounds is not used
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.start_rate_estimation(params);
 }

@@ -5,17 +5,16 @@
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
-/// tumbling_odometry_params.hpp derives the parameters of the parts of TumblingOdometry from the parameters of
-/// TumblingOdometry.
+/// tumbling_odometry_params.hpp computes the parameters of rate estimation and mapping from TumblingOdometry::Params.
 namespace tumble::odometry {
 
 /// Returns the parameters of the rate estimation. Throws InvalidParams if a parameter of TumblingOdometry is out of
 /// bounds.
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
 
-/// Returns the parameters of the rate estimation over a whole recording. Parameters that RegimeSmoother and
-/// RegimeStream share have the values of RegimeStream. The prior standard deviations of accelerometer bias and inertia
-/// are wider (see RateStreamParams::model).
+/// Returns the parameters of the rate estimation over a whole recording. Common parameters of RegimeSmoother and
+/// RegimeStream have the values of RegimeStream. Only the prior standard deviations of accelerometer bias and inertia
+/// are larger (see RateStreamParams::model).
 RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 
 OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tumbling_recording.cpp implements TumblingOdometry for a whole recording.
+// tumbling_recording.cpp contains the functions of TumblingOdometry that process a whole recording.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -36,7 +36,7 @@ Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std
   return {};
 }
 
-/// Estimates the angular rates and checks the readings.
+/// Estimates the angular rates of a recording and checks whether its readings are plausible.
 Status estimate_rates(const TumblingOdometry::Params& params, std::span<const ImuSample> samples,
                       RecordingEstimate& out) {
   const RegimeSmoother smoother(odometry::recording_rate_params(params));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of TumblingOdometry.
+// tumbling_state.cpp saves and loads a TumblingOdometry.
 #include <memory>
 
 #include "odometry_members.hpp"

@@ -7,8 +7,9 @@ namespace tumble {
 
 namespace {
 
-constexpr int kReadings = 512;               // stored readings per triad: some seconds near the extremes
-constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores larger ranges
+// stored readings per gyro or accelerometer, enough for some seconds near the extremes
+constexpr int kReadings = 512;
+constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores a stated range above this rate
 
 StreamingClippingFinder::Params clipping_finder_params(const ImuSheet& sheet) {
   StreamingClippingFinder::Params out;
@@ -51,8 +52,8 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     if (!check_sample(samples[k]).ok()) continue;
     StreamingClippingFinder::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
-    units_[k].watch.axis_aligned_rails().classify(samples[k],
-                                                  rails.known.axis_aligned_rails);  // contains the hysteresis
+    // this call of classify() updates the hysteresis of the clipped axes
+    units_[k].watch.axis_aligned_rails().classify(samples[k], rails.known.axis_aligned_rails);
     state[k].before = samples[k];
   }
 }

@@ -11,16 +11,16 @@
 
 namespace tumble::rolling {
 
-/// LastPass is the final pass of RollingSmoother over stored samples: a Kalman filter with fixed contact modes, then
-/// the backward pass.
+/// LastPass is the final pass of RollingSmoother over stored samples. A Kalman filter with known contact modes runs
+/// forward, and a smoother runs backward.
 ///
 /// The backward pass needs more than 10 KiB per node. LastPass therefore divides the nodes into segments, and stores
-/// only the filter at each segment's start and the adjoint at its end. LastPass recomputes the records of one segment
-/// when needed, bit for bit. LastPass processes a window of one segment once, and a longer window three times. A
-/// LastPass contains four filters of 13 KiB, so do not put it on the stack.
+/// only the filter at each segment's start and the adjoint at its end. LastPass computes the data of one segment again
+/// when needed, bit for bit. A window of one segment needs one run of the filter, and a longer window needs three. A
+/// LastPass contains four filters of 13 KiB, so do not create a LastPass on the stack.
 class LastPass {
  public:
-  static constexpr std::size_t kSegment = 128;  ///< number of nodes; 1.6 MiB of records
+  static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; 1.6 MiB of data for the backward pass
 
   /// Checkpoint is the state of the filter and its position in the samples, between two nodes.
   struct Checkpoint {
@@ -30,32 +30,32 @@ class LastPass {
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
   };
-  /// Smoothed is the smoothed result at one sample.
+  /// Smoothed is the smoothed estimate at one sample.
   struct Smoothed {
     const SamplePoint& point;
     const RollingNominal& nominal;
-    Reported error;          ///< error of the sample
-    const NodeRecord* node;  ///< node whose covariance applies; null if the window has no node
+    Reported error;          ///< smoothed error of the nominal trajectory at the sample
+    const NodeRecord* node;  ///< node with the covariance of the sample; null if the window has no node
     std::size_t index;
   };
 
-  /// Constructs the pass; all arguments must outlive it. If `distance` is known, the filter measures the distance at
-  /// the end of the samples. `segment` is the number of nodes whose records are stored at a time. The segment length
+  /// Constructs the pass; all arguments must outlive it. If `distance` is known, the filter applies it as a measurement
+  /// after the last sample. `segment` is the number of nodes whose records are stored at a time. The segment length
   /// affects only memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Runs the filter forward from `start`, and then the backward pass. `cut` is the number of nodes after which the
-  /// filter is copied for cut().
+  /// Runs the filter forward from `start`, and then the backward pass. After `cut` nodes, the function copies the
+  /// filter for cut().
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
-  /// Returns the smoothed variance of the IMU's horizontal position at each node.
+  /// Returns for each node the smoothed variance of the IMU's horizontal position.
   std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
   const Checkpoint& cut() const { return cut_; }
   const PathFilter& end() const { return end_.filter; }
 
-  /// Calls `take` for each sample before the node `until`, in time order.
+  /// Calls `take` with the smoothed estimate of each sample before the node `until`, in time order.
   void give(std::size_t until, const std::function<void(const Smoothed&)>& take);
 
  private:
@@ -80,14 +80,15 @@ class LastPass {
   std::vector<double> horizontal_variance_m2_;
   std::size_t cut_after_ = 0;
   Checkpoint cut_, end_;
-  Checkpoint again_;  ///< filter in a segment that is recomputed
-  Adjoint adjoint_;   ///< adjoint of the backward pass
-  // index of the segment whose records are loaded
+  Checkpoint again_;  ///< filter for a segment that is computed again
+  Adjoint adjoint_;   ///< state of the backward pass
+  // index of the segment whose data are in memory
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  Reported distance_correction_ = Reported::Zero();  ///< correction due to the measured distance
+  /// correction of the nominal trajectory due to the measured distance
+  Reported distance_correction_ = Reported::Zero();
 };
 
 }  // namespace tumble::rolling

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
 constexpr double kEventProbability = 0.5;  // a slip or bump is reported above this probability
-constexpr double kSpinSigmas = 4.0;  // limit of a rate at rest, in standard deviations; a larger rate is not a bias
+constexpr double kSpinSigmas = 4.0;        // a larger rate at rest, in standard deviations of the bias, is a rotation
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -64,7 +64,8 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::process_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // The reading after the end of a node closes the node, because the rate at the node's end is between two readings.
+  // A node is closed when the next reading arrives, because the rate at the node's end is interpolated between two
+  // readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     complete_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -114,7 +115,7 @@ void RollingFilter::complete_node(const Eigen::Vector3d& next_rate_rad_s, State&
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + spread(state, rolling::kPosition);
-  // If the hypotheses about past motion disagree, the uncertainty of the current position increases.
+  // The differences between the hypotheses about past motion increase the covariance of the current position.
   if (state.at_rest && state.count == 1) {
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_spread_m2;
     state.position_covariance_m2 += state.pruned_position_spread_m2;
@@ -129,7 +130,7 @@ void RollingFilter::complete_node(const Eigen::Vector3d& next_rate_rad_s, State&
 
 void RollingFilter::detect_rest(State& state) const {
   const double h = state.sums.node_s;
-  if (state.sums.gap_s > 0.0) {  // two readings do not show rest between the readings
+  if (state.sums.gap_s > 0.0) {  // two readings do not show rest in the gap between them
     state.rest = {};
     state.at_rest = state.spins_in_place = false;
     return;
@@ -144,7 +145,7 @@ void RollingFilter::detect_rest(State& state) const {
 }
 
 /// Returns whether a sphere at rest rotates slowly about its contact point: rolling.md (R29). The test compares the
-/// averaged rate with the gyro bias.
+/// averaged rate at rest with the gyro bias.
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -155,9 +156,9 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the covariance of a position or velocity that differences between the hypotheses cause: rolling.md (R27).
-/// `first` is the index of the position or velocity in the state. The covariance is the mean of d d^T, weighted by the
-/// weights of the hypotheses. The vector d is the difference between a hypothesis and the best hypothesis.
+/// Returns the covariance of position or velocity that comes from the differences between the hypotheses: rolling.md
+/// (R27). `first` is the index of the position or velocity in the state. The covariance is the weighted mean of d d^T,
+/// where d is the difference between a hypothesis and the best hypothesis.
 Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(first);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -193,7 +194,7 @@ void RollingFilter::weigh_modes(State& state) {
   state.bump_probability = hopping / total;
 }
 
-/// Decides whether the reported position remains constant until the next node.
+/// Decides whether the sphere is at rest, so that the reported position remains constant until the next node.
 void RollingFilter::constrain_position(State& state) const {
   const bool quiet =
       seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
@@ -207,8 +208,8 @@ void RollingFilter::constrain_position(State& state) const {
   state.position_constrained = stands;
 }
 
-/// Moves the errors of the best hypothesis into the nominal trajectory and the constants. The states of all hypotheses
-/// are then relative to the best hypothesis.
+/// Adds the estimated error of the best hypothesis to the nominal trajectory and constants. The states of all
+/// hypotheses are then relative to the best hypothesis.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::heading_effect(x);
   rolling::move_linearisation_point(x, state.nominal);
@@ -237,8 +238,8 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable contact mode over all hypotheses. Several hypotheses may differ in their past, but agree
-/// on whether the contact point moves.
+/// Returns the most probable contact mode over all hypotheses. Several hypotheses with a different past may have the
+/// same current mode, so the function adds their weights.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

@@ -19,24 +19,28 @@ namespace tumble {
 namespace {
 
 constexpr double kPruneLogWeight =
-    -120.0;  // log weight relative to the best hypothesis, below which a hypothesis is pruned
+    -120.0;  // a hypothesis is removed below this log weight relative to the best hypothesis
 constexpr double kRestLogLikelihoodMin =
-    -60.0;                             // minimum log likelihood at rest; limits the effect of a single bad node
-constexpr double kModeAgeMax_s = 1.0;  // time in one mode after which the start of the mode no longer matters
-// The constants describe a mixture density for the horizontal change of the contact velocity per node during slip. The
-// component kPlateau_m_s is as narrow as the density of grip. A wider component would classify each phase of constant
-// slip velocity as grip.
+    -60.0;                             // smallest log likelihood at rest, which limits the effect of a single bad node
+constexpr double kModeAgeMax_s = 1.0;  // a mode that is older counts as equally old
+// During slip, the horizontal change of the contact velocity per node has a mixture density with these widths.
+// kPlateau_m_s is as narrow as the density of grip. With a wider component, each phase of constant slip velocity would
+// count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
-                 kRollOverFraction = 0.7;  // vertical change of contact velocity, on a bump
+                 // vertical change of the contact velocity on a bump [m/s], with the weight of a sphere that rolls over
+                 // it
+    kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// kMinDissentingHypotheses is the minimum number of hypotheses without the last mode change of the best hypothesis. A
-// slip with constant spin looks like grip until the slip ends. When the slip ends, a hundred hypotheses with other
-// recent modes have higher weights than the correct one.
+// At least kMinDissentingHypotheses hypotheses are kept that do not share the last mode change of the best hypothesis.
+// A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
+// correct one.
 constexpr std::size_t kMinDissentingHypotheses = 6;
-constexpr double kRoughCost = 0.2;         // cost per node, between the residuals of a slope and of grip on a plane
-constexpr double kInclineAfterBump = 4.0;  // factor for a slope after a bump, because the foot of a ramp is a bump
+// cost of a rough floor per node, between the residuals of a slope and of grip on a plane
+constexpr double kRoughCost = 0.2;
+// factor on the probability of a slope after a bump, because the foot of a ramp is a bump
+constexpr double kInclineAfterBump = 4.0;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::rough};
 static_assert(std::size(kModes) == kRollingModes);
@@ -45,8 +49,8 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// Returns the log density of a vertical change of the contact velocity u per node on a bump: m1 of rolling.md (R25).
-/// The two mixture components are a sphere that rolls over the bump and a sphere that hits it.
+/// Returns the log density of the vertical change of the contact velocity per node on a bump: m1 of rolling.md (R25).
+/// The density is a mixture of rolling over the bump and hitting it.
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -55,8 +59,8 @@ double log_rise(double change) {
                   1e-300);
 }
 
-/// Returns the log density of a horizontal change of the contact velocity u per node: m2 of rolling.md (R24). During
-/// slip, the contact velocity is constant, drifts, or jumps. `square` is the squared length of the velocity change.
+/// Returns the log density of the horizontal change of the contact velocity per node during slip: m2 of rolling.md
+/// (R24). The contact velocity is constant, drifts, or jumps. `square` is the squared length of its change.
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauFraction, kPlateau_m_s), std::pair(kSteadyFraction, kSteady_m_s),
@@ -66,7 +70,8 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// Returns the log density of a stationary contact point, for hypothesis `h` in contact mode `mode`: rolling.md (R23).
+/// Returns the log density of the contact velocity if the contact point is at rest, for hypothesis `h` in the contact
+/// mode `mode`: rolling.md (R23).
 double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                       const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -88,7 +93,7 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // On a rough floor, the sphere stays for many nodes. The density is therefore normalised with the width of grip,
+    // A rough floor lasts for many nodes. The density of a rough floor is normalised with the smaller width of grip,
     // which avoids a penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
@@ -99,8 +104,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Returns the log density of a moving contact point whose velocity changed by `u` since the last node: rolling.md
-/// (R24), (R25).
+/// Returns the log density of the contact velocity if the contact point moves and its velocity has changed by `u` since
+/// the last node: rolling.md (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
@@ -139,7 +144,8 @@ struct Candidate {
 };
 using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
 
-/// Stores all candidates in `out` and returns them, sorted by decreasing probability.
+/// Computes all candidates (hypotheses with a next contact mode), stores them in `out` and returns them, most probable
+/// first.
 std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
                                    const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.sums.node_s;
@@ -154,7 +160,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
       const bool bound = may_slip(h.mode) && state.node - h.mode_start_node < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !may_slip(mode)) continue;
-      double likelihood = 0.0;  // a gap provides no evidence of a mode
+      double likelihood = 0.0;  // a gap is no evidence of a mode
       if (!in_gap) likelihood = may_slip(mode) ? log_moving(c, h, mode, u, params) : log_stationary(c, h, mode, params);
       const double impact = mode == RollingMode::bump
                                 ? 0.0
@@ -163,16 +169,16 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.mode_start_node : state.node};
     }
   }
-  // The code avoids std::stable_sort, which would allocate memory. The code sorts candidates of equal weight by their
-  // origin, so the order is unique.
+  // std::stable_sort would allocate memory. Candidates of equal weight are therefore sorted by their origin, which
+  // makes the order unique.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
 }
 
-/// Returns the start node of a contact mode after merging of mode starts. Mode starts that are close in time merge, and
-/// the merging distance grows with their age.
+/// Returns the start node of a contact mode, rounded so that similar starts are equal. Mode starts that are close in
+/// time are rounded to one node, more coarsely the older they are.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -186,8 +192,8 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the most probable candidate for each contact mode and mode start. The function reserves
-/// `kMinDissentingHypotheses` places for candidates without the last mode change of the best candidate.
+/// Selects the most probable candidate for each contact mode and mode start. At least `kMinDissentingHypotheses`
+/// candidates do not share the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -206,16 +212,16 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces the first `count` hypotheses by copies of the hypotheses in `from`. The function copies in place, because a
-/// second array would need 420 KiB of stack.
+/// Replaces the first `count` hypotheses by copies of the hypotheses that `from` lists. The function copies in place,
+/// because a second array would need 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
-  std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending readers of each slot
+  std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending copies that read from each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
   for (std::size_t k = 0; k < count; ++k) {
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A slot can be overwritten if no pending copy reads from it. A copy into the slot may free another slot.
+  // A slot can be overwritten if no pending copy reads from it. The copy into this slot may make another slot free.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -223,7 +229,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // each remaining copy belongs to a cycle of slots
+  // the remaining copies form cycles of slots
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -239,7 +245,8 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 }  // namespace
 
-/// Updates the weights of the hypotheses and selects the most probable ones: rolling.md (R26).
+/// Extends each hypothesis by the next contact mode, updates the weights, and keeps the most probable hypotheses:
+/// rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   if (heading_lost) rolling::remove_heading_effect(c);
@@ -266,7 +273,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   keep_most_probable(kept.count, state);
 }
 
-/// Clears unused hypotheses, so that equal estimates have equal states.
+/// Keeps the first `count` hypotheses, and clears the others, so that equal estimates have equal states.
 void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
@@ -274,7 +281,7 @@ void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   state.count = static_cast<int>(count);
 }
 
-/// Updates each hypothesis with the measurements of rest and grip: rolling.md (R28).
+/// Updates each hypothesis with the measurements of a sphere at rest: rolling.md (R28).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];

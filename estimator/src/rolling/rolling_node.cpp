@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kSteepest = 0.95;  // maximum sine of a slope, which ensures that the normal points up
+constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
 constexpr double kLevelSlopeSigma = 1e-3;
 
 double upward(const Eigen::Vector2d& slope) {
@@ -23,25 +23,25 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
   return {slope.x(), slope.y(), upward(slope)};
 }
 
-constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference of a force from gravity without an impact
-constexpr double kImuOffset_m = 0.02;        // offset of an IMU, explains forces in fast rotation
+constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference between the force and gravity without an impact
+constexpr double kImuOffset_m = 0.02;        // distance of an IMU from the centre that explains forces in fast rotation
 constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
-constexpr double kForceTilt_rad = 0.35;                           // direction error of a force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;  // if the standard deviation is larger, a force levels the tilt
+constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
+constexpr double kLostTilt_rad = kForceTilt_rad;  // a force levels a tilt with a larger standard deviation
 constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// Above this difference between force and gravity (fraction of gravity), the sphere is pushed or rotates fast.
+// If the force differs from gravity by a larger fraction, the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// kGapRate_rad_s and kGapStill_rad_s2 limit the rate and the angular acceleration around a gap. If the rates before and
-// after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
+// If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
+// kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapVelocityChangeRatio =
-    0.5;  // change of velocity in a gap, as a fraction of the rolling velocity's change
+    0.5;  // unknown change of velocity in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
@@ -77,7 +77,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   return nominal;
 }
 
-/// Sets the prior covariance of the states, in the order of rolling.md (R1).
+/// Sets the prior covariance P of the error state, in the order of rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
@@ -101,11 +101,11 @@ namespace {
 
 struct RailedForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< the reading is a lower bound of these components
+  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// Returns a specific force for a saturated reading: rolling.md (R8). The returned force is the larger of two forces:
-/// the reading, and the force that keeps the velocity of the centre constant.
+/// Returns the assumed specific force for a saturated reading: rolling.md (R8). The result is the larger of the reading
+/// and the force that keeps the velocity of the centre constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -125,7 +125,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 
 }  // namespace
 
-/// Integrates one reading of the IMU: rolling.md (R2) to (R9).
+/// Integrates one reading of the IMU into the nominal trajectory and the sums of the node: rolling.md (R2) to (R9).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
@@ -135,8 +135,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // Averaging over the window reduces a specific force that rotates relative to the sensor. The component perpendicular
-  // to the rotation axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
+  // A reading is a mean over its window, in which a force that rotates relative to the sensor partly cancels. The
+  // component perpendicular to the rotation axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -152,8 +152,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the force is unknown, so the centre's velocity is constant: rolling.md
-  // (R7).
+  // If the rate is unknown, the direction of the force is unknown, so the velocity of the centre is assumed constant:
+  // rolling.md (R7).
   const Eigen::Vector3d centre_velocity_change_m_s = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -168,7 +168,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.v_WI_m_s += gained;
   sums.rotation_integral_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.rotation_rate_integral.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
-  if (!has_unknown_rate) {  // otherwise no error of force or attitude affects the velocity
+  if (!has_unknown_rate) {  // otherwise errors of force and attitude do not affect the velocity
     sums.rotation_integral_used_force_s += R_T;
     sums.force_integral_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.rotation_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
@@ -254,7 +254,7 @@ Moving transition(const RollingIntegrals& sums) {
   return B;
 }
 
-/// Predicts the states and their covariance over a node interval: rolling.md (R11) to (R14).
+/// Predicts the error state and its covariance over one node: rolling.md (R11) to (R14).
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -280,7 +280,7 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// Computes the contact velocity, its derivatives and its variance: rolling.md (R15), (R16), (R18).
+/// Computes the velocity of the contact point, its derivatives and its variance: rolling.md (R15), (R16), (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -288,7 +288,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The lever arm from the IMU to the contact point gives the contact velocity u = v + w x (-arm - r n).
+  // With the IMU's velocity v and the lever arm from the IMU to the contact point, u = v + w x (-arm - r n).
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
@@ -309,7 +309,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_ratio * r * w_W.norm());
-  // A clip flag counts at any rate, because saturation may occur below the stated range.
+  // A clip flag indicates saturation even if the rate is below the stated range.
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
@@ -324,7 +324,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// Returns the variance for an update with zero velocity if the velocity is too uncertain: rolling.md (R20).
+/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is too uncertain: rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -340,7 +340,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // On a rough floor, the path is shorter than radius times rotation, depending on the steepness of the floor.
+  // On a rough floor, the path is shorter than radius times rotation, by an unknown amount.
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
@@ -350,7 +350,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// If the tilt is uncertain, the function aligns the attitude with the mean specific force: rolling.md (R30).
+/// Aligns the attitude with the mean specific force if the tilt is uncertain: rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
@@ -382,7 +382,7 @@ void update(int index, double measured, double variance, Vector& x, Covariance& 
   x += component_update(index, measured - x[index], variance, P);
 }
 
-/// Moves the errors x into the nominal states: rolling.md (R1).
+/// Adds the estimated errors x to the nominal states: rolling.md (R1).
 void move_linearisation_point(const Vector& x, RollingNominal& nominal) {
   nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
   nominal.v_WI_m_s += x.segment<3>(kVelocity);

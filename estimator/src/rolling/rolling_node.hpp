@@ -11,8 +11,8 @@
 
 namespace tumble::rolling {
 
-/// Each constant is the first index of a quantity in the error state: attitude (W), velocity and position of the IMU
-/// (W), then sensor errors, lever arm, slope and radius.
+/// Index of the first component of each quantity in the error state: attitude, velocity and position of the IMU in W,
+/// then sensor errors, lever arm, slope and radius.
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
                      kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
 inline constexpr int kStates = 40;
@@ -22,25 +22,28 @@ using Row = Eigen::Matrix<double, 1, kStates>;
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
 using Moving = Eigen::Matrix<double, 9, kStates>;
 
-/// After kConstrainAfter_s below the speed limit, the sphere counts as at rest and its reported position is constant.
+/// If the speed is below kConstrainSpeed_m_s for kConstrainAfter_s, the sphere is at rest and its reported position is
+/// constant.
 inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
-/// Contact is the contact velocity on the nominal trajectory, with its derivative with respect to the error state.
+/// Contact is the velocity u of the contact point on the nominal trajectory, with its derivative with respect to the
+/// error state.
 struct Contact {
   Eigen::Vector3d contact_velocity_W_m_s;
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
-  double gap_variance = 0.0;       ///< additional variance from a gap, in every direction
-  double rolling_speed_m_s = 0.0;  ///< speed of the centre, assuming grip
-  Eigen::Vector3d lift_W;          ///< derivative of u by the third component of the normal
-  Eigen::Vector2d slope;           ///< slope of the nominal
+  double gap_variance = 0.0;       ///< additional variance due to a gap, in every direction
+  double rolling_speed_m_s = 0.0;  ///< speed of the centre if the sphere rolls without slip
+  Eigen::Vector3d lift_W;          ///< derivative of u with respect to the normal's third component
+  Eigen::Vector2d slope;           ///< slope of the floor on the nominal trajectory
 
-  /// Returns the contact velocity for an error state `x`. The contact velocity is linear in `x` except for the length
-  /// of the normal.
+  /// Returns the contact velocity if the error state is `x`. The contact velocity is linear in `x` except for the unit
+  /// length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Returns the velocity variance of a stationary contact point. During slip, only the vertical component is used.
+/// Returns the variance of the contact velocity in a contact mode. For slip, only the vertical component of the
+/// variance is valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
@@ -63,7 +66,8 @@ RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
-/// GapUncertainty is the uncertainty of one piece of a gap, with interpolated rate and unknown force.
+/// GapUncertainty contains the variances of one piece of a gap, in which the rate is interpolated and the force is
+/// unknown.
 struct GapUncertainty {
   double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
@@ -73,30 +77,30 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
                    RollingNominal& nominal, RollingIntegrals& sums);
 
-/// Returns the transition matrix of the error state over the node: x <- x + (B x on top).
+/// Returns the matrix B of the error state's transition over a node: B x is added to the first components of x.
 Moving transition(const RollingIntegrals& sums);
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 
 /// Computes the contact at a node. `rate_I_rad_s` is the unprocessed gyro reading at the node. `sums` contains the sums
-/// over the node; the rate's uncertainty in a gap adds to the noise of the contact.
+/// over the node. A gap in the node increases the variance of the contact velocity.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums);
 
-/// Updates the slope of the floor for a change of the contact mode. The slope is a random walk while the contact mode
-/// lasts. When the contact point stops again, the slope is reset to level or unknown. `h_s` is the duration of the
-/// node.
+/// Updates the slope of the floor for a change of the contact mode. While a mode lasts, the slope is a random walk.
+/// When the contact point comes to rest, the slope is reset to level or unknown. `h_s` is the duration of the node.
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P);
 
-/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is unknown, and nothing otherwise.
+/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is too uncertain, and otherwise
+/// nothing.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
 /// Returns whether a contact mode change from `from` to `to` makes the slope of the floor unknown.
 bool resets_slope(RollingMode from, RollingMode to);
 
-/// Restores a tilt that was lost during clipping by the mean specific force of the node, at rest or in motion. The
-/// function also resets the velocity. Returns false if levelling is unnecessary, or if the specific force of the node
-/// is unusable.
+/// If clipping has made the tilt uncertain, the function aligns the attitude with the mean specific force of the node,
+/// at rest or in motion. The function also resets the velocity. Returns false if levelling is unnecessary, or if the
+/// specific force of the node is unusable.
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
@@ -106,7 +110,7 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 /// Applies a Kalman update by a measurement of a single state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
-/// Adds the error `x` to the nominal trajectory and constants.
+/// Adds the estimated error `x` to the nominal trajectory and constants.
 void move_linearisation_point(const Vector& x, RollingNominal& nominal);
 
 }  // namespace tumble::rolling

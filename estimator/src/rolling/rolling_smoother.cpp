@@ -13,8 +13,8 @@ namespace tumble {
 
 namespace {
 
-// kPreallocatedMax is the maximum number of preallocated samples and nodes. If the lag needs more samples, the memory
-// grows during the run.
+// kPreallocatedMax is the maximum number of preallocated samples and nodes. For a longer lag, the memory grows during
+// the run.
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 constexpr std::size_t kSamplesMaxFactor = 4;  // maximum number of samples, as a multiple of the preallocated number
 
@@ -40,7 +40,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the ratio of the reported variance to the variance of the final pass, which uses reduced process noise.
+/// Returns the factor from the variance of the final pass to the reported variance. The final pass uses a reduced
+/// process noise.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
 }
@@ -53,7 +54,8 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Returns the covariance of centre and attitude, given the covariance of the reported states: rolling.md (R40).
+/// Returns the covariance of the sphere's centre and attitude from the covariance of a node's reported states:
+/// rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
@@ -63,7 +65,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
   return J * node.smoothed_P * J.transpose();
 }
 
-/// Keeps the reported position constant while the sphere is at rest.
+/// Keeps the position reported by the final pass constant while the sphere is at rest.
 void constrain_position(const rolling::PathNode& node, RollingSmoother::FinalPassState& committed,
                         RollingEstimate& estimate) {
   const bool stands = node.stands && !may_slip(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
@@ -76,7 +78,7 @@ RollingSmoother::EstimateCallback appending(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// Returns the start of the final pass, which is the committed node or the first sample.
+/// Sets the start of the final pass: the last node whose estimates were reported, or the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
                   rolling::LastPass::Checkpoint& start) {
   const RollingSmoother::FinalPassState& last = state.committed;
@@ -89,7 +91,8 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);  // succeeded in the filter before
+  // level() cannot fail, because the filter already levelled with this force
+  if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);
   start.reading = start_cursor(sample);
@@ -97,8 +100,7 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
 
 struct Events {
   std::vector<bool> uncertain;
-  double committed_variance_m2 =
-      0.0;  ///< event_start_variance_m2 of RollingSmoother::FinalPassState after the node `emitted`
+  double committed_variance_m2 = 0.0;  ///< event_start_variance_m2 (see FinalPassState) after the node `emitted`
 };
 
 Events find_events(const RollingSmoother::Params& params, std::span<const rolling::PathNode> path,
@@ -186,7 +188,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const FinalPassState& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // If a node is within a gap of the data, the next sample may be much later than the node.
+    // A node may be within a gap, so the first interval starts at the node instead of the previous sample.
     const TimeNs from_ns = k == 0 && committed.gap_step > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_stamp_order(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
@@ -257,7 +259,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   smooth_window(path, path.nodes.size() + 1, state, take);
 }
 
-/// Returns the contact modes of the most probable hypothesis, from the newest node back to the committed node.
+/// Returns the contact modes of the most probable hypothesis, back to the last node whose estimates were reported.
 RollingSmoother::Path RollingSmoother::most_probable_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
@@ -305,7 +307,7 @@ void RollingSmoother::smooth_window(const Path& path, std::size_t emitted, State
 
   if (emitted <= pass.nodes()) {
     const auto& [filter, cursor] = pass.cut();
-    FinalPassState& last = state.committed;  // the constant position of the committed node remains
+    FinalPassState& last = state.committed;  // the constant position of the last reported node remains
     last.nominal = filter.nominal;
     last.P = filter.P;
     last.mode = filter.mode;
@@ -319,7 +321,7 @@ void RollingSmoother::smooth_window(const Path& path, std::size_t emitted, State
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed.gap_step = 0;  // the gap ends here
+    state.committed.gap_step = 0;  // the gap has ended
     state.samples.clear();
     state.steps.clear();
   }

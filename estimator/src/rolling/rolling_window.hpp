@@ -13,17 +13,18 @@ namespace tumble::rolling {
 struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool spins_in_place = false;  ///< at rest, but rotating about the contact point
-  bool stands = false;          ///< at rest long enough that the position may be constant
+  bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
+  bool stands = false;          ///< the sphere has been at rest for so long that the position may be constant
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
-inline constexpr int kReported = 12;  ///< number of states of a pose: attitude, velocity, position, lever arm
+/// number of states that determine a pose: attitude, velocity, position, lever arm
+inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
 /// NodeRecord is a node of the final pass, with all data that the backward pass needs.
 struct NodeRecord {
-  static constexpr int kRowsMax = 7;  ///< at rest, and with a known distance
+  static constexpr int kRowsMax = 7;  ///< maximum number of measurements, for a node at rest with a known distance
   Moving B;
   std::array<Row, kRowsMax> H;
   std::array<Vector, kRowsMax> gain;
@@ -32,31 +33,31 @@ struct NodeRecord {
   bool resets_slope = false;
   bool tilt_reset = false;
   bool heading_lost = false;
-  Eigen::Matrix<double, kReported, kStates> P_rows;  ///< rows of P after the update
-  Reported correction;                               ///< correction of the nominal by the update
+  Eigen::Matrix<double, kReported, kStates> P_rows;  ///< rows of P after the update, for the reported states
+  Reported correction;                               ///< correction of the nominal state by the update
   Vector turned;                                     ///< heading_effect() of the correction, if the heading is lost
-  RollingNominal nominal;                            ///< nominal after the update
+  RollingNominal nominal;                            ///< nominal state after the update
   PathNode path;
   TimeNs time_ns = 0;
   Reported smoothed;
   Eigen::Matrix<double, kReported, kReported> smoothed_P;
 };
 
-/// Reading is one input of the live filter: averaged readings, or a piece of a gap.
+/// Reading is one input of the live filter: an average of IMU readings, or a piece of a gap.
 struct Reading {
   ImuAverage average;
   GapUncertainty uncertainty;
   bool in_gap = false;
   bool whole = true;               ///< false: last reading of the run, too short to be processed
-  std::size_t first = 0, end = 0;  ///< range of samples of the reading; in a gap, only the last piece has a sample
+  std::size_t first = 0, end = 0;  ///< index range of the reading's samples; in a gap, only the last piece has a sample
   TimeNs end_ns = 0;
 };
 
-/// Readings iterates over stored samples in the form that the live filter processes. Each step costs O(1) and does not
-/// allocate memory.
+/// Readings iterates over stored samples and returns the inputs (Reading) that the live filter received. Each step
+/// costs O(1) without allocation.
 class Readings {
  public:
-  /// Cursor is the position in the samples before the next reading.
+  /// Cursor is the position of an iteration, before the next reading.
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
@@ -87,7 +88,7 @@ struct SamplePoint {
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d v_WI_m_s, p_WI_m;
   Eigen::Vector3d rate_I_rad_s;
-  std::size_t node = 0;  ///< first node that closes after the sample
+  std::size_t node = 0;  ///< index of the first node that closes after the sample
 };
 
 struct PathFilter {
@@ -97,28 +98,28 @@ struct PathFilter {
 };
 
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
-/// Returns the covariance of the reported states, given their rows of the covariance.
+/// Returns the covariance of the reported states from their rows in the covariance of all states.
 Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows);
 /// Returns the covariance of the velocity of the centre in IMU axes, given the covariance of the reported states. The
 /// function neglects the product of angular velocity error and lever arm.
 Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
-/// Closes a node: prediction, measurements, and correction of the nominal trajectory. `record` must have its initial
-/// values.
+/// Closes a node: predicts the error state, applies the measurements, and corrects the nominal trajectory. `record`
+/// must have its initial values.
 void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
                    const PathNode& path, PathFilter& filter, NodeRecord& record);
 
-/// Returns the smoothed error at the node, relative to the nominal trajectory before the node's update.
+/// Returns the smoothed error at a node, relative to the nominal trajectory before the node's update.
 Reported error_before_update(const NodeRecord& node);
 
-/// Measures the horizontal distance `distance_m` of the centre of `filter` from the start, at or just after the last
+/// Applies the known horizontal distance `distance_m` of the sphere's centre from the start, at or just after the last
 /// node. Returns the correction of the nominal trajectory. The correction is zero if start and end are too close to
 /// define a direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
-/// Adjoint is the information of later measurements about the error at a node.
+/// Adjoint contains the information about the error at a node that later measurements provide.
 struct Adjoint {
   Vector lambda = Vector::Zero();
   Covariance Lambda = Covariance::Zero();

@@ -64,7 +64,7 @@ class Ground {
   std::vector<double> heights_m_;
 };
 
-/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between; relief fades around a position so
+/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between. Relief fades around a position so
 /// that a robot can rest there.
 double fade(double distance_m, double inner_m, double outer_m);
 

@@ -6,9 +6,9 @@ namespace tumble::sim {
 /// SlopeProfile is a slope that falls along +x between a level top at height 0 and a level run-out, with two rounded
 /// corners (softplus).
 struct SlopeProfile {
-  double edge_x_m = 0.0;     ///< upper corner
+  double edge_x_m = 0.0;     ///< x of the upper corner
   double slope_rad = 0.6;    ///< steepness, below a right angle
-  double drop_m = 3.0;       ///< from top to run-out
+  double drop_m = 3.0;       ///< height from the run-out to the top
   double rounding_m = 0.25;  ///< length over which a corner bends, above 0
 
   double length_m() const;  ///< horizontal length of the slope
@@ -18,8 +18,8 @@ struct SlopeProfile {
 /// LedgeProfile describes terraces below a level top at height 0. All drops of the terraces have equal height and are
 /// vertical within `face_m`. A sloping ledge follows each drop, and a level run-out follows the last ledge.
 struct LedgeProfile {
-  double edge_x_m = 0.0;  ///< first drop
-  int drops = 2;          ///< at least 1
+  double edge_x_m = 0.0;  ///< x of the first drop
+  int drops = 2;          ///< number of drops, at least 1
   double drop_height_m = 1.5;
   double face_m = 0.1;          ///< horizontal width of a face, above 0
   double ledge_length_m = 2.0;  ///< horizontal length of a ledge, above 0

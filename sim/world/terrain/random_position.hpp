@@ -13,7 +13,7 @@ struct Rectangle {
   double low_x_m = 0.0, high_x_m = 0.0, low_y_m = 0.0, high_y_m = 0.0;
 };
 
-/// A horizontal disc.
+/// Disc is a horizontal disc.
 struct Disc {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;

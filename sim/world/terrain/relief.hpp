@@ -9,18 +9,18 @@
 namespace tumble::sim {
 
 /// ReliefSpectrum is the spectrum of a rough surface. The power per wave number E(k), integrated over directions, is
-/// proportional to k^-exponent for wavelengths within [shortest_m, longest_m], and zero outside. The spectrum of a cut
-/// through the surface has an equal exponent.
+/// proportional to k^-exponent for wavelengths within [shortest_m, longest_m], and zero outside. The spectrum of a
+/// vertical cut through the surface has the same exponent.
 struct ReliefSpectrum {
-  double rms_m = 0.1;       ///< root mean square of the height over phases, at least 0
+  double rms_m = 0.1;       ///< root mean square of the height over random phases, at least 0
   double shortest_m = 1.0;  ///< above 0
   double longest_m = 9.0;   ///< at least shortest_m
   double exponent = 3.0;    ///< 3: amplitude proportional to wavelength; natural ground has 2 to 3.5
   bool ruled = false;       ///< true: the height depends only on x, so that every contour line is straight
 };
 
-/// Relief is a surface of a stated spectrum: a sum of plane waves of random phase and direction with log-uniform
-/// wavelengths. The random numbers of the stream determine the relief.
+/// Relief is a random surface with a stated spectrum: a sum of plane waves with random phases and directions, and
+/// log-uniform wavelengths.
 class Relief {
  public:
   Relief(Stream& stream, const ReliefSpectrum& spectrum);

@@ -13,9 +13,10 @@ namespace tumble::sim {
 /// RockField describes the positions and sizes of rocks.
 struct RockField {
   int count = 0;
-  double largest_m = 0.3;       ///< largest half axis
-  double smallest_share = 0.4;  ///< horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in
-                                ///< [0.75 smallest_share, 0.7] * largest_m
+  double largest_m = 0.3;  ///< largest half axis
+  /// horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
+  /// largest_m
+  double smallest_share = 0.4;
   Rectangle area;
   Disc clear;  ///< no rock reaches into this disc
 };
@@ -30,7 +31,7 @@ struct Rock {
 /// Places rocks on the ground, uniformly over the area; rocks may overlap. Throws InvalidSituation if the clear disc
 /// leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
-/// Adds the rocks as surfaces "rock_0", "rock_1", ...
+/// Adds the rocks to the world as surfaces "rock_0", "rock_1" and so on.
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);
 
 }  // namespace tumble::sim

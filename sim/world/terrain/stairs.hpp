@@ -9,7 +9,7 @@ namespace tumble::sim {
 
 /// Flight is a straight flight of steps that descends along +x from a level top at height 0.
 struct Flight {
-  double edge_x_m = 0.0;  ///< edge of the top: the first riser
+  double edge_x_m = 0.0;  ///< x of the edge of the top, where the first riser is
   int steps = 12;         ///< number of risers, at least 1
   double rise_m = 0.17;
   double tread_m = 0.29;
@@ -29,7 +29,7 @@ struct Step {
 
 /// Returns the steps as boxes that extend `depth_m` below their tops.
 std::vector<Step> lay_steps(const Flight& flight, double depth_m);
-/// Adds the steps as surfaces "step_1", "step_2", ...
+/// Adds the steps to the world as surfaces "step_1", "step_2" and so on.
 void add_steps(mjSpec* spec, engine::World& world, const std::vector<Step>& steps, const Colour& colour);
 
 }  // namespace tumble::sim

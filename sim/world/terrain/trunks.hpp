@@ -30,7 +30,7 @@ struct Trunk {
 /// Places trunks on the ground. Throws InvalidSituation if spacing, lane and clear disc leave no room for trunks. Cost:
 /// O(count^2).
 std::vector<Trunk> plant_trunks(Stream& stream, const Stand& stand, const Ground& ground);
-/// Adds the trunks as surfaces "trunk_0", "trunk_1", ...
+/// Adds the trunks to the world as surfaces "trunk_0", "trunk_1" and so on.
 void add_trunks(mjSpec* spec, engine::World& world, const std::vector<Trunk>& trunks);
 
 }  // namespace tumble::sim

@@ -7,8 +7,7 @@
 
 namespace tumble {
 
-/// The namespace arrow contains the sparse linear system (arrow matrix) that RateSmoother and RateStream solve; see
-/// ArrowSystem.
+/// The namespace arrow contains the sparse linear system (ArrowSystem) that RateSmoother and RateStream solve.
 namespace arrow {
 
 inline constexpr int kBlockSize = 6;    ///< size of a block: rate and scaled angular acceleration
@@ -28,11 +27,11 @@ using Marginal = System::Marginal;
 inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
 /// Derivative of the gradient of a block or of the border with respect to each of the kErrorCount sensor errors. After
-/// back-substitution, the matrix contains the derivative of the solution step.
+/// back-substitution, the matrix contains the derivative of the step that the solver computes for the block.
 using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
-/// Eliminates a block as ArrowSystem::eliminate() does.
+/// Eliminates a block from the system, see ArrowSystem::eliminate().
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
@@ -49,7 +48,7 @@ void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 
-/// Returns the covariance of the rates, at lower cost than marginal().
+/// Returns the covariance of the rate in a block, at lower cost than marginal().
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow

@@ -7,13 +7,13 @@
 
 namespace tumble {
 
-/// Computes the uncertainty of a device's sensor errors from measurement information that grows during a run. The prior
-/// is a mixture of two devices: a device that matches its data sheet, and an uncalibrated device (SensorErrorPriors).
-/// DeviceUncertainty needs less computation than fit_sensor_errors(). See rate_stream.md (R102), (R103).
+/// Computes the uncertainty of a device's sensor errors from the measurements of a run so far. The prior is a mixture
+/// of two cases: the device matches its data sheet, or is uncalibrated (SensorErrorPriors). DeviceUncertainty needs
+/// less computation than fit_sensor_errors(). See rate_stream.md (R102), (R103).
 class DeviceUncertainty {
  public:
-  /// Weight of the samples' information about the sensor errors. The weight is below 1 because the errors of the flight
-  /// model are correlated between samples. The function fit_sensor_errors() uses an equal weight.
+  /// Weight of the samples in estimates of the sensor errors. The weight is below 1 because the errors of the flight
+  /// model are correlated between samples. fit_sensor_errors() uses the same weight.
   static constexpr double kEvidenceWeight = 0.03;
 
   struct Posterior {
@@ -27,7 +27,7 @@ class DeviceUncertainty {
     SensorErrors::Matrix system, corrected_covariance;
   };
 
-  /// Constructs the prior, where `uncalibrated` is the prior probability of an uncalibrated device.
+  /// Constructs from the prior. `uncalibrated` is the prior probability of an uncalibrated device.
   DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
   /// Computes `posterior` from the measurement information. Cost: O(1), two systems of 29 unknowns, no allocation. If
@@ -36,9 +36,9 @@ class DeviceUncertainty {
   void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
               bool is_uncalibrated = false) const;
 
-  /// Returns the likelihood ratio of two devices: a device with synchronous gyro and accelerometer, as in the data
-  /// sheet, and an asynchronous device. See rate_stream.md (R106). The argument `delay_s` is a measured delay minus the
-  /// known delay, and `sigma_s` is its standard deviation.
+  /// Returns the likelihood ratio of two cases: gyro and accelerometer are synchronous as in the data sheet, or
+  /// asynchronous. See rate_stream.md (R106). The argument `delay_s` is a measured delay minus the known delay, and
+  /// `sigma_s` is its standard deviation.
   double data_sheet_odds(double delay_s, double sigma_s) const;
 
   /// Estimates from `evidence` the remaining delay of the accelerometer, for a device with any delay within `reach_s`.

@@ -45,14 +45,15 @@ class FlightSignCheck {
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
     double gyro_range_rad_s = 0.0;          ///< range from the data sheet; 0: unknown
     double reading_s = 0.01;                ///< averaging time of readings
-    double force_min_m_s2 = 2.5;            ///< minimum force of free flight at the lever arm
-    double share = 0.25;                    ///< tolerance as a fraction of the force of free flight
+    double force_min_m_s2 = 2.5;            ///< minimum force in free flight due to rotation about the centre of mass
+    double share = 0.25;                    ///< tolerance of the agreement, as a fraction of the force of free flight
     double run_s = 0.02;                    ///< minimum duration of agreement
     double alternative_flight_min_s = 0.1;  ///< minimum total flight time of an alternative sensor
     double half_scale_flight_min_s = 0.3;   ///< minimum total flight time of a half-scale gyro
-    double alternative_ratio_min = 4.0;     ///< minimum ratio of an alternative's to the true sensor's flight time
-    double thrown_ratio_min = 2.0;          ///< minimum ratio for a body that is not hand-held
-    double gap_max_s = 0.1;                 ///< a longer gap resets the current run
+    /// minimum flight time of an alternative divided by that of the true sensor
+    double alternative_ratio_min = 4.0;
+    double thrown_ratio_min = 2.0;  ///< minimum of the same ratio for a body that is not hand-held
+    double gap_max_s = 0.1;         ///< a longer gap resets the current run
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -88,14 +89,14 @@ class FlightSignCheck {
   struct Reading {
     TimeNs time_ns = 0;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
-    /// Sign of each saturated gyro axis; 0 for an unsaturated axis.
+    /// Sign of the rate on each saturated gyro axis; 0 for an unsaturated axis.
     Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
     bool known = false;  ///< false if an axis was saturated for a part of the window
     bool operator==(const Reading&) const = default;
   };
   struct State {
     ImuAverage average;
-    std::array<Reading, 2> before{};                        ///< last but one and last reading
+    std::array<Reading, 2> before{};                        ///< the last two readings, oldest first
     int readings = 0;                                       ///< consecutive readings, at most two
     std::array<double, kAlternatives> run_s{};              ///< current flight duration of each alternative
     std::array<double, kAlternatives> flight_duration_s{};  ///< total flight duration of each alternative
@@ -113,7 +114,7 @@ class FlightSignCheck {
 
   /// Returns `out_of_range` if the measured flights match a sensor with wrong signs, axes or scale, and otherwise `ok`.
   Status verdict(const State& state) const;
-  /// Returns verdict() until the last flight of an alternative is kMemory_s old, and then `ok`.
+  /// Returns verdict() while the last flight of an alternative sensor is at most kMemory_s old, and otherwise `ok`.
   Status current_verdict(const State& state) const;
 
  private:

@@ -62,16 +62,15 @@ class FrozenAxes {
   struct Axis {
     double reading = 0.0;
     TimeNs since_ns = 0;               ///< first sample with the current reading
-    double repeated_s = 0.0;           ///< duration of the current reading
-    bool device_flagged = false;       ///< flagged by the device during the current reading
-    bool frozen = false;               ///< frozen at the current reading
-    bool ever_frozen = false;          ///< frozen at the current or an earlier reading
+    double repeated_s = 0.0;           ///< duration for which the current reading has repeated
+    bool device_flagged = false;       ///< the device has flagged the current reading as saturated
+    bool frozen = false;               ///< the axis is frozen at the current reading
+    bool ever_frozen = false;          ///< the axis is or was frozen
     double longest_s = 0.0;            ///< longest earlier repetition of a working axis
     double changing_duration_s = 0.0;  ///< total time with changing readings
     double smallest_change = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
-    /// Minimum, maximum and number of changes of the two other axes of the same sensor, during the repetition of one
-    /// reading.
+    /// Minimum, maximum and number of changes of the sensor's two other axes while this axis repeats its reading.
     std::array<double, 2> others_min{}, others_max{}, others_changes{};
     double samples = 0.0;       ///< number of repeated samples
     double stationary_s = 0.0;  ///< duration of rest on the other axes during the repetition
@@ -96,7 +95,7 @@ class FrozenAxes {
   static const Axis& axis(Triad triad, int axis, const State& state);
 
   static bool any_frozen(const State& state);
-  /// Adds a finding of this kind (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
+  /// Adds a finding of kind `kind` (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
   void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                     SensorHealth& health) const;
 

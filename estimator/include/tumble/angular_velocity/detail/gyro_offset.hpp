@@ -17,7 +17,7 @@ namespace tumble {
 class GyroOffset {
  public:
   static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;
-  static constexpr double kRestEndMax_s = 2.0;  ///< latest end of the rest after the first sample
+  static constexpr double kRestEndMax_s = 2.0;  ///< latest end of the initial rest, after the first sample
 
   struct State {
     RestDetector::State rest;
@@ -29,7 +29,7 @@ class GyroOffset {
 
   /// Processes a finite sample, and returns the offset once, as soon as the offset is known. Cost: O(1), no allocation.
   std::optional<Eigen::Vector3d> observe(const ImuSample& sample, State& state) const;
-  /// Returns the gyro's zero offset of a recording, or zero without a large offset.
+  /// Returns the gyro's zero offset in a recording, or zero if the offset is small.
   Eigen::Vector3d find(std::span<const ImuSample> samples) const;
 
  private:

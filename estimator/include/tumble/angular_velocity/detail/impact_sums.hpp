@@ -28,7 +28,7 @@ struct ImpactSums {
   DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 
-  /// Returns whether the body moves in an interval between two rates; ImpactSums ignores intervals without motion.
+  /// Returns whether the body moves between two gyro readings. ImpactSums ignores intervals without motion.
   static bool counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s);
   /// Adds an interval with its mean angular acceleration [rad/s^2] and its mean force magnitude for each tested delay
   /// [m/s^2]. Cost: O(kDelayCount).
@@ -39,7 +39,8 @@ struct ImpactSums {
   /// update period of the slower of the two sensors. The returned sigma_s is 0 if the delay is not accepted. Cost:
   /// O(kDelayCount).
   TriadDelay estimate_delay(double period_s, double slower_s) const;
-  /// Returns the correlation at the tested delay nearest to `delay_s`, for any number of impacts. Cost: O(1).
+  /// Returns the correlation at the tested delay that is nearest to `delay_s`, even if there are few impacts. Cost:
+  /// O(1).
   double correlation_at(double delay_s, double period_s) const;
 
   bool operator==(const ImpactSums&) const = default;

@@ -25,24 +25,24 @@ struct CalibratedRig {
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// Delay, g-sensitivity and scale errors of the device; empty if not estimated.
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
-  /// True if the run estimated only saturation limits (calibration_with_rails) or an accelerometer delay; all other
-  /// values are then the prior. A saved calibration does not contain the flag only_rails.
+  /// True if the run estimated only saturation limits (calibration_with_rails) or an accelerometer delay. All other
+  /// values are then the prior. The flag is not saved.
   bool only_rails = false;
 
   /// Returns the saturation planes of the gyro or accelerometer, for saturation detection in the next run.
   RailPlanes planes(Triad triad = Triad::gyro) const;
-  /// Stores the intersections of the certain saturation planes. The function discards the cross-axis sensitivities of
-  /// uncertain planes, because a few partly clipped readings can suggest a wrong plane.
+  /// Stores in this calibration the intersections of all certain saturation planes. The function discards the
+  /// cross-axis sensitivities of uncertain planes, because a few partly clipped readings can suggest a wrong plane.
   void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
-/// Returns the calibration from the report of a run. If RateReport::calibration_at_prior is set, the returned
-/// calibration is the prior.
+/// Returns the calibration from the report of a run. If RateReport::calibration_at_prior is set, this calibration is
+/// the prior.
 CalibratedRig learnt(const RateReport& report);
 
-/// Returns the calibration `before` with the certain saturation limits of a run that could not estimate the constants.
-/// The function replaces old limits only if the run found better limits, and removes limits that readings contradict.
-/// Returns empty if no saturation plane is certain.
+/// Returns the calibration `before`, updated by the certain saturation limits of a run that could not estimate the rig
+/// constants. The function replaces old limits only if the run found better limits, and removes limits that readings
+/// contradict. Returns empty if no saturation plane is certain.
 std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails);
 
 /// Applies a calibration to the next run: constants, saturation planes of the gyro, and sensor errors. The lowest

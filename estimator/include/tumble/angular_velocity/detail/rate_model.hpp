@@ -30,16 +30,16 @@ class RateModel {
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              RateEstimate& estimate) const;
 
-  /// Returns how far a step between two samples violates the smoothness of flight, as a squared normalised error with
-  /// six degrees of freedom.
+  /// Returns how much the motion changes between two samples, compared with the smoothness of flight. The result is a
+  /// squared normalised error with six degrees of freedom.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
   /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
   void search_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Initialises the lower bounds of a sample's clipped rates near the current estimate or near the reading, whichever
-  /// is larger in magnitude.
+  /// Initialises the lower bounds of a sample's clipped rates near the current estimate, or near the reading if that is
+  /// larger.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
@@ -55,9 +55,10 @@ class RateModel {
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
-  /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's information about SensorErrors.
-  /// Clipped elements and samples in contact contribute no information about SensorErrors. The argument `rig_spread`
-  /// states whether add_sample() received a covariance; the force of the sample then contributes no information.
+  /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
+  /// them. Clipped elements and samples in contact contribute no information about SensorErrors. The argument
+  /// `rig_spread` states whether add_sample() received a covariance; the force of the sample then contributes no
+  /// information.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
@@ -96,7 +97,8 @@ class RateModel {
     Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
   /// Converts the flight residual to element directions if an accelerometer element clips, and removes the residuals of
-  /// satisfied lower bounds. Returns additional variances due to the uncertain sensing directions and the hidden force.
+  /// satisfied lower bounds. Returns additional variances due to the uncertain sensing directions and the saturation
+  /// deficit of the force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
@@ -126,7 +128,7 @@ class RateModel {
   double accel_variance_of_sum(const RateObservation& observation) const;
 
   RateModelParams params_;
-  bool uses_raw_readings_ = true;  ///< no sensor errors are known, so readings are used unchanged
+  bool uses_raw_readings_ = true;  ///< readings are used unchanged, because no sensor errors are known
   double time_scale_s_;            ///< factor from angular acceleration to the solver's unit
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;

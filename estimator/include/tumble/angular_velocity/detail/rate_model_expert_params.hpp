@@ -54,8 +54,8 @@ struct RateFlightParams {
 
 /// RateContactParams contains the parameters of contact, in which an unknown force acts on the body.
 struct RateContactParams {
-  /// Angular acceleration per contact force: rad/s^2 per m/s^2 of specific force that the flight model does not
-  /// explain.
+  /// Angular acceleration that a contact force causes: rad/s^2 per m/s^2 of specific force that the flight model does
+  /// not explain.
   double gain_rad_m = 4.0;
   /// Factor on the standard deviation during impacts, because the errors of impacts are not Gaussian.
   double sigma_factor = 1.3;
@@ -90,8 +90,8 @@ struct RateContactParams {
 
 /// RateModelExpertParams contains the rarely changed parameters of RateModelParams, grouped by topic.
 struct RateModelExpertParams {
-  /// Duration for which the model error of a force, a torque or a rate is constant. All samples within model_error_s
-  /// share one model error, so averaging reduces only their noise.
+  /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within this time
+  /// reduces their noise, but not their model error.
   double model_error_s = 0.01;
   /// Standard deviation of the rate from zero at rest, independent for each sample. The standard deviation
   /// rest_sigma_rad_s covers vibration and false detections of rest.

@@ -19,9 +19,9 @@ struct RigInflationParams {
   /// Minimum standard deviation of a rate that was recovered in contact, as a fraction of the saturation deficit. The
   /// fraction is divided by 1 + n / samples. Rates that are recovered in contact depend on the calibration.
   double contact = 0.5;
-  /// Uncertainty of a run of clipped samples in contact. A parabola with the slopes of the rate at the ends of the run
-  /// predicts a saturation deficit. The standard deviation is at least the fraction `slopes` of the predicted
-  /// saturation deficit, minus the estimated saturation deficit.
+  /// Minimum standard deviation of a rate in a run of clipped samples in contact. The slopes of the rate before and
+  /// after the run predict a saturation deficit. The minimum is the fraction `slopes` of this prediction, minus the
+  /// estimated saturation deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>

@@ -41,8 +41,8 @@ struct RateStreamKnot {
   Clipping by_axis_aligned_rails;  ///< clipping from flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// Growth of each axis's magnitude per step up to the sample. The growth is the smaller growth of the last two steps,
-  /// and at least 0.
+  /// Increase of each axis' magnitude per sample before this sample: the smaller increase of the last two steps, at
+  /// least 0.
   Eigen::Vector3d reading_growth_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
@@ -91,17 +91,17 @@ struct RateStreamState {
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // Gaussian prior on the oldest sample and on the calibration, from all samples that have left the window, about a
+  // Gaussian prior on the oldest sample and on the calibration, from all samples that have left the window, with its
   // linearisation point.
   arrow::Block prior;
   arrow::Corner prior_corner;
   /// State of the sensor errors, in a vector of one element. The vector stores the state on the heap, because threads
   /// with a small stack use RateStream.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
-  /// Largest and smallest readings so far.
+  /// Smallest and largest readings of the gyro since the start of the run.
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   MinSaturationLevels min_levels;  ///< lower bounds from the readings so far
-  /// Data of a run of readings at a possible saturation limit that has partly left the window. The data are
+  /// Data of a run of possibly saturated readings whose first samples have left the window:
   /// RateStreamKnot::reading_growth_rad_s before the run, and the number of samples that have left.
   Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
   std::optional<RateKnot> last_marginalised;  ///< sample that left the window last, and its time

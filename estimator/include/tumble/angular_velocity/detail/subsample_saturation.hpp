@@ -8,8 +8,7 @@
 namespace tumble {
 
 /// SubsampleSaturation is the saturation deficit of a reading whose averaging window is saturated during a part of its
-/// length. The mean of a partly saturated window is below the saturation limit. A reading from a partly saturated
-/// window is therefore a measurement that is slightly too small.
+/// length. Such a reading is below the saturation limit, and slightly smaller than the true mean.
 struct SubsampleSaturation {
   bool saturated = false;
   double expected_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
@@ -31,8 +30,8 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
 /// limit if there is no usable neighbour. The function uses a flagged neighbour only if most of the neighbour's window
 /// was unsaturated. The window of a flagged neighbour was mostly unsaturated if its reading differs by twice the
 /// distance of `reading_rad_s` from the saturation limit. A rate of constant slope that passes the saturation limit in
-/// the current window was unsaturated in the window before. Flagged readings that decrease one by one along a tilted
-/// plane are not rates. See rails.md (R70).
+/// the current window was unsaturated in the window before. Flagged readings that decrease along a tilted plane do not
+/// measure the rate. See rails.md (R70).
 template <class Read>
 double unsaturated_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                              const ImuSample* after, const Read& read) {

@@ -13,9 +13,9 @@ namespace tumble {
 /// CoarseAlignment estimates the vertical after a loss of the attitude, while the body continues to move. The method is
 /// the coarse alignment of inertial navigation. In axes that the gyro propagates, the integral of the specific force is
 /// the sum of gravity's integral and the change of velocity. The integral of gravity grows with time, but the change of
-/// velocity is bounded. See attitude.md (A19), (A20). The method works from any initial attitude, including upside
-/// down, because it does not linearise. CoarseAlignment does not model the gyro's error; the caller adds the gyro's
-/// error to `tilt_variance_growth_rad2`.
+/// velocity is bounded. See attitude.md (A19), (A20). The method uses no linearisation, so it works from any initial
+/// attitude. CoarseAlignment does not model the gyro's error; the caller adds the gyro's error to
+/// `tilt_variance_growth_rad2`.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
@@ -38,12 +38,12 @@ struct CoarseAlignment {
     time_s += length_s;
   }
 
-  /// Returns the variance of the tilt per axis without the coarse alignment.
+  /// Returns the variance of the tilt per axis if levelling() is not applied.
   double tilt_rad2() const { return start_tilt_variance_rad2 + tilt_variance_growth_rad2; }
 
   /// Returns the variance of the tilt after a correction by levelling(). The tilt variance depends on the velocities at
-  /// the start and end of the alignment, and on the gyro's errors between start and end. A difference between the mean
-  /// force's magnitude and gravity reveals a part of the velocity change.
+  /// the start and end of the alignment, and on the gyro's errors between start and end. If the magnitude of the mean
+  /// force differs from gravity, the velocity has changed.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);

@@ -22,8 +22,8 @@ using System = ArrowSystem<kBlockSize, kBorderSize>;
 enum Index { kPhi = 0, kRate = 3, kAngularAcceleration = 6, kHandAcceleration = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// Node is the motion at one time step. The held point is the point of the body at the hand, whose acceleration,
-/// velocity and position are bounded.
+/// Node is the motion at one time step. The held point is the point of the body at the hand; its acceleration, velocity
+/// and position are bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
@@ -65,7 +65,7 @@ struct NodeReadings {
   bool rest = false;
 };
 
-/// ReadingNoise contains the standard deviations that determine the weights of the residuals.
+/// ReadingNoise contains standard deviations of readings and of rest, which determine the weights of the residuals.
 struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
   double window_rate_sigma_rad_s = 0.0;  ///< difference between a window's mean and the rate at its centre

@@ -140,8 +140,8 @@ class ImuPlausibility {
  private:
   /// Returns whether the force rotated far enough, in enough windows, for a decision.
   bool rotated_enough(const State& state) const;
-  /// Returns whether the gyro is inverted or has a wrong scale, so that the regression slope leaves a far smaller
-  /// residual.
+  /// Returns whether a gyro scaled by the regression slope leaves a far smaller residual, because the gyro is inverted
+  /// or has a wrong scale.
   bool fits_better(const State& state) const;
   void process_average(State& state) const;
   void compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const;

@@ -110,8 +110,8 @@ class RestGravity {
   /// Returns `out_of_range` if magnitude_error_ratio() differs from 1. If the magnitude is wrong by more than a factor
   /// of three, the message names the unit of the force as the probable error.
   Status magnitude_verdict(const MagnitudeState& state) const;
-  /// Returns the error of magnitude_verdict(), or else the result of checking the rates. The result is `out_of_range`
-  /// if the rates of the worst pair of rests miss gravity or leave a velocity beyond the limits.
+  /// Returns the error of magnitude_verdict(), if any, and otherwise checks the rates. Returns `out_of_range` if, for
+  /// the worst pair of rests, gravity's direction or the final velocity is wrong by more than its limit.
   Status verdict(const State& state) const;
 
  private:

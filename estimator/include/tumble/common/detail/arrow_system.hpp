@@ -91,8 +91,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` with L^-1, where a = L L' and L is lower triangular. The function uses plain loops over columns, because
-// Eigen's general triangular solvers are several times slower for small blocks.
+// Replaces `a` with L^-1, where a = L L' and L is lower triangular. For small blocks, plain loops over columns are
+// several times faster than Eigen's general triangular solvers.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;
@@ -120,7 +120,8 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   return true;
 }
 
-// Subtracts border' border from the corner. The function computes one triangle of the product and mirrors the triangle.
+// Subtracts border' border from the corner. The function computes one triangle of the symmetric product and copies it
+// to the other triangle.
 template <int State, int Border>
 void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
@@ -135,7 +136,7 @@ void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, Bord
 template <int State, int Border>
 bool ArrowSystem<State, Border>::eliminate(Block& block, Block* next, Corner& corner) {
   if (!invert_factor(block.diagonal)) return false;
-  // Products with the inverse factor have fixed sizes, which the compiler unrolls and vectorises.
+  // The compiler unrolls and vectorises products with the inverse factor, because their sizes are fixed.
   const StateMatrix& L_inv = block.diagonal;
   block.border = (L_inv.lazyProduct(block.border)).eval();
   block.gradient = (L_inv.lazyProduct(block.gradient)).eval();

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 /// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
-/// containers. With different layouts, program and library misread each other's memory. The CMake targets of the
+/// containers. With different layouts, program and library would corrupt each other's data. The CMake targets of the
 /// library ensure equal layouts. A program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES,
 /// EIGEN_DONT_VECTORIZE or _GLIBCXX_DEBUG, does not link. The linker then reports SameCompilerSettings<...>::linked as
 /// missing, and the template arguments show the settings of the program.

@@ -19,8 +19,8 @@ struct FlyingBody {
 /// Returns the angular acceleration of a torque-free body, I^-1 (I w x w), in IMU axes.
 Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s);
 
-/// Returns the reading of an accelerometer off the centre of mass while only gravity acts on the body. The reading is
-/// -(a x r + w x (w x r)), with r from the IMU to the centre of mass, rate w and angular acceleration a.
+/// Returns the reading of the IMU's accelerometer in free flight, in which only gravity acts on the body. The reading
+/// is -(a x r + w x (w x r)), with r from the IMU to the centre of mass, rate w and angular acceleration a.
 Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s,
                              const Eigen::Vector3d& angular_acceleration_I_rad_s2);
 

@@ -11,10 +11,10 @@ namespace tumble {
 
 /// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, section
 /// 11). The function verdict() reports one of two permanent findings. First, the position's standard deviation exceeded
-/// the matching distance of surfaces. With so uncertain a position, a sweep can match any nearby surface, and a
-/// relocalisation is ambiguous. Second, the registration moved two or more sweeps further from their predicted poses
-/// than the covariances allow. A single large correction may come from saturation that the rates underestimated. An IMU
-/// or a lidar that does not meet its data sheet causes several large corrections.
+/// the matching distance of surfaces. A sweep could then match any nearby surface. Second, the registered poses of two
+/// or more sweeps are further from the predicted poses than the covariances allow. A single large correction may come
+/// from saturation that the rates underestimated. An IMU or a lidar that does not meet its data sheet causes several
+/// large corrections.
 ///
 /// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
 /// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
@@ -52,7 +52,7 @@ class Localisation {
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
   double sigma_m_ = 0.0;  ///< standard deviation of the newest position, relative to the map
   TimeNs newest_ns_ = 0;
-  std::optional<TimeNs> lost_since_ns_;  ///< first of the latest sweeps without a certain position
+  std::optional<TimeNs> lost_since_ns_;  ///< first sweep since which the position is uncertain
   std::optional<TimeNs> last_contradicted_ns_,
       previous_contradicted_ns_;  ///< last two sweeps that contradict their predicted poses
 };

@@ -23,7 +23,7 @@ struct MatchingParams {
   /// Growth of a point's standard deviation over the sweep, which reduces the point's weight (the published time
   /// weighting).
   double skew_sigma_m_s = 0.25;
-  /// A sweep is `degenerate` if its surfaces alone leave a larger standard deviation in some direction. Attitude is
+  /// A sweep is `degenerate` if its surfaces alone determine the pose less accurately in some direction. Attitude is
   /// converted to displacement by the root-mean-square lever arm.
   double degenerate_sigma_m = 0.15;
 
@@ -55,9 +55,10 @@ struct MatchingParams {
 /// RegistrationStagesParams defines the stages of a registration. The stages are iterations with all points, further
 /// iterations with a subsample, and a coarse stage for starting poses far from the prior.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< iterations with all points, before iterations with a subsample
-  std::size_t subsample_points = 1000;  ///< enough points to decide whether a starting pose converges
-  int coarse_iterations = 15;           ///< iterations for a starting pose far from the prior
+  int full_iterations = 8;  ///< number of iterations with all points, before iterations with a subsample
+  /// number of points of the subsample, which decides whether a starting pose converges
+  std::size_t subsample_points = 1000;
+  int coarse_iterations = 15;           ///< number of iterations for a starting pose far from the prior
   std::size_t coarse_points = 300;      ///< number of points in the coarse stage
   std::size_t coarse_matches_min = 50;  ///< minimum number of matches in the coarse stage
   double coarse_kernel_min_m = 0.5;     ///< minimum width of the robust kernel in the coarse stage

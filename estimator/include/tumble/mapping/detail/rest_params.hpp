@@ -29,8 +29,8 @@ struct RestBoundsParams {
 
 /// OdometryStartParams contains the accuracy of the state at the start, and limits the corrections by the first sweeps.
 struct OdometryStartParams {
-  /// Standard deviation of the initial tilt in the registration: five times the tilt that WorldCovarianceParams
-  /// reports. The larger standard deviation allows for a start in motion.
+  /// Standard deviation of the initial tilt for the registration: five times tilt_sigma_rad of WorldCovarianceParams,
+  /// to allow for a start in motion.
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< residual speed of a robot that seems to be at rest
   double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias

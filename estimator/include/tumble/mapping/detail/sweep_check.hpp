@@ -10,7 +10,7 @@
 
 namespace tumble::mapping {
 
-/// Returns `out_of_range` if a point was fired after the end of the sweep, and otherwise `ok`.
+/// Returns `out_of_range` if a point's time is after the end of the sweep, and otherwise `ok`.
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// Checks whether a sweep is usable. Returns `empty` (no points), `non_finite` (no finite point), `too_few` (no point

@@ -46,9 +46,10 @@ class OdometryPass {
   void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
   /// Returns whether rates are available up to the time `end_ns` of the lidar's clock.
   bool covers(TimeNs end_ns) const;
-  /// Returns the lidar time up to which rates are available, or empty before the first rate.
+  /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
-  /// Returns the IMU time of the first sample that covers the lidar time `end_ns` and whose rate is not yet available.
+  /// Returns the time, in the IMU's clock, of the first sample that covers the lidar time `end_ns` and whose rate is
+  /// not yet available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   /// Registers a sweep. The argument `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
@@ -58,7 +59,7 @@ class OdometryPass {
 
   /// Converts a time from the lidar's clock to the IMU's clock.
   TimeNs oldest_needed_ns(TimeNs lidar_ns) const;
-  /// Reports all rates up to the first sample at or after `time_ns`, even if the lag is not full.
+  /// Passes all rates up to the first sample at or after `time_ns` to the mapper, even if the lag is not full.
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
   void start_rate_estimation(const RegimeStream::Params& rate);

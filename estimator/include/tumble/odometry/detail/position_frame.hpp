@@ -36,9 +36,9 @@ struct PositionFrame {
 };
 
 /// Estimates PositionFrame from position readings, causally, by a weighted least-squares fit of heading and translation
-/// to the last 64 distinct positions. PositionAlignment averages readings within half a standard deviation of one
-/// place. The weight of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects up
-/// to a fifth of the positions as outliers. The poses and the map in W do not change.
+/// to the last 64 distinct positions. PositionAlignment averages readings whose positions are within half a standard
+/// deviation of each other. The weight of earlier positions decreases with the drift of the poses. A chi-square test
+/// (99.9 %) rejects up to a fifth of the positions as outliers. The poses and the map in W do not change.
 class PositionAlignment {
  public:
   static constexpr std::size_t kReadingsMax = 1024, kPairsMax = 64;
