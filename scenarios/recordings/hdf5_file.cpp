@@ -28,7 +28,8 @@ Handle open_file(const std::filesystem::path& path) {
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
   const std::string reason = last_error();
-  if (std::error_code error; std::filesystem::file_size(path, error) == 0) throw BadInput(path.string() + ": the file is empty");
+  if (std::error_code error; std::filesystem::file_size(path, error) == 0)
+    throw BadInput(path.string() + ": the file is empty");
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 

@@ -24,8 +24,8 @@ struct BadMessage : std::runtime_error {
 
 inline void require_left(std::size_t left, std::size_t count, std::size_t each) {
   if (count <= left / each) return;
-  throw BadMessage("the message states " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes, but only " +
-                   std::to_string(left) + " bytes are left");
+  throw BadMessage("the message states " + std::to_string(count) + " entries of " + std::to_string(each) +
+                   " bytes, but only " + std::to_string(left) + " bytes are left");
 }
 
 class Ros1Writer {
