@@ -178,8 +178,7 @@ Method rate_tumble() {
       "in free flight, and Euler's equation. The method also estimates the rig constants, uses further IMUs on the "
       "body (not imu_reference), and runs the hand-held smoother during hand-held motion.";
   info.ours = true;
-  info.source =
-      "our own method, which extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
+  info.source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
   info.calibrates_rig = true;
