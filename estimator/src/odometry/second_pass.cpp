@@ -129,7 +129,6 @@ bool SecondPass::begin(const OdometryPass& first) {
   }
   pass_.emplace(rate, mapping);
   if (first.mapper().start()) pass_->set_start_pose(*first.mapper().start());
-  if (const auto tilt = first.mapper().start_tilt()) pass_->set_start_tilt(*tilt);
   next_sample_ = next_sweep_ = rejected_ = 0;
   started_by_tracking_failure_ = seconds(sweeps_.back().end_ns - buffer_start_ns()) < params_.after_s;
   return true;
