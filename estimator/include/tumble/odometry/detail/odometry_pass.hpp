@@ -39,8 +39,6 @@ class OdometryPass {
   Status add_imu(const ImuSample& sample);
   /// Sets the pose at which the map starts; see LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
-  /// Sets the tilt of a start in motion; see LidarInertialOdometry::set_start_tilt().
-  void set_start_tilt(const LidarInertialOdometry::StartTilt& tilt) { mapper_.set_start_tilt(tilt); }
   /// Sets the prior map; see LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
   void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
