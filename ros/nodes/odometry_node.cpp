@@ -95,35 +95,41 @@ void OdometryNode::report(const char* topic, const Status& status) {
   if (!status.ok()) RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 1000, "%s: %s", topic, status.message().c_str());
 }
 
+geometry_msgs::msg::PoseWithCovariance OdometryNode::base_pose(const Odometry& odometry) {
+  geometry_msgs::msg::PoseWithCovariance out;
+  const Eigen::Vector3d p = odometry.T_OB.translation();
+  const Eigen::Quaterniond q(odometry.T_OB.linear());
+  out.pose.position.x = p.x();
+  out.pose.position.y = p.y();
+  out.pose.position.z = p.z();
+  out.pose.orientation.x = q.x();
+  out.pose.orientation.y = q.y();
+  out.pose.orientation.z = q.z();
+  out.pose.orientation.w = q.w();
+  std::copy_n(odometry.pose_covariance.data(), 36, out.covariance.begin());
+  return out;
+}
+
 nav_msgs::msg::Odometry OdometryNode::message(const Odometry& odometry, bool from_imu) {
   nav_msgs::msg::Odometry out;
   out.header.stamp = rclcpp::Time(odometry.stamp_ns);
   out.header.frame_id = text("odom_frame");
   out.child_frame_id = text("base_frame");
-  const Eigen::Vector3d p = odometry.T_OB.translation();
-  const Eigen::Quaterniond q(odometry.T_OB.linear());
-  out.pose.pose.position.x = p.x();
-  out.pose.pose.position.y = p.y();
-  out.pose.pose.position.z = p.z();
-  out.pose.pose.orientation.x = q.x();
-  out.pose.pose.orientation.y = q.y();
-  out.pose.pose.orientation.z = q.z();
-  out.pose.pose.orientation.w = q.w();
+  out.pose = base_pose(odometry);
   out.twist.twist.linear.x = odometry.twist_B[0];
   out.twist.twist.linear.y = odometry.twist_B[1];
   out.twist.twist.linear.z = odometry.twist_B[2];
   out.twist.twist.angular.x = odometry.twist_B[3];
   out.twist.twist.angular.y = odometry.twist_B[4];
   out.twist.twist.angular.z = odometry.twist_B[5];
-  std::copy_n(odometry.pose_covariance.data(), 36, out.pose.covariance.begin());
   std::copy_n(odometry.twist_covariance.data(), 36, out.twist.covariance.begin());
   if (text("tf") != (from_imu ? "imu" : "sweep")) return out;
   geometry_msgs::msg::TransformStamped moved;
   moved.header = out.header;
   moved.child_frame_id = out.child_frame_id;
-  moved.transform.translation.x = p.x();
-  moved.transform.translation.y = p.y();
-  moved.transform.translation.z = p.z();
+  moved.transform.translation.x = out.pose.pose.position.x;
+  moved.transform.translation.y = out.pose.pose.position.y;
+  moved.transform.translation.z = out.pose.pose.position.z;
   moved.transform.rotation = out.pose.pose.orientation;
   broadcaster_.sendTransform(moved);
   return out;

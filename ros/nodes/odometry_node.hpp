@@ -59,6 +59,8 @@ class OdometryNode : public rclcpp::Node, public Publisher {
   /// lacks the pose.
   std::optional<Eigen::Isometry3d> mounting(const std::string& parameter, const std::string& frame);
   void report(const char* topic, const Status& status);
+  /// Returns the pose of the base with its covariance.
+  static geometry_msgs::msg::PoseWithCovariance base_pose(const Odometry& odometry);
 
   /// Declares the numbers in `params` as parameters of the node, and reads their values. The defaults are the values in
   /// `params`.

@@ -102,16 +102,7 @@ class TumblingNode : public OdometryNode {
     Position out;
     out.header.stamp = rclcpp::Time(odometry.stamp_ns);
     out.header.frame_id = position_frame_;
-    const Eigen::Vector3d p = odometry.T_OB.translation();
-    const Eigen::Quaterniond q(odometry.T_OB.linear());
-    out.pose.pose.position.x = p.x();
-    out.pose.pose.position.y = p.y();
-    out.pose.pose.position.z = p.z();
-    out.pose.pose.orientation.x = q.x();
-    out.pose.pose.orientation.y = q.y();
-    out.pose.pose.orientation.z = q.z();
-    out.pose.pose.orientation.w = q.w();
-    std::copy_n(odometry.pose_covariance.data(), 36, out.pose.covariance.begin());
+    out.pose = base_pose(odometry);
     position_publisher_->publish(out);
   }
   void points(const DeskewedSweep& sweep) override {
