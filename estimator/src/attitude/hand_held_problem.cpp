@@ -206,7 +206,7 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
     before = Iterate{nodes_, constants_, report.cost};
     double largest = 0.0;
     if (!step(largest))
-      return {kLost, "iteration of the smoother for hand-held motion", k + 1.0, static_cast<double>(k)};
+      return {kLost, "iteration in which the smoother for hand-held motion failed", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
     report.converged = largest < kConvergenceTolerance;
     if (report.converged && k > kFirstAdaptIteration) break;
@@ -248,7 +248,8 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
   noise_ = assumed;
   std::fill(jerk_.begin(), jerk_.end(), 1.0);
   System::BorderVector unused;
-  if (!eliminate(unused)) return {kLost, "covariance of the smoother for hand-held motion", report.cost, 0.0};
+  if (!eliminate(unused))
+    return {kLost, "cost when the covariance of the smoother for hand-held motion failed", report.cost, 0.0};
   report.constants_covariance = constants_covariance_;
   covariances_.resize(nodes_.size());
   System::Conditional here, next;
