@@ -48,7 +48,7 @@ class AccelerometerRate {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
             switch_field("tilted_rails",
-                         "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                         "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
                          FieldRank::basic));
       visit(p.use_gyro,
             switch_field("use_gyro", "1: also use the unclipped axes of the primary gyro; 0: use accelerometers only",

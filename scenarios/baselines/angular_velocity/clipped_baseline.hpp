@@ -58,7 +58,7 @@ class ClippedBaseline {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
             switch_field("tilted_rails",
-                         "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                         "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
                          FieldRank::basic));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.acceleration_psd, {"acceleration_psd_rad2_s3", "rad^2/s^3", 1e-12, 1e12,
@@ -69,7 +69,7 @@ class ClippedBaseline {
                          "power spectral density of the white angular snap that drives the jerk", FieldRank::basic});
       visit(p.rate_sigma_rad_s,
             {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4,
-             "stationary standard deviation of the rate; bounds the uncertainty in long gaps", FieldRank::basic});
+             "standard deviation of the rate over long times; bounds the uncertainty in long gaps", FieldRank::basic});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
                           "maximum time between two samples; a longer gap ends the run with an error"});

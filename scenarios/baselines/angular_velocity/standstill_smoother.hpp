@@ -54,7 +54,7 @@ class StandstillSmoother {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
             switch_field("tilted_rails",
-                         "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                         "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
                          FieldRank::basic));
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity"});
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
@@ -66,12 +66,15 @@ class StandstillSmoother {
              FieldRank::basic});
       visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
                          FieldRank::basic});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "maximum change of the rate at a standstill"});
-      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "maximum change of the force at a standstill"});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "maximum rate at a standstill"});
+      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0,
+                                "maximum difference between the magnitude of the specific force and gravity at a "
+                                "standstill"});
       visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "minimum duration of a standstill"});
       visit(p.rest_velocity_sigma_m_s,
             {"rest_velocity_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at a standstill"});
-      visit(p.rate_sigma_rad_s, {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4, "stationary standard deviation of the rate"});
+      visit(p.rate_sigma_rad_s,
+            {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4, "standard deviation of the rate over long times"});
       visit(p.tilt_max_rad,
             {"tilt_max_rad", "rad", 0.0, 4.0,
              "maximum tilt error at a standstill; above this error, the smoother assumes that it missed a rotation"});

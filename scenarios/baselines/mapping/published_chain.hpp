@@ -46,19 +46,19 @@ class PublishedChain {
              FieldRank::basic});
       visit(p.late_velocity,
             switch_field("late_velocity",
-                         "1: use the mean velocity since the last sweep as the present velocity, which is "
-                         "half a sweep late, as in the launch files",
+                         "1: take the mean velocity since the last sweep as the velocity at the end of the sweep, as "
+                         "in the launch files; 0: take it as the velocity in the middle between both sweeps",
                          FieldRank::basic));
       visit(p.voxel_averages_time,
             switch_field("voxel_averages_time",
-                         "1: average the times of the points in a voxel, also across the start of the "
-                         "sweep, as in the launch files; 0: average their variances",
+                         "1: average the times of the points in a voxel, as in the launch files; 0: average the "
+                         "variances that follow from these times",
                          FieldRank::basic));
-      visit(
-          p.abort_ends_mapping,
-          switch_field("abort_ends_mapping",
-                       "1: a failed registration ends mapping, as in the launch files; 0: the sweep uses odometry only",
-                       FieldRank::basic));
+      visit(p.abort_ends_mapping,
+            switch_field("abort_ends_mapping",
+                         "1: a failed registration ends mapping, as in the launch files; 0: the pose of the sweep "
+                         "comes from odometry only",
+                         FieldRank::basic));
       visit.group("", p.icp);
       visit(p.own_body_L.min(),
             {"own_body_min_m", "m", -kUnbounded, kUnbounded,

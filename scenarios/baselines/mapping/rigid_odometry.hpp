@@ -63,7 +63,8 @@ class RigidOdometry {
             switch_field("extend_always", "1: extend the map with sweeps that could not be registered"));
       visit(p.degenerate_sigma_m,
             {"degenerate_sigma_m", "m", 1e-6, 1e3,
-             "a sweep counts as degenerate if the surfaces alone determine its pose with a larger standard deviation"});
+             "a sweep counts as degenerate if the surfaces alone determine its pose with a standard deviation above "
+             "this value"});
       visit.group("", p.registration);
     }
   };

@@ -51,12 +51,13 @@ class TrimmedIcp {
       visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "number of map points used for each normal"});
       visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "minimum share of matches that trimming keeps"});
       visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "maximum share of matches that trimming keeps"});
-      visit(p.trim_lambda,
-            {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost function that selects the share"});
+      visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0,
+                            "exponent lambda of the kept share s of matches; trimming selects the s that minimises the "
+                            "rms distance divided by s^lambda"});
       visit(p.count_unmatched_slots,
             switch_field("trim_counts_unmatched",
-                         "1: compute the share over all match slots, including unmatched slots, as "
-                         "in the launch files (which read beyond the array)",
+                         "1: compute the kept share relative to all possible matches, including missing matches, as in "
+                         "the authors' code; 0: relative to the found matches",
                          FieldRank::basic));
       visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps"});
       visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});

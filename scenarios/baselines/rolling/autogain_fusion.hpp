@@ -43,7 +43,8 @@ class AutogainFusion {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
       visit(p.limiter, {"limiter", "1", 0.0, 100.0,
-                        "maximum ratio of integrated to rolling velocity; 1.1 in the authors' code", FieldRank::basic});
+                        "maximum ratio of the integrated velocity to the rolling velocity; 1.1 in the authors' code",
+                        FieldRank::basic});
       visit(p.rotation_weight,
             {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)", FieldRank::basic});
       visit(p.acceleration_weight, {"acceleration_weight", "1", 0.0, 10.0,
@@ -51,29 +52,31 @@ class AutogainFusion {
       visit.group("autogain_", p.autogain);
       visit(p.integrate_in_body,
             switch_field("integrate_in_body",
-                         "true: integrate eq. 7 in the rotating frame, without the term w x v; false: "
-                         "integrate in the world frame",
+                         "true: integrate the acceleration (eq. 7) in the rotating body frame, without the term w x v; "
+                         "false: in the world frame",
                          FieldRank::basic));
-      visit(
-          p.direction_only,
-          switch_field("direction_only",
-                       "true, as in the authors' code: normalise f before gravity is removed, without multiplying by g",
-                       FieldRank::basic));
+      visit(p.direction_only,
+            switch_field("direction_only",
+                         "true, as in the authors' code: subtract gravity of length 1 from the direction of the "
+                         "specific force, without multiplying by g",
+                         FieldRank::basic));
       visit(p.recursive_coupling,
             switch_field("recursive_coupling",
-                         "true, as in the authors' code: eq. 8 scales the stored integral at each sample",
+                         "true, as in the authors' code: eq. 8 scales the integrated velocity again at each sample",
                          FieldRank::basic));
-      visit(p.limit_per_axis,
-            switch_field("limit_per_axis", "true: limit along the world's axes; false: limit the horizontal vector",
-                         FieldRank::basic));
+      visit(p.limit_per_axis, switch_field("limit_per_axis",
+                                           "true: limit the integrated velocity along each horizontal axis of the "
+                                           "world; false: limit its horizontal norm",
+                                           FieldRank::basic));
       visit(p.shrink_per_axis,
             switch_field("shrink_per_axis",
-                         "true: eq. 12 subtracts v_z^2 from each axis; false: once from the horizontal vector",
+                         "true: eq. 12 subtracts v_z^2 from the square of each horizontal velocity; false: once from "
+                         "the squared horizontal speed",
                          FieldRank::basic));
       visit(p.vertical_by_norm,
             switch_field("vertical_by_norm",
-                         "true, as in the authors' code: limit |v_z| by the norm of v_rot; false: by the "
-                         "mean of both magnitudes"));
+                         "true, as in the authors' code: limit the vertical speed by the horizontal rolling speed; "
+                         "false: by the mean of the rolling speeds along x and y"));
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }

@@ -50,7 +50,9 @@ class SlipObserver {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
-      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0, "a slip event starts when the residual exceeds this value",
+      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0,
+                          "a slip event starts when the residual exceeds this value; residual: measured acceleration "
+                          "minus acceleration of rolling",
                           FieldRank::basic});
       visit(p.quiet_m_s2, {"quiet_m_s2", "m/s^2", 1e-9, 100.0,
                            "a slip event may end when the residual is below this value", FieldRank::basic});
@@ -59,10 +61,11 @@ class SlipObserver {
       visit(p.closing_speed_m_s, {"closing_speed_m_s", "m/s", 1e-9, 10.0,
                                   "a slip event may end when the contact speed is below this value", FieldRank::basic});
       visit(p.timeout_s,
-            {"timeout_s", "s", 1e-9, 100.0, "maximum duration of a slip event; the effect of a longer event is removed",
-             FieldRank::basic});
+            {"timeout_s", "s", 1e-9, 100.0,
+             "maximum duration of a slip event; the position change by a longer event is undone", FieldRank::basic});
       visit(p.ignore_time_s, {"ignore_time_s", "s", 0.0, 100.0,
-                              "after an event was removed, the next event may start after this quiet time"});
+                              "after an undone event, the next event starts only after the residual has been below "
+                              "quiet_m_s2 for this time"});
       visit(p.closed_decay_per_s,
             {"closed_decay_per_s", "1/s", 0.0, 1e3, "decay rate of the contact velocity outside slip events"});
       visit(p.bias_tau_s,
