@@ -74,11 +74,11 @@ class ClippingFinder {
       visit.group("rails_", p.axis_aligned_rails);
       visit.group("planes_", p.planes);
       visit.group("accel_planes_", p.accel_planes);
-      visit(
-          p.tilted,
-          switch_field(
-              "tilted",
-              "1: also search tilted saturation limits; 0: search only upright ones and use the device's clip flags"));
+      visit(p.tilted,
+            switch_field(
+                "tilted",
+                "1: also search for tilted saturation limits; 0: search only for upright saturation limits and use the "
+                "device's clip flags"));
     }
   };
   struct Found {

@@ -42,7 +42,8 @@ struct RegistrationExpertParams {
     visit(p.match_ratio_min,
           {"match_ratio_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
     visit(p.agreeing_matches_needed, {"agreeing_matches_needed", "1", 1, 1e9,
-                                      "minimum number of matches for a result that agrees with the prior"});
+                                      "minimum number of matches with which a result that agrees with the prior is "
+                                      "accepted"});
     visit(p.inlier_ratio_min, {"inlier_ratio_min", "1", 0.0, 1.0,
                                "minimum share of matches within three standard deviations in an accepted result"});
     visit.group("plane_", p.plane);

@@ -81,7 +81,8 @@ struct RateContactParams {
                           "largest angular acceleration perpendicular to a contact force, per force"});
     visit(p.twist_ratio,
           {"contact_twist_ratio", "1", 0.0, 1.0,
-           "angular acceleration about the contact force, as a share of the angular acceleration perpendicular to it"});
+           "angular acceleration about the axis of the contact force, as a share of the angular acceleration about "
+           "perpendicular axes"});
     visit(p.force_share,
           {"contact_force_sigma_ratio", "1", 0.0, 1e3,
            "standard deviation of the unknown contact force, as a share of the force; 0: no assumption"});

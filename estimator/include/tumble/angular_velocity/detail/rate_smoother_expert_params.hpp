@@ -33,7 +33,7 @@ struct RateDescentParams {
         {"bound_iterations", "1", 0, 1000,
          "number of iterations after convergence that treat the bounds in contact as truncated normal distributions"});
     visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0,
-                            "share of the change of a bound that each iteration after convergence applies"});
+                            "each iteration after convergence applies this share of the computed change of a bound"});
   }
 };
 

@@ -35,8 +35,8 @@ struct RigInflationParams {
                       "uncalibrated rig: standard deviation of a clipped rate in contact, as a share of the saturation "
                       "deficit, divided by 1 + n / rig_inflation_samples"});
     visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
-                     "standard deviation of a clipped rate in contact, as a share of the saturation deficit predicted "
-                     "by the slopes at both ends of the clipped run"});
+                     "standard deviation of a clipped rate in contact, as a share of the saturation deficit that the "
+                     "slopes before and after the clipped samples predict"});
   }
 };
 
@@ -73,7 +73,8 @@ struct RateStreamExpertParams {
           {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that calibrate the rig"});
     visit.group("", p.inflation);
     visit(p.uncalibrated, {"uncalibrated", "1", 0.0, 0.99, "prior probability that a device is not calibrated"});
-    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of the change of a bound that each step applies"});
+    visit(p.bound_damping,
+          {"bound_damping", "1", 0.01, 1.0, "each step applies this share of the computed change of a bound"});
   }
 };
 

@@ -35,7 +35,8 @@ struct MatchingParams {
     visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
     visit(p.agreeing_matches_min,
           {"matches_agreeing_min", "1", 1, 1e9,
-           "with fewer matches: minimum number of matches for an accepted sweep that agrees with the prior"});
+           "if a sweep has fewer matches: minimum number of matches with which a sweep that agrees with the prior is "
+           "accepted"});
     visit(p.iterations_max,
           {"iterations_max", "1", 1, 200,
            "maximum number of iterations of a registration; at most eight iterations use all points"});
@@ -48,7 +49,8 @@ struct MatchingParams {
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
     visit(p.degenerate_sigma_m,
           {"degenerate_sigma_m", "m", 1e-6, 1e3,
-           "a sweep counts as degenerate if the surfaces alone determine its pose with a larger standard deviation"});
+           "a sweep counts as degenerate if the surfaces alone determine its pose with a standard deviation above this "
+           "value"});
   }
 };
 
