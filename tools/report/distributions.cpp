@@ -22,8 +22,8 @@ using nlohmann::json;
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
-  return fmt::format(" For scenarios with more draws, the plot shows only {} draws, at equal steps of rank.",
-                     kBoxPoints);
+  return fmt::format(
+      " For scenarios with more draws, the plot shows only {} draws, evenly spaced in the sorted values.", kBoxPoints);
 }
 
 json shaded(const Spread& spread) {

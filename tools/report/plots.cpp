@@ -285,8 +285,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.id = std::string(to_string(kind)) + "-" + metric;
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
-    figure.caption +=
-        fmt::format(" A box of more than {0} draws shows {0} of them as points, at equal steps of rank.", kBoxPoints);
+    figure.caption += fmt::format(
+        " A box of more than {0} draws shows {0} of them as points, evenly spaced in the sorted values.", kBoxPoints);
   Boxes boxes(metric, palette);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, section.scenario, true);

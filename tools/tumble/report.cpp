@@ -140,8 +140,8 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   } else {
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
-        "The numbers of these draws are unknown, because the results come from other models and scenarios. The page "
-        "therefore lists the influence of the motions. ";
+        "The random parameters of these draws are unknown, because the results come from other models and scenarios. "
+        "The page therefore lists the influence of the motions. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -154,12 +154,11 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "All known numbers of a scenario are equal in all draws. ";
+    input.sensitivity_note += "All known parameters of a scenario are equal in all draws. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note +=
-        fmt::format("For scenarios with more draws, the analysis uses only {} draws, at equal steps of their seeds.",
-                    kSensitivityDraws);
+    input.sensitivity_note += fmt::format(
+        "For scenarios with more draws, the analysis uses only {} draws, with evenly spaced seeds.", kSensitivityDraws);
     break;
   }
 }

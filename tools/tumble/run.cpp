@@ -253,8 +253,8 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "option for more parameters ('tumble list methods NAME' lists them)")
       .one_at_a_time();
   verb.add("--vary", options->vary,
-           "sets a number of the scenario or of the given inputs: KEY=NUMBER, for example world.rock_count=10 or "
-           "given.lever_arm_error_m=0.03; a point of a suite's curve does the same");
+           "sets a parameter of the scenario or an error of the methods' inputs: KEY=NUMBER, for example "
+           "world.rock_count=10 or given.lever_arm_error_m=0.03");
   verb.add("--threads", options->threads,
            "uses this number of threads to simulate the lidar; the result is the same for any number")
       .whole(1, 1024)

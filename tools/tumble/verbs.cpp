@@ -7,7 +7,7 @@ std::span<const Verb> verbs() {
   static constexpr Verb kVerbs[] = {
       {"odometry", "estimates trajectory and map from a bag or another recording of an IMU and a lidar",
        declare_odometry},
-      {"doctor", "searches a bag or another recording for faults and names the option that repairs each",
+      {"doctor", "searches a bag or another recording for faults and names the option that repairs each fault",
        declare_doctor},
       {"list", "lists scenarios, methods, metrics, sensors or suites with their parameters", declare_list},
       {"run", "simulates one draw of a scenario, runs methods on the recording and scores the estimates", declare_run},
@@ -20,7 +20,7 @@ std::span<const Verb> verbs() {
       {"report", "prints score tables and writes a self-contained page from a results database", declare_report},
       {"compare", "compares methods on the same draws: differences, tests, failures and number of draws needed",
        declare_compare},
-      {"sensitivity", "shows which numbers of a draw influence a method's scores", declare_sensitivity},
+      {"sensitivity", "shows which random parameters of a scenario influence a method's scores", declare_sensitivity},
       {"render", "draws pictures of a recording or of a draw", declare_render},
       {"replay", "writes a page that plays a recording with its estimates; the page needs no network", declare_replay},
       {"bench", "compares an external method with stored results on the standard draws of its kind", declare_bench},
