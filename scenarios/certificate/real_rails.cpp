@@ -153,12 +153,12 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     if (sheet.sensor_kind != "imu") continue;
     const DrawnPlanes drawn = drawn_planes(sheet, setup);
     entries.push_back({"real_rail_slope_drawn", name + " gyro",
-                       "the largest measured slope is within the simulated distribution of this device: ratio to the "
-                       "standard deviation of simulated slopes",
+                       "the largest measured slope of a saturation plane is within the simulated distribution of this "
+                       "device: ratio to the standard deviation of the simulated slopes",
                        "1", slope / drawn.slope, 0.0, kCut, ""});
     entries.push_back({"real_rail_offset_drawn", name + " gyro",
-                       "the largest measured offset is within the simulated distribution of this device: ratio to the "
-                       "standard deviation of simulated offsets",
+                       "the largest measured offset of a saturation plane is within the simulated distribution of this "
+                       "device: ratio to the standard deviation of the simulated offsets",
                        "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
   }
   return entries;

@@ -79,8 +79,10 @@ bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<Calibrat
   if (distance <= kDistanceMax) return true;
   SensorHealth health;
   health.add(HealthFinding::Kind::rig_calibration,
-             {ErrorCode::out_of_range, "distance of the --learnt file from this run, in standard deviations", distance,
-              kDistanceMax},
+             {ErrorCode::out_of_range,
+              "difference between the calibration in the --learnt file and the calibration of this run, in standard "
+              "deviations",
+              distance, kDistanceMax},
              "imu");
   add_finding(health.findings.front(), result);
   return false;

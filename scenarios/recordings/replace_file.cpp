@@ -91,7 +91,8 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
     if (error) continue;
     const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     if (within && place != folder)
-      fail(output, fmt::format("the output is a file of the input {}; choose another output name", input.string()));
+      fail(output,
+           fmt::format("the output is one of the files of the input {}; choose another output name", input.string()));
   }
 }
 

@@ -128,17 +128,18 @@ bool silently_wrong(const ScoredEstimate& scored, double& value) {
 template <Kind kind>
 void add(std::vector<Metric>& out) {
   out.push_back({{"health_wrong", Unit::verdict,
-                  "1 if the estimate is wrong: a tenth of the moving samples (poses: the last pose) is more than five "
-                  "reported standard deviations off, or half of them by a fifth of the rate or 0.5 rad of tilt",
+                  "1 if the estimate is wrong. For rates and attitudes: a tenth of the errors in motion exceed five "
+                  "reported standard deviations, or half of the errors exceed a fifth of the true rate or 0.5 rad of "
+                  "tilt. For poses: the error of the last pose exceeds five reported standard deviations",
                   Sense::none},
                  kind,
                  wrong<kind>});
   out.push_back({{"health_reported", Unit::verdict,
-                  "1 if a finding of the health states that readings or estimate should not be used", Sense::none},
+                  "1 if the method reports that its readings or its estimate should not be used", Sense::none},
                  kind,
                  reported});
   out.push_back({{"health_silently_wrong", Unit::verdict,
-                  "1 if the estimate is wrong and its health does not report it", Sense::none},
+                  "1 if the estimate is wrong and the method does not report this", Sense::none},
                  kind,
                  silently_wrong<kind>});
 }

@@ -160,8 +160,8 @@ std::vector<Metric> rate_metrics() {
        Kind::rate,
        clipped_max},
       {{"rate_error_segment_max_rad_s", Unit::rad_s,
-        "norm of the mean rate error over consecutive clipped samples, maximum over all such segments; this error "
-        "displaces the map",
+        "norm of the mean rate error over a segment of consecutive clipped samples; maximum over all segments; this "
+        "error displaces the map",
         Sense::lower},
        Kind::rate,
        segment_max},

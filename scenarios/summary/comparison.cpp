@@ -244,7 +244,7 @@ const char* to_string(Finding finding) {
     case Finding::undecided:
       break;
   }
-  return "not told apart";
+  return "undecided";
 }
 
 Comparison compare(const Summary& summary, const ComparisonOptions& options) {

@@ -167,7 +167,7 @@ std::vector<Answer> answers(const Results& results, const Question& question, st
 }
 
 const char* finding_text(const Answer& answer, const Question& question) {
-  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not by the margin"
+  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not better by the margin"
                                                                          : to_string(answer.finding);
 }
 

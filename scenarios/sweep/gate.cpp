@@ -147,7 +147,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
     result.fault =
-        fmt::format("the metric has no value, in contrast to the accepted run, at seed {}", found.lost.front());
+        fmt::format("the metric has no value, but has a value in the accepted run, at seed {}", found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);

@@ -189,7 +189,7 @@ void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
     if (sensor.values.at(name) < 0.5 * rate_hz) continue;
     std::ostringstream text;
     text << "sensors." << sensor.name << "." << name << " is " << sensor.values.at(name)
-         << " Hz; it must be below half of the chain's rate of " << rate_hz << " Hz";
+         << " Hz; it must be below half of the IMU simulation's internal rate of " << rate_hz << " Hz";
     throw InvalidSituation(text.str());
   }
 }

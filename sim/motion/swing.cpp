@@ -18,7 +18,7 @@ constexpr std::array kSwingParameters = {
     Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "time for which the hand holds the lifted segment"},
     Parameter{"release_s", 0.03, 0.005, 1.0, "s", "time in which the hand releases the segment"},
     Parameter{"interval_s", 19.0, 2.0, 120.0, "s",
-              "mean time between two releases, varied by up to a tenth; must be at least the times of lift and hold"},
+              "mean time between two releases, varied by up to a tenth; must be at least lift_s plus hold_s"},
     Parameter{"aside_m", 0.4, 0.0, 3.0, "m",
               "mean distance by which the segment is moved aside, perpendicular to the hinges"},
     Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean distance up"},

@@ -56,7 +56,8 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
 Table table_of(const std::vector<scenarios::Answer>& answers, const Question& question) {
   Table table(
       fmt::format(
-          "Is {} better than {} in {}{}? If neither method is better, the probability of an answer is at most {:g}",
+          "Is {} better than {} in {}{}? If neither method is better, the probability of a wrong answer is at most "
+          "{:g}",
           question.method, question.against, question.metric,
           question.margin.value == 0.0 ? ""
           : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)

@@ -141,8 +141,11 @@ void require_whole(const ShrinkVerbOptions& options) {
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
   if (!options.control) return "no control method was used";
   const std::string& name = options.control->info.name;
-  return shrunk.controlled ? fmt::format("{} does not fail on the smaller draw", name)
-                           : fmt::format("{} also fails on the draw, so the control method checks nothing", name);
+  return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller draw", name)
+                           : fmt::format(
+                                 "the control method {} also fails on the draw, so it cannot confirm that the failure "
+                                 "comes from the method",
+                                 name);
 }
 
 int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
@@ -174,13 +177,13 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
       shrunk, name, own ? full : options.method, shrinking.failure, program_version(), command_of(options, seed));
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
-  session.note(fmt::format(
-      "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
-      shrunk.complete ? "no further part can be removed" : "the budget is used up; a larger --budget may remove more",
-      control_text(shrunk, shrinking),
-      shrunk.cure.empty() ? "no single true input cures the failure"
-                          : "the true input " + shrunk.cure + " cures the failure",
-      options.file.string()));
+  session.note(fmt::format("{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+                           shrunk.complete ? "no further part can be removed"
+                                           : "the budget of runs is used up; a larger --budget may remove more parts",
+                           control_text(shrunk, shrinking),
+                           shrunk.cure.empty() ? "no single true input cures the failure"
+                                               : "the true input " + shrunk.cure + " cures the failure",
+                           options.file.string()));
   return kDone;
 }
 
