@@ -230,7 +230,7 @@ void bind_findings(nb::module_& m) {
           "kind of fault, for example 'frozen_axis'")
       .def_ro("sensor", &HealthFinding::sensor,
               "'imu', 'imu_2' for the second of several IMUs, 'lidar'; '': the estimate")
-      .def_ro("axis", &HealthFinding::axis, "'gyro_x' to 'accel_z', or '' unless one axis is suspect")
+      .def_ro("axis", &HealthFinding::axis, "'gyro_x' to 'accel_z' if one axis is suspect, otherwise ''")
       .def_ro("quantity", &HealthFinding::quantity, "the tested quantity, with its unit")
       .def_ro("value", &HealthFinding::value, "value of the quantity")
       .def_ro("bound", &HealthFinding::bound, "violated limit")

@@ -124,7 +124,8 @@ void require_known(const Scenario& scenario) {
     const std::vector<MethodPointer> found = find_methods(expected.method);
     if (found.size() != 1)
       throw BadInput(
-          fmt::format("{}method '{}' must name exactly one method, for example 'slam/NAME'", place, expected.method));
+          fmt::format("{}'{}' must be the name of exactly one method; write it with its kind, for example 'slam/NAME'",
+                      place, expected.method));
     if (!outcome_status_named(expected.status)) throw BadInput(place + "unknown status '" + expected.status + "'");
     const auto known = metrics();
     const auto is_it = [&](const Metric& metric) {

@@ -26,7 +26,8 @@ bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) 
 SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : status_(outcome.status) {
   if (status_ == OutcomeStatus::killed)
     throw BadInput(fmt::format(
-        "the machine ended the run (status 'killed'), so the run gives no result for the method: {}", outcome.message));
+        "the operating system killed the run (status 'killed'), so the run shows nothing about the method: {}",
+        outcome.message));
   if (status_ != OutcomeStatus::ok) return;
   if (!failure.metric.empty() && is_beyond(outcome, failure.metric, failure.limit)) {
     metric_ = failure.metric;

@@ -263,8 +263,8 @@ Method slam_rolling_prior() {
   info.name = "rolling_prior";
   info.kind = Kind::slam;
   info.doc =
-      "Registers the sweeps of a sphere like the sweeps of the rig, with the poses of position/tumble (our method) as "
-      "the prior motion between two sweeps.";
+      "Registers the sweeps of a sphere in the same way as the sweeps of the rig. The poses of position/tumble (our "
+      "method) predict the motion between two sweeps.";
   info.ours = true;
   info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
   info.robots = {"sphere"};

@@ -43,7 +43,7 @@ void add_claims(const std::vector<Record>& records, const std::string& kind, con
 std::string why_another(const Claim& claim) {
   const bool sensors = !own_names().contains(claim.name) && !frames_of_no_sensor().contains(claim.name);
   return fmt::format(
-      "'{}' is {}: {} is written as '{}'", claim.name,
+      "'{}' is {}, so {} is written as '{}'", claim.name,
       sensors ? "also the name of another sensor" : "the name of a topic or frame that does not belong to a sensor",
       claim.sensor, claim.given);
 }

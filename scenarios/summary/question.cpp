@@ -146,11 +146,13 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
   const std::string known = results.note(kQuestionNote), asked = question.describe();
   if (known == asked) return;
   if (!known.empty())
-    throw BadInput(fmt::format("{}: this file stores the question '{}', but this run asks '{}'; choose another file",
-                               database.string(), known, asked));
+    throw BadInput(
+        fmt::format("{}: this file belongs to the question '{}', but the question of this run is '{}'; choose another "
+                    "file",
+                    database.string(), known, asked));
   if (!results.outcomes().empty())
-    throw BadInput(fmt::format("{}: this file contains draws from a run without this question; choose another file",
-                               database.string()));
+    throw BadInput(
+        fmt::format("{}: this file contains draws of a run without --until; choose another file", database.string()));
   results.set_note(kQuestionNote, asked);
 }
 

@@ -139,8 +139,9 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   const fs::path aside = set_damaged_aside(folder);
   if (!options.note) return others;
   for (const std::string& what : found.unreadable)
-    options.note(fmt::format("the program leaves out an existing example: {}. A copy of the damaged list is in {}",
-                             what, aside.string()));
+    options.note(
+        fmt::format("an existing example cannot be read and is left out: {}. A copy of the damaged list is in {}", what,
+                    aside.string()));
   return others;
 }
 

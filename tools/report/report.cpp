@@ -84,7 +84,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
     out.emplace_back("This command prints the paired differences as tables; add --metric NAME for other metrics",
                      "tumble compare " + database);
   if (!content.sensitivity.empty())
-    out.emplace_back("This command prints the influence of every number on each method",
+    out.emplace_back("This command prints the influence of every random parameter on each method",
                      "tumble sensitivity " + database + " --all");
   return out;
 }

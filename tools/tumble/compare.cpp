@@ -225,8 +225,8 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<CompareOptions>();
   verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("--method", options->methods,
-           "compares this method; repeat the option to compare each method with the last one named [default: compares "
-           "all methods that need no truth with the baseline]")
+           "compares this method; if the option is repeated, the program compares each method with the method named "
+           "last [default: compares all methods that need no truth with the baseline]")
       .one_at_a_time();
   verb.add("--against", options->against,
            "sets the method with which the other methods are compared [default: the last --method, or the baseline]");

@@ -254,8 +254,8 @@ Action declare_gate(VerbOptions& verb, const Session& session) {
            "compares with the accepted results in this FILE.yaml, which needs a FILE.csv in the same folder [default: "
            "scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "also checks the external method in this FILE.yaml; with --accept also adds a method of this build to the "
-           "gate; repeat the option for more methods")
+           "also checks the external method in this FILE.yaml; with --accept, adds the named method (external, or of "
+           "this build) to the gate; repeat the option for more methods")
       .one_at_a_time();
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)

@@ -198,8 +198,8 @@ Action declare_shrink(VerbOptions& verb, const Session& session) {
            "sets the seed of the failing draw [default: for a named case, the seed of the case]");
   verb.add("--method", options->method, "names the method that fails on the draw").required();
   verb.add("--metric", options->metric,
-           "names the metric that decides about failure, together with --worse-than [default: only status and verdicts "
-           "decide]");
+           "names the metric that defines a failure, together with --worse-than [default: a run fails by its status or "
+           "by a pass-fail metric]");
   verb.add("--worse-than", options->worse_than,
            "sets the limit of the metric in SI units; a run with a worse value fails");
   verb.add("--control", options->control,

@@ -101,7 +101,7 @@ bool MapLocaliser::passes(const FramePose& pose) const {
 
 Status MapLocaliser::status() const {
   if (!has_map() || localised_) return {};
-  return {ErrorCode::degenerate, "sweeps that agree with the prior map: not localised in the prior map",
+  return {ErrorCode::degenerate, "number of sweeps that agree with the prior map (too few to localise the run)",
           double(passed_), double(kAcceptSweeps)};
 }
 

@@ -228,8 +228,8 @@ int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& f
     if (step_s >= kLeast_s && step_s < kMost_s) return decimals;
   }
   throw BadInput(
-      fmt::format("{}: the time step is {}, which is a rate of 10 to 1000 Hz in none of s, ms, us and ns. Add the unit "
-                  "to the column name, as in time_s or 'time [ns]'",
+      fmt::format("{}: the time step is {}. In each of the units s, ms, us and ns, the sample rate is outside 10 to "
+                  "1000 Hz. Add the unit to the column name, as in time_s or 'time [ns]'",
                   file, std::to_string(step)));
 }
 

@@ -123,8 +123,8 @@ std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t
   if (reading == 0 || times_ns[reading] > times_ns[reading - 1])
     return fmt::format("the time stamp {} ns is out of order", times_ns[reading]);
   return fmt::format(
-      "the time stamp does not increase: it is {} ns after the first time stamp, but the previous time stamp is {} ns "
-      "after the first",
+      "the time stamp (first time stamp + {} ns) must be larger than the previous time stamp (first time stamp + {} "
+      "ns)",
       times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 

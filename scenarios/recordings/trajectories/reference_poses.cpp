@@ -68,8 +68,7 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(
-      "the time stamp {} ns does not increase, because the previous time stamp is {} ns. Sort the file of poses by "
-      "time",
+      "the time stamp {} ns must be larger than the previous time stamp, {} ns. Sort the file of poses by time",
       pose.time_ns, before->time_ns);
 }
 

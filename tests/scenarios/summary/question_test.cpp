@@ -157,9 +157,9 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
       EXPECT_THAT(error.what(), HasSubstr(what));
     }
   };
-  refused(question_of(200), "stores the question");
+  refused(question_of(200), "belongs to the question");
   results.set_note(kQuestionNote, "");
-  refused(question_of(100), "from a run without this question");
+  refused(question_of(100), "of a run without --until");
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {
