@@ -23,8 +23,8 @@ using Report = LidarInertialOdometry::SweepReport;
 void bind_report(nb::module_& m) {
   nb::enum_<SweepVerdict>(
       m, "SweepVerdict", nb::is_arithmetic(),
-      "Result of registering a sweep. `registered`: the lidar determines the pose. Otherwise, the pose also depends "
-      "on the\ninertial prior.")
+      "Result of registering a sweep. `registered`: the lidar determines the pose. Otherwise, the pose also\n"
+      "depends on the inertial prior.")
       .value("first", SweepVerdict::first, "started the map")
       .value("registered", SweepVerdict::registered, "aligned with the map in all six directions")
       .value("degenerate", SweepVerdict::degenerate,

@@ -111,7 +111,7 @@ def instants(given):
         raise Refused("time_ns is empty; it must contain at least one time")
     back = np.flatnonzero(np.diff(out.astype(np.int64)) <= 0)
     if len(back):
-        raise Refused(f"time_ns[{back[0] + 1}] is {out[back[0] + 1]}; it must be more than {out[back[0]]} before it")
+        raise Refused(f"time_ns[{back[0] + 1}] is {out[back[0] + 1]}; it must be larger than the previous time, {out[back[0]]}")
     return out.astype(np.int64)
 
 
@@ -160,7 +160,7 @@ def poses(returned, names):
     norm = np.linalg.norm(out["quaternion"], axis=1)
     wrong = np.flatnonzero(np.abs(norm - 1.0) > UNIT_TOLERANCE)
     if len(wrong):
-        raise Refused(f"quaternion[{wrong[0]}] has the norm {norm[wrong[0]]:.6g}; it must be 1 to {UNIT_TOLERANCE:g}")
+        raise Refused(f"quaternion[{wrong[0]}] has the norm {norm[wrong[0]]:.6g}; it must be 1 (difference at most {UNIT_TOLERANCE:g})")
     if "map" in given:
         out["map"] = numbers("map", given["map"], None, 3).astype(np.float32)
     return out

@@ -194,7 +194,7 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
 
 
 def require_quantity(place: str, name: str) -> None:
-    """Raises TumbleError `out_of_range` unless `name` has only letters, digits and _, at least one."""
+    """Raises TumbleError `out_of_range` if `name` is empty or contains other characters than letters, digits and _."""
     if not (isinstance(name, str) and name.isascii() and name.replace("_", "a").isalnum()):
         raise TumbleError(f"{place} has a quantity {name!r}; its name must contain only letters, digits and _", "out_of_range", place, name, "a-z A-Z 0-9 _")
 
