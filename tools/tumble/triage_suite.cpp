@@ -105,7 +105,8 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
   if (first == worths.end()) return "no input could be replaced";
   const std::string name = first->input + " (" + first->doc + ")";
   if (first->cured > 0)
-    return fmt::format("{} matters most: it cures {} of {} failures", name, first->cured, first->failed);
+    return fmt::format("the input {} has the strongest influence: its truth cures {} of {} failures", name,
+                       first->cured, first->failed);
   const std::string failures =
       first->failed == 0 ? "no run failed (--metric and --limit define a failure)" : "no single input cures a failure";
   if (first->better <= first->worse) return fmt::format("{}; no input improves most draws", failures);
