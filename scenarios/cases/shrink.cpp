@@ -122,7 +122,8 @@ class Shrinking {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
       return fmt::format("the control method also fails: {}", options_.control->info.name);
     if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
-      return fmt::format("the failure has another cause: the true input {} does not cure the failure", cure_->name);
+      return fmt::format("the failure has another cause, because replacing the input {} by its truth does not cure it",
+                         cure_->name);
     return "";
   }
 

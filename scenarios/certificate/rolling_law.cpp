@@ -50,7 +50,8 @@ CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup,
   const Lengths lengths = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
   return {"rolling_law",
           subject,
-          "the centre of a gripping sphere moves at r w x n: share of the path that violates this law",
+          "the centre of a gripping sphere moves with the velocity r w x n (radius, rate, floor normal): share of the "
+          "path that violates this law",
           "1",
           lengths.missed_m / lengths.path_length_m,
           0.0,

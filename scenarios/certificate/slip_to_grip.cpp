@@ -48,8 +48,9 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
     before_m_s = now_m_s;
   }
   return {{"slip_to_grip_time", "sphere",
-           "a sphere that starts sliding at v0 grips after v0 / (mu g (1 + m r^2 / I)): relative difference", "1",
-           gripped_s / expected_s - 1.0, -0.01, 0.01, ""}};
+           "a sphere that starts to slide at the speed v0 grips after the time v0 / (mu g (1 + m r^2 / I)): relative "
+           "difference (mu: friction coefficient; m, r, I: mass, radius and moment of inertia)",
+           "1", gripped_s / expected_s - 1.0, -0.01, 0.01, ""}};
 }
 
 }  // namespace tumble::scenarios

@@ -108,8 +108,9 @@ void report_unknown_attitude(Estimate& estimate) {
   }
   SensorHealth health;
   if (unknown_s > 0.0)
-    health.add({HealthFinding::Kind::attitude_unknown, "", "", "time in s with a standard deviation above 0.5 rad",
-                unknown_s, 0.0, 1.0, since_ns, ended});
+    health.add({HealthFinding::Kind::attitude_unknown, "", "",
+                "time in s during which the standard deviation of the tilt exceeds 0.5 rad", unknown_s, 0.0, 1.0,
+                since_ns, ended});
   add_findings(health, {}, estimate);
 }
 

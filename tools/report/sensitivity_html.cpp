@@ -37,8 +37,8 @@ std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto label_of = [&](const scenarios::DependenceClass& part) {
     const std::string centre =
-        is_share ? fmt::format("{:.0f} % of runs [{:.0f}, {:.0f}]", 100.0 * part.centre.value, 100.0 * part.centre.low,
-                               100.0 * part.centre.high)
+        is_share ? fmt::format("{:.0f} % of runs failed [{:.0f}, {:.0f}]", 100.0 * part.centre.value,
+                               100.0 * part.centre.low, 100.0 * part.centre.high)
                  : styled_value(row.metric, part.centre.value, true) + " " + styled_interval(row.metric, part.centre);
     return fmt::format("{} {:.4g} to {:.4g}: {}, {} draws", each.number, part.low, part.high, centre, part.draws);
   };

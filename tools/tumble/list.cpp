@@ -83,7 +83,7 @@ void add_part(Table& table, json& rows, const std::string& place, std::span<cons
 }
 
 void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entry) {
-  Table table(s.name + ": numbers", {"number", "in this scenario", "default", "bound", "unit", "meaning"});
+  Table table(s.name + ": parameters (numbers)", {"number", "in this scenario", "default", "bound", "unit", "meaning"});
   json rows = json::array();
   add_part(table, rows, "world", parameters_of(sim::world_types(), s.world.type), s.world.numbers);
   add_part(table, rows, "robot", parameters_of(sim::robot_types(), s.robot.type), s.robot.numbers);

@@ -181,8 +181,9 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
                            shrunk.complete ? "no further part can be removed"
                                            : "the budget of runs is used up; a larger --budget may remove more parts",
                            control_text(shrunk, shrinking),
-                           shrunk.cure.empty() ? "no single true input cures the failure"
-                                               : "the true input " + shrunk.cure + " cures the failure",
+                           shrunk.cure.empty()
+                               ? "no replacement of a single input by its truth cures the failure"
+                               : "replacing the input " + shrunk.cure + " by its truth cures the failure",
                            options.file.string()));
   return kDone;
 }
