@@ -159,9 +159,8 @@ void bind_messages(nb::module_& m) {
           out.emplace_back(text.name, text.value, text.count, text.meaning, text.at_start);
         return out;
       },
-      "Returns name, default, list length and meaning of the text and list parameters of the nodes, and whether they "
-      "are read\n"
-      "only at the start.");
+      "Returns a tuple for each text or list parameter of the nodes: name, default, length of the list, meaning, and\n"
+      "True if the nodes read the parameter only at the start.");
 }
 
 }  // namespace

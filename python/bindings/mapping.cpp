@@ -28,7 +28,7 @@ void bind_report(nb::module_& m) {
       .value("first", SweepVerdict::first, "started the map")
       .value("registered", SweepVerdict::registered, "aligned with the map in all six directions")
       .value("degenerate", SweepVerdict::degenerate,
-             "aligned in the directions that the surfaces constrain; the prior determines the others")
+             "aligned in the directions that the surfaces constrain; the prior determines the other directions")
       .value("rejected", SweepVerdict::rejected, "rejected: too few matches, or a correction beyond the bound");
   nb::class_<Report>(m, "SweepReport", "Result of a sweep. Poses are of the IMU, in W.")
       .def_ro("verdict", &Report::verdict)
@@ -56,7 +56,7 @@ void bind_report(nb::module_& m) {
       .def_ro("isolated_points", &Report::isolated_points)
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added)
-      .def_ro("in_prior_map", &Report::in_prior_map, "whether the poses are in the frame of the prior map");
+      .def_ro("in_prior_map", &Report::in_prior_map, "True if the poses are in the frame of the prior map");
   using C = SweepCalibration;
   nb::class_<C>(m, "SweepCalibration", "Estimated calibration of lidar, IMU and gravity.")
       .def_prop_ro(

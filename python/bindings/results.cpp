@@ -170,7 +170,7 @@ void bind_rolling_of_results(nb::module_& m) {
           "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
       .def_prop_ro(
           "uncertain", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.uncertain; }); },
-          "(N,) bool: whether the sample is in an event that made the position uncertain");
+          "(N,) bool: True for samples in an event that made the position uncertain");
 }
 
 void bind_map(nb::module_& m) {

@@ -238,7 +238,7 @@ void bind_accessors(Class& bound) {
           [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.second_pass_applied(); });
           },
-          "whether the map and the pose come from the second pass")
+          "True if the map and the pose come from the second pass")
       .def_prop_ro(
           "dropped_sweeps",
           [](BoundTumblingOdometry& self) {
@@ -256,7 +256,7 @@ void bind_tumbling(nb::module_& m) {
           "message", [](const Sweep& s) { return s.status.message(); }, "\"ok\", or the error")
       .def_prop_ro(
           "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
-          "whether the sweep has poses; a sweep that starts before the first IMU sample has none")
+          "True if the sweep has poses; a sweep that starts before the first IMU sample has no poses")
       .def_ro("report", &Sweep::report)
       .def_prop_ro(
           "pose_in_position_frame",
@@ -270,7 +270,7 @@ void bind_tumbling(nb::module_& m) {
       .def_ro("sigma", &SweepScale::sigma, "standard deviation of scale; infinite before the first comparison")
       .def_ro("changes", &SweepScale::changes, "number of compared changes of velocity")
       .def_prop_ro("is_inconsistent", &SweepScale::is_inconsistent,
-                   "whether scale differs from 1 by more than 2 % and more than five standard deviations");
+                   "True if scale differs from 1 by more than 2 % and by more than five standard deviations");
   nb::class_<BoundTumblingOdometry> bound(
       m, "TumblingOdometry",
       "Estimates pose, velocity and map of a tumbling body, causally and sample by sample. The sensors are one IMU, "

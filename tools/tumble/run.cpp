@@ -98,7 +98,7 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   if (std::any_of(result.methods.begin(), result.methods.end(),
                   [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
-        "draws the maps, coloured by error");
+        "renders the maps, coloured by error");
   }
   say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder),
       "runs every method on another draw");

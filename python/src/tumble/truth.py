@@ -128,8 +128,8 @@ class _Rows:
     unit: str
     columns: str = XYZ
     like: str = ""  #: member, or `sensor`, with the same number of rows; `one` (a vector), `three`; "": any number
-    or_none: bool = False  #: whether it may have no rows because it is unknown
-    left_out: bool = False  #: whether the dataset is omitted if the member is None
+    or_none: bool = False  #: True if the dataset may have no rows, because it is unknown
+    left_out: bool = False  #: True if the dataset is omitted when the member is None
 
     @property
     def shape(self) -> tuple[int, ...]:

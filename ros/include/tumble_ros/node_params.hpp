@@ -43,7 +43,7 @@ struct TumblingAdapterParams {
     visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
                            "time between two publications of the map, by the stamps of the IMU", FieldRank::basic});
     visit(p.prior_map_extend,
-          {"prior_map_extend", "1", 0, 1, "whether sweeps extend the prior map; false: the prior map stays unchanged",
+          {"prior_map_extend", "1", 0, 1, "true: sweeps extend the prior map; false: the prior map stays unchanged",
            FieldRank::basic});
     visit.group("", p.adapter);
   }
