@@ -77,8 +77,8 @@ struct HandHeldRestParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rest_sigma_rad_s,
-          {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "standard deviation of the rate at rest, per node"});
+    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0,
+                               "standard deviation of the rate at a node of the smoother, at rest"});
     visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at rest"});
     visit(p.rest_sigma_m_s2,
           {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "standard deviation of the acceleration at rest"});

@@ -17,8 +17,8 @@ struct AttitudeRestParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s,
-          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "standard deviation of the velocity at rest, per node"});
+    visit(p.velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
+                                 "standard deviation of the velocity at rest, per filter correction"});
     visit(p.rate_sigma_rad_sqrts, {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
                                    "standard deviation of the rate measured at rest, mean over 1 s"});
     visit(p.rate_sigmas, {"rest_rate_sigmas", "1", 1.0, 1e6,
@@ -37,7 +37,7 @@ struct AttitudeRollingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
-                                 "standard deviation of the rolling velocity while gripping, per node"});
+                                 "standard deviation of the rolling velocity while gripping, per filter correction"});
     visit(p.slip_velocity_m_s,
           {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
            "a slip starts when the velocity residual exceeds this value, and ends below half of this value"});

@@ -43,12 +43,13 @@ struct RollingContactParams {
           {"impact_sigma_ratio", "1", 0.0, 1e3,
            "standard deviation of an impact's timing and direction, as a share of the impact's velocity change"});
     visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
-                                     "mean velocity change per node that impacts cause and the model does not explain, "
+                                     "mean velocity change by unexplained impacts between two measurement updates, "
                                      "while the sphere stays on the floor"});
-    visit(p.rest_velocity_sigma_m_s,
-          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of a node's mean velocity at rest"});
-    visit(p.rest_rate_sigma_rad_s,
-          {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of a node's mean rate at rest"});
+    visit(p.rest_velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3,
+                                      "standard deviation of the mean velocity between two measurement updates, at "
+                                      "rest"});
+    visit(p.rest_rate_sigma_rad_s, {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3,
+                                    "standard deviation of the mean rate between two measurement updates, at rest"});
     visit(p.speed_sigma_m_s,
           {"speed_sigma_m_s", "m/s", 1e-12, 1e3,
            "standard deviation of the mean velocity over 1 s about zero, if nothing else measures the velocity"});
