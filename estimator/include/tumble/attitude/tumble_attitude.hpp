@@ -84,10 +84,10 @@ struct TumbleAttitudeParams {
 /// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
 /// In a gap longer than `gap_min_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
-/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. After a
-/// long gap, a coarse alignment estimates the tilt in parallel to the Kalman filter. Until the coarse alignment
-/// succeeds, the covariance is constant. If the Kalman filter and the coarse alignment disagree, the filter restarts
-/// from the alignment.
+/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. A coarse
+/// alignment then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment ends, the reported
+/// tilt variance is at least the variance after the gap. If Kalman filter and coarse alignment disagree, the filter
+/// restarts from the alignment.
 ///
 /// TumbleAttitude has no heading reference. TumbleAttitude assumes an accelerometer without bias and scale errors,
 /// which would cause a tilt error at rest.
