@@ -69,9 +69,9 @@ struct RailDetectorParams {
   /// data sheet or the user.
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  double clip_enter_ratio = 0.003;          ///< a reading within this fraction of the saturation limit starts clipping
-  double clip_leave_ratio = 0.02;           ///< neighbours of a clipped reading are clipped within this fraction
-  double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
+  double clip_enter_ratio = 0.003;          ///< readings above (1 - this) * limit start clipping
+  double clip_leave_ratio = 0.02;           ///< readings below (1 - this) * limit end clipping
+  double range_contradiction_ratio = 0.02;  ///< smallest relative difference that contradicts the stated range
 
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< rarely changed parameters

@@ -41,7 +41,7 @@ struct RailPlane {
   bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return seen(sign) && margin_rad_s(reading_rad_s, sign) <= tolerance_rad_s;
   }
-  /// Returns whether some readings are too far beyond the plane for the plane to be a saturation limit.
+  /// Returns true if readings are so far beyond the plane that the plane cannot be a saturation limit.
   bool contradicted_by(std::span<const Eigen::Vector3d> readings_rad_s) const;
   bool operator==(const RailPlane&) const = default;
 };

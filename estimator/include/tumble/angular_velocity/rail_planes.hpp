@@ -49,7 +49,7 @@ class RailPlaneFinder {
     /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes that the saturation
     /// limit is not far below the stated range.
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_sigma_ratio = 0.02;  ///< prior deviation of the offset and between elements, as a fraction of r
+    double offset_sigma_ratio = 0.02;  ///< prior sigma of offset b, and of r between elements, divided by r
     int samples_min = 4;               ///< minimum number of samples on the plane of one sign
     double log_odds_before = -6.0;     ///< prior log odds of saturation for each element and sign
     double log_odds_min = 1.0;         ///< minimum log odds for accepting a plane

@@ -23,8 +23,8 @@ struct ImpactSums {
   /// Number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
   /// readings.
   double intervals = 0.0, acceleration_sum = 0.0, acceleration_squared = 0.0;
-  /// Sums for each tested delay: sum and sum of squares of the force z, sum of products x z, number of intervals with
-  /// an impact, number of intervals almost without force.
+  /// Sums for each tested delay: sum and sum of squares of the force z, sum of the products x z, number of intervals
+  /// with an impact, and number of intervals almost without force.
   DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 

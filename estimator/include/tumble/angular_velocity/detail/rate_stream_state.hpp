@@ -34,7 +34,7 @@ struct RateStreamForce {
   bool operator==(const RateStreamForce&) const = default;
 };
 
-/// RateStreamKnot is a sample in the sliding window of RateStream.
+/// RateStreamKnot is one sample in the sliding window of RateStream.
 struct RateStreamKnot {
   RateObservation observation;  ///< with the force at the sample's own time; `read` has the received force
   RateStreamForce read;
@@ -70,8 +70,8 @@ struct RateStreamDevice {
     SensorErrorEvidence window_evidence;
     DeviceUncertainty::Work posterior_work;
   };
-  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< derivative of the oldest sample's gradient
-  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient
+  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();  ///< derivative of the oldest sample's gradient by the errors
+  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient by the errors
   SensorErrorEvidence evidence;
   DeviceUncertainty::Posterior posterior;  ///< latest uncertainty from the evidence
   std::optional<TimeNs> updated_ns;        ///< time of the latest update
