@@ -26,8 +26,8 @@ struct SweepCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
-/// Returns `out_of_range` if a calibration is more than StatedCalibration::kDistanceMax_sigmas from the stated
-/// calibration.
+/// Returns `out_of_range` if `deviations`, the result of StatedCalibration::deviations(), exceeds
+/// StatedCalibration::kDistanceMax_sigmas.
 Status verdict_on(double deviations);
 
 /// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
@@ -39,9 +39,9 @@ struct StatedCalibration {
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance between an estimated calibration and the stated calibration in standard deviations. The
-  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The calibration distance
-  /// is infinite if `estimated` changes a value that was stated as exact. The calibration distance excludes gravity,
-  /// because each run estimates gravity.
+  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The distance is infinite
+  /// if `estimated` changes a value that was stated as exact. The distance excludes gravity, because each run estimates
+  /// gravity.
   double deviations(const SweepCalibration& estimated) const;
   /// Returns `out_of_range` if `estimated` is more than `kDistanceMax_sigmas` standard deviations from the stated
   /// calibration. A larger distance means that the stated calibration is wrong.

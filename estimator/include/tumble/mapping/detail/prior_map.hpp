@@ -31,7 +31,7 @@ Status check_map_points(std::span<const MapPoint> points);
 /// 100 points have a normal.
 Status check_prior_map(const PriorMap& map);
 
-/// Returns map points with normals for positions, for example of a PCD or PLY file. The plane fit is that of
+/// Returns map points with normals for positions, for example of a PCD or PLY file. The function fits planes like
 /// LidarInertialOdometry::map(). The function keeps at most one point per cube of 0.1 m. The sign of a normal is
 /// arbitrary, and `sigma_m` is the standard deviation of each position. The function drops positions that are not
 /// finite. Cost: O(points).

@@ -31,7 +31,7 @@ class SpatialHash {
     }
   }
 
-  /// Inserts a key with a value unless the key exists. Cost: amortised O(1). Returns the stored value.
+  /// Inserts a key with a value if the key is new. Cost: amortised O(1). Returns the stored value.
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
   /// Inserts a key without a value. Cost: amortised O(1). Returns whether the key was new.
