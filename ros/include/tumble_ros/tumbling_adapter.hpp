@@ -36,9 +36,9 @@ struct StartPose {
 /// | Publisher::map, diagnostics | at the periods of the parameters |
 ///
 /// The odometry frame has its z axis up. If the base is level at the start, the odometry frame has the origin and
-/// heading of the base frame at the start. For a robot that starts tilted, the origin is wrong by the tilt times the
-/// distance from base to IMU. Results are published within on_imu(). If the clock steps back, the library restarts
-/// after 0.2 s at the newest pose.
+/// heading of the base frame at the start. If the base is tilted at the start, the error of the origin is the tilt
+/// times the distance from base to IMU. Results are published within on_imu(). If the clock steps back, the library
+/// restarts after 0.2 s at the newest pose.
 class TumblingAdapter {
  public:
   using Params = TumblingAdapterParams;

@@ -105,8 +105,8 @@ class RollingOdometry {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
     /// Angular velocity of the sphere, in sphere axes.
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the variance
-    /// of the contact modes.
+    /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the
+    /// uncertainty of the contact mode.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
@@ -123,10 +123,10 @@ class RollingOdometry {
   ~RollingOdometry() = default;
 
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
-  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single wild readings of each IMU,
-  /// and may delay the samples of all IMUs by one; newest() is then one sample older. On error, the state is unchanged.
-  /// The errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the
-  /// first sample), `gap` and `out_of_range`. The error `out_of_range` means that the run has finished, the time stamp
+  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single outliers of each IMU, and
+  /// may delay the samples of all IMUs by one. newest() is then one sample older. On error, the state is unchanged. The
+  /// errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
+  /// sample), `gap` and `out_of_range`. The error `out_of_range` means that the run has finished, the time stamp
   /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
@@ -189,7 +189,7 @@ class RollingOdometry {
   std::size_t rejected_readings() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the jitter of the time stamps [s], while SampleClock corrects the time stamps.
+  /// Returns the jitter of the time stamps [s] while SampleClock corrects them, and otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
 
   /// The functions save(), load() and saved_params() work like the functions of TumblingOdometry. A saved state has at

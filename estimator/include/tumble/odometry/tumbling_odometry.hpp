@@ -60,7 +60,7 @@ struct RecordingEstimate;
 /// within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
-/// complete state, so a run can be split. The limitations of RegimeStream and LidarInertialOdometry apply to
+/// complete state, so the copy can continue the run. The limitations of RegimeStream and LidarInertialOdometry apply to
 /// TumblingOdometry.
 class TumblingOdometry {
  public:
@@ -92,7 +92,7 @@ class TumblingOdometry {
   /// the loss of one sample. After a gap of more than a second, the second sample restarts the rate estimation with the
   /// current calibration, and inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples
   /// with `time_order` for 0.2 s. The run then restarts at the newest pose, like reset(pose). OutlierFilter rejects
-  /// single wild readings and may delay a sample by one; newest() is then one sample older.
+  /// single outliers and may delay a sample by one. newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The function
   /// copies the points. The function drops points from before the end of the last sweep, because time stamps of sweeps
@@ -133,8 +133,8 @@ class TumblingOdometry {
   /// reset(). The function take() then returns all sweeps with their final poses in `report.pose` and
   /// `report.trajectory`. Returns the errors of RateSmoother::estimate(), for example `too_few`, or the error of a
   /// sample in the mapper. Without kWholeRecording, finish() returns `ok`. The function finish() calls `on_sweep`
-  /// before each sweep with the numbers of processed sweeps and of all sweeps, for a progress display. Each pass over
-  /// the recording starts again at 0 processed sweeps.
+  /// before each sweep, with the number of processed sweeps and the number of all sweeps, for a progress display. Each
+  /// pass over the recording starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
@@ -172,7 +172,7 @@ class TumblingOdometry {
   const SaturationLevels& rails() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
+  /// Returns the number of samples that OutlierFilter rejected because of a wrong reading or time stamp.
   std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
   /// Returns whether SecondPass has replaced the map and the pose.
   bool second_pass_applied() const { return second_pass_.applied(); }
@@ -186,7 +186,8 @@ class TumblingOdometry {
   std::size_t unused_odometer_readings() const { return readings_.spanning_two_sweeps(); }
   /// Returns the number of unused points of further lidars: the points arrived late, or the first lidar had no sweep.
   std::size_t unused_points() const { return further_lidars_.unused_points(); }
-  /// Returns the jitter of the IMU's time stamps about a regular clock [s], while SampleClock corrects the time stamps.
+  /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
+  /// otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper, which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;

@@ -27,8 +27,9 @@ namespace tumble {
 /// regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps
 /// by the error of the first pass.
 ///
-/// SecondPass stores samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and a second map of the
-/// same motion. A jolt that ends the rest long before the tumble starts the second pass too early.
+/// SecondPass stores samples and sweeps of `rest_s` at rest and of at most `abandon_after_s` of motion. The second pass
+/// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
+/// early.
 class SecondPass {
  public:
   struct Params {
