@@ -40,7 +40,7 @@ struct PointCloudView {
 /// Returns `out_of_range` for big-endian numbers, or for a layout or field that does not fit the data. Returns `empty`
 /// for a cloud without points.
 Status check_layout(const PointCloudView& cloud);
-/// Returns whether a field contains one number of a known type.
+/// Returns true if a field contains one number of a known type.
 bool is_number(const PointField& field);
 /// Returns the number of a field. `point` is the first byte of the point.
 double number_at(const std::uint8_t* point, const PointField& field);

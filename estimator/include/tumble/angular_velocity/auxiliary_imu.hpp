@@ -30,7 +30,7 @@ struct AuxiliaryImu {
   double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; allowed: [1e-9, 10]
   double gyro_error_rad_s = 0.01;  ///< standard deviation of bias and other rate-independent errors; [1e-9, 10]
   double accel_error_m_s2 = 0.07;  ///< standard deviation of the difference of both IMUs' biases; [1e-9, 10]
-  double scale_error = 2e-3;       ///< scale and misalignment error / reading; allowed: [0, 1]
+  double scale_error = 2e-3;       ///< relative scale and misalignment error; allowed: [0, 1]
   double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; allowed: [1e-9, 1]
   double clock_error_s = 1e-3;     ///< standard deviation of the clocks' time offset; allowed: [0, 0.1]
   SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
@@ -47,7 +47,7 @@ struct AuxiliaryReading {
   /// Creates a reading in which all components are NaN.
   AuxiliaryReading();
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
-  /// Returns whether two readings are equal bit for bit, where NaN equals NaN.
+  /// Returns true if two readings are equal bit for bit, where NaN equals NaN.
   bool same(const AuxiliaryReading& other) const;
 };
 

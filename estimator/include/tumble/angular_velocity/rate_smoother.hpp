@@ -75,7 +75,8 @@ struct RateReport {
   /// Estimated sensor errors and the covariance of the estimate.
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to gyro and accelerometer [s]. Zero if the device agrees with its data sheet.
+  /// Standard deviation of a delay common to gyro and accelerometer [s]. The value is zero if the device agrees with
+  /// its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: no repeated readings
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
@@ -114,10 +115,9 @@ struct RateReport {
 /// RateSmoother also estimates SensorErrors: scale, misalignment, g-sensitivity, and the accelerometer's delay and
 /// window. RateSmoother corrects the readings with the estimated sensor errors and repeats the optimisation. The
 /// function fit_sensor_errors() chooses the prior magnitude of the sensor errors that fits the readings. The
-/// covariances of rates and rig constants include the remaining uncertainty of the sensor errors, as considered
-/// parameters (Schmidt, 1966). Considered parameters prevent the covariance from treating constant sensor errors as
-/// independent noise. If gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two
-/// sensors is delayed.
+/// covariances of rates and rig constants include the remaining uncertainty of the sensor errors, as consider
+/// parameters (Schmidt, 1966). Otherwise, the covariance would treat constant sensor errors as independent noise. If
+/// gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two sensors is delayed.
 ///
 /// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The device's misalignment
 /// compensation then mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,

@@ -83,7 +83,7 @@ class RateStream {
   /// accelerometer from impacts, unless the data sheet excludes a delay (RateStreamDelay).
   KnownSensorErrors sensor_errors(const State& state) const;
 
-  /// Returns whether two states lead to identical results, bit for bit. The comparison ignores buffers.
+  /// Returns true if two states lead to identical results, bit for bit. The comparison ignores buffers.
   static bool equal(const State& a, const State& b);
 
   /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
@@ -143,7 +143,7 @@ class RateStream {
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_is_estimated_;       ///< whether the delay may differ from the prior delay
+  bool delay_is_estimated_;       ///< true if the delay may differ from the prior delay
 };
 
 }  // namespace tumble

@@ -60,7 +60,7 @@ class RestDetector {
     TimeNs first_ns = 0;              ///< time of the run's first sample
     TimeNs last_mean_ns = 0;          ///< time of the last reading
     TimeNs within_bias_since_ns = 0;  ///< start of the time in which the mean rate is within the bias bound
-    bool rests = false;               ///< whether the IMU is at rest, up to the last reading
+    bool rests = false;               ///< true if the IMU is at rest, up to the last reading
     // Sums of the samples since the last averaged reading.
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();

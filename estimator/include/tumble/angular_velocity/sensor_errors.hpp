@@ -110,11 +110,11 @@ struct SensorErrorFit {
 
 /// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. Each model assumes
 /// calibrated, uncalibrated or intermediate standard deviations for scale and misalignment, for g-sensitivity, and for
-/// sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood of
-/// the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If the readings
-/// fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet. Cost: O(1),
-/// about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for earlier
-/// runs of the device.
+/// delay and averaging. For each model, the function computes the Gaussian posterior of the sensor errors and the
+/// likelihood of the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If
+/// the readings fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet.
+/// Cost: O(1), about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for
+/// earlier runs of the device.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 

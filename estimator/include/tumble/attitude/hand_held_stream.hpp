@@ -23,10 +23,10 @@ namespace tumble {
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
 /// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
 /// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
-/// HandHeldStream does not test whether a clipped segment has an additional full revolution. The rate covariance
-/// includes the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation
-/// limit, HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the
-/// assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
+/// HandHeldStream does not test other numbers of full revolutions in a clipped segment. The rate covariance includes
+/// the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation limit,
+/// HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the assumed
+/// jerk, but reported covariances use the increased jerk (`jerk_inflation`).
 ///
 /// Cost: each new node costs one Gauss-Newton step, O(window).
 class HandHeldStream {
@@ -79,7 +79,7 @@ class HandHeldStream {
     hand_held::Node prior_node;
     hand_held::Constants prior_constants;
     double acceleration_power_ratio =
-        1.0;  ///< measured / assumed acceleration power of the hand, over marginalised nodes
+        1.0;  ///< ratio of measured to assumed acceleration power of the hand, over marginalised nodes
     RestDetector::State rests;
     std::int64_t reported_node = -1;  ///< node of the last reported estimate
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();

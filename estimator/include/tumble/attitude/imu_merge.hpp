@@ -62,12 +62,12 @@ struct ImuMergeParams {
 ///
 /// On a rigid body, the specific force is linear in position. The mean force of all IMUs is therefore exactly the force
 /// at their mean position, for any angular acceleration. If one IMU disagrees while three or more IMUs agree, ImuMerge
-/// excludes the disagreeing IMU from the sample. The remaining IMUs have another mean position. ImuMerge corrects the
-/// mean force for this shift with the rate of the remaining IMUs. While the body rotates, a Kalman filter estimates
-/// each IMU's bias, scale, misalignment and time offset relative to the mean of all IMUs. ImuMerge corrects significant
-/// time offsets; averaging reduces the remaining gyro errors. In fast rotation, averaging does not reduce accelerometer
-/// errors, because large opposite forces cancel in the mean. ImuMerge therefore estimates and corrects the
-/// accelerometer errors.
+/// excludes the disagreeing IMU from the sample. The exclusion shifts the mean position of the IMUs. ImuMerge corrects
+/// the mean force for this shift of the position, using the rate of the remaining IMUs. While the body rotates, a
+/// Kalman filter estimates each IMU's bias, scale, misalignment and time offset relative to the mean of all IMUs.
+/// ImuMerge corrects significant time offsets; averaging reduces the remaining gyro errors. In fast rotation, averaging
+/// does not reduce accelerometer errors, because large opposite forces cancel in the mean. ImuMerge therefore estimates
+/// and corrects the accelerometer errors.
 ///
 /// ImuMerge excludes an IMU with a saturated accelerometer from the mean force. ImuMerge also excludes an IMU that
 /// disagrees with the others and may have been saturated during a part of the sample. If most IMUs may be saturated,

@@ -66,7 +66,7 @@ class RegimeStream {
     std::size_t starts = 0;            ///< number of starts of HandHeldStream
     std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
     double resets = 0.0;  ///< number of calibration resets of RateStream, decaying with the time constant `rate.lag_s`
-    bool hand_held_running = false;  ///< whether HandHeldStream is running
+    bool hand_held_running = false;  ///< true if HandHeldStream is running
     /// Samples that may determine the smallest probability of hand-held motion within the last `segment_gap_max_s`. The
     /// oldest entry of `near` has the smallest probability.
     std::vector<ReportedProbability> near;

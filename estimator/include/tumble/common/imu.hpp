@@ -31,7 +31,7 @@ struct ImuSample {
   std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 if the device reports no clipping
 };
 
-/// Returns whether all angular rates and specific forces of an IMU sample are finite.
+/// Returns true if all angular rates and specific forces of an IMU sample are finite.
 inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }

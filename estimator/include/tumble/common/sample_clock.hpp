@@ -80,7 +80,7 @@ class SampleClock {
   /// Returns the standard deviation of the time stamps about the fitted line [s]. The result is empty before the first
   /// fit.
   static std::optional<double> jitter_s(const State& state);
-  /// Returns whether push() currently corrects time stamps.
+  /// Returns true if push() currently corrects time stamps.
   bool corrects_stamps(const State& state) const;
 
   /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.

@@ -20,7 +20,7 @@ struct SweepCalibration {
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
-  /// Adds a small error vector to the calibration, in the order of SweepCalibration.
+  /// Adds a small error vector to the calibration. SweepCalibration defines the order of the vector.
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
   /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
@@ -33,7 +33,7 @@ Status verdict_on(double deviations);
 /// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
 /// (rotation, translation, time offset). A standard deviation of 0 marks an exact part of the calibration.
 struct StatedCalibration {
-  static constexpr double kDistanceMax_sigmas = 5.0;  ///< plausible error in standard deviations
+  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible distance from the stated calibration
 
   SweepCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;

@@ -49,7 +49,7 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
 /// objects.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// Does the same computation in place.
+/// Recomputes `points` for another calibration in place, like the function above.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
 /// Computes the lever arm vector u_i = S(t_i) + R(t_i) x_i of SweepTrajectory for each point i. Cost: O(n). The

@@ -78,8 +78,9 @@ class LidarInertialOdometry {
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
   };
-  /// Returns the tilt of the start according to gravity in the map, for another run over the same data. The result is
-  /// empty after a start at rest, or if the motion does not determine gravity more accurately than the start.
+  /// Returns the tilt at the start, computed from the direction of gravity in the map. A second run over the same data
+  /// can use it. The result is empty after a start at rest, or if the motion does not determine gravity more accurately
+  /// than the start.
   std::optional<StartTilt> start_tilt() const;
   /// Sets the tilt of a start in motion. Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);

@@ -19,7 +19,7 @@ struct RegistrationExpertParams {
   /// Factor below 1 on the weight of each point, because neighbouring lidar returns share the map's errors.
   double correlation_discount = 0.1;
   double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
-  double match_ratio_min = 0.1;  ///< minimum of matches / points
+  double match_ratio_min = 0.1;  ///< minimum ratio of matches to points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
   /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
   std::size_t agreeing_matches_needed = 1'000'000'000;

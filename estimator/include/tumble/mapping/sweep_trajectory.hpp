@@ -103,8 +103,8 @@ class SweepTrajectory {
   /// call, and speeds up calls in time order. Any value of `hint` in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point x. The results equal those of at() bit for bit; the
-  /// function is faster for several points.
+  /// Computes the lever arm vector S(t) + R(t) x of each point x. The function is faster than at() for several points,
+  /// and gives bit-identical results.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }

@@ -63,7 +63,7 @@ class VoxelMap {
 
   /// Adds a point like insert(). Returns the index of the new point, or kNoPoint if the point was rejected.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Returns whether add() would reject a point, because its cube already has a point or the position is outside the
+  /// Returns true if add() would reject a point, because its cube already has a point or the position is outside the
   /// map's range. Call is_occupied() first if the properties of a point are expensive to compute.
   bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 

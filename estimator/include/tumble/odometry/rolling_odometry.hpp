@@ -134,13 +134,13 @@ class RollingOdometry {
   /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
   /// a restart have the flag `uncertain`. The covariance of these poses includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
-  /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
+  /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
   /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
   /// resamples the IMUs to common times, at most 0.05 s late. RollingOdometry treats an IMU without readings as absent.
-  /// Returns the errors of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu()
-  /// rejects samples until reset().
+  /// Returns `ok`, an error of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back,
+  /// add_imu() rejects samples until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
@@ -151,7 +151,8 @@ class RollingOdometry {
   std::optional<Pose> take();
 
   /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
-  /// the first error of the remaining samples, or with kWholeRecording the errors of merge_recordings().
+  /// `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
+  /// merge_recordings().
   Status finish();
 
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
@@ -179,7 +180,7 @@ class RollingOdometry {
   /// Returns the number of bridged gaps between samples, and the longest gap [s].
   std::int64_t bridged_gaps() const { return state_->live.gaps; }
   double longest_gap_s() const { return state_->live.gap_longest_s; }
-  /// Returns whether the sphere was already moving at the first samples.
+  /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const { return state_->live.started_in_motion; }
 
   /// Returns the state of ImuMerge, which contains the frozen, disagreeing and delayed IMUs.

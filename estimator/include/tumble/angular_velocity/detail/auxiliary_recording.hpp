@@ -13,7 +13,7 @@ namespace tumble {
 
 /// AuxiliaryRecording contains the readings of an additional IMU over a whole recording, in time order.
 struct AuxiliaryRecording {
-  AuxiliaryImu imu;  ///< align() replaces its sensing directions by estimates from the readings
+  AuxiliaryImu imu;  ///< its sensing directions are ignored; align() estimates them
   RailDetector::Params stated_rails;
   std::vector<ImuSample> samples;
 };

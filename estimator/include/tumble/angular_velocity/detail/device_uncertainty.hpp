@@ -30,9 +30,9 @@ class DeviceUncertainty {
   /// The argument `uncalibrated` is the prior probability of an uncalibrated device.
   DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
-  /// Computes `posterior` from the information of the readings. Cost: O(1), two systems of 29 unknowns, no allocation.
-  /// If the information is not finite, `posterior` is the prior. The argument `is_uncalibrated` states that the device
-  /// is known to deviate from its data sheet.
+  /// Computes `posterior` from `evidence`, the information of the readings about the sensor errors. Cost: O(1), two
+  /// systems of 29 unknowns, no allocation. If the information is not finite, `posterior` is the prior. The argument
+  /// `is_uncalibrated` states that the device is known to deviate from its data sheet.
   void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
               bool is_uncalibrated = false) const;
 

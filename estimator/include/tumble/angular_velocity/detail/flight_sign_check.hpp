@@ -47,13 +47,13 @@ class FlightSignCheck {
     double gyro_range_rad_s = 0.0;          ///< range from the data sheet; 0: unknown
     double reading_s = 0.01;                ///< averaging time of readings
     double force_min_m_s2 = 2.5;            ///< minimum force in free flight due to rotation about the centre of mass
-    double share = 0.25;                    ///< tolerance of the agreement / force of free flight
+    double share = 0.25;                    ///< tolerance of the agreement, relative to the force of free flight
     double run_s = 0.02;                    ///< minimum duration of agreement
     double alternative_flight_min_s = 0.1;  ///< minimum total flight time of an alternative sensor
     double half_scale_flight_min_s = 0.3;   ///< minimum total flight time of a half-scale gyro
-    /// minimum ratio of the flight times of an alternative and of the true sensor
+    /// Minimum ratio of the flight times of an alternative and of the true sensor.
     double alternative_ratio_min = 4.0;
-    double thrown_ratio_min = 2.0;  ///< minimum of the same ratio for a body that is not hand-held
+    double thrown_ratio_min = 2.0;  ///< like alternative_ratio_min, for a body that is not hand-held
     double gap_max_s = 0.1;         ///< a longer gap resets the current run
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.

@@ -32,7 +32,7 @@ class RateModel {
                              RateEstimate& estimate) const;
 
   /// Returns the squared normalised error between the motion at two samples and constant angular acceleration, with six
-  /// degrees of freedom. The normalisation is the white angular jerk of flight.
+  /// degrees of freedom. The error is normalised with the white angular jerk of flight.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
@@ -83,8 +83,8 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// Converts a difference in physical units to the solver's units.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the covariance of a rate that is reported to the user. The reported covariance is larger than the
-  /// covariance of the fit in contact, and includes the uncertain time of the reading.
+  /// Returns the covariance of a rate that is reported to the user. In contact, the reported covariance is larger than
+  /// the covariance of the fit. The reported covariance includes the uncertain time of the reading.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
@@ -134,7 +134,7 @@ class RateModel {
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;
   double accel_sigma_m_s2_;
-  double share_;  ///< see independent_reading_ratio()
+  double share_;  ///< result of independent_reading_ratio()
   RigConstants prior_constants_;
   RigConstants::Matrix prior_covariance_;
   RigConstants::Matrix prior_information_;

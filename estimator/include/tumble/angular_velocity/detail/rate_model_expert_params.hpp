@@ -9,7 +9,7 @@ namespace tumble {
 
 /// RateReadingParams describes the errors of IMU readings other than noise.
 struct RateReadingParams {
-  /// Scale and misalignment error of the accelerometer, as a fraction of the force.
+  /// Relative scale and misalignment error of the accelerometer.
   double accel_scale_error = 1e-3;
   /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass filter
   /// at 415 Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
@@ -64,8 +64,8 @@ struct RateContactParams {
   /// Ratio of the angular accelerations about a contact force and perpendicular to the force. Several contacts, or a
   /// contact that moves within a sample, cause torque about the direction of the contact force.
   double twist_ratio = 0.3;
-  /// Standard deviation of the unknown contact force, as a fraction of the force; the mean is zero. A prior that is
-  /// uniform in the logarithm of the force corresponds to 0.58. The value 0 disables the prior.
+  /// Standard deviation of the unknown contact force, relative to the force. The mean of the contact force is zero. A
+  /// prior that is uniform in the logarithm of the force corresponds to 0.58. The value 0 disables the prior.
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -90,8 +90,8 @@ struct RateModelExpertParams {
   /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within this time
   /// reduces their noise, but not their model error.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate from zero at rest, independent for each sample. The standard deviation
-  /// rest_sigma_rad_s covers vibration and false detections of rest.
+  /// Standard deviation of the rate about zero at rest, independent for each sample. It covers vibration and false
+  /// detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorPriors error_priors = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

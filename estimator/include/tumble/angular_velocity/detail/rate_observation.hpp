@@ -23,7 +23,7 @@ struct RateObservation {
   // Masks of axes whose readings have a separate standard deviation, with bit j for axis j. Each axis is in at most one
   // of the three masks subsample_saturated, isolated_high_axes and suspect.
   std::uint8_t subsample_saturated = 0;  ///< saturated during a part of the sample, see SubsampleSaturation
-  std::uint8_t isolated_high_axes = 0;   ///< few high readings of a sign without a known saturation limit
+  std::uint8_t isolated_high_axes = 0;   ///< few high readings, whose saturation limit is unknown
   std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation limit: lower bounds
   Eigen::Vector3d expected_deficit_rad_s =
       Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
@@ -37,7 +37,7 @@ struct RateObservation {
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
-  /// Returns whether a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
+  /// Returns true if a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
   /// element by element.
   bool is_element_clipped() const { return (clipping.gyro | clipping.unusable_gyro) != 0; }
 

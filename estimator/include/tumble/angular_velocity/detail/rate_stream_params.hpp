@@ -16,8 +16,8 @@ namespace tumble {
 struct RateStreamParams {
   /// Parameters of the rate model. Two priors are narrower than the defaults of RateModelParams, because RateStream
   /// reports rates before the data outweigh the priors. The prior accelerometer bias of 2 mg is typical after a factory
-  /// calibration. The prior inertia fits a box. Equal moments are the mean, and moments of 3 : 2 : 2 are one standard
-  /// deviation away, a disc 1.8, and a rod 3.6.
+  /// calibration. The prior inertia fits a box. The mean has equal moments. Moments of 3 : 2 : 2 are one standard
+  /// deviation from the mean, a disc is 1.8 and a rod 3.6 standard deviations from the mean.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples

@@ -56,7 +56,7 @@ struct RateStreamDelay {
   ImpactSums impacts;
   double applied_delay_s = 0.0;      ///< delay in use; the prior until a delay is found
   double estimated_s = 0.0;          ///< latest estimate from impacts and sensor-error evidence
-  bool found = false;                ///< whether the delay differs from the prior
+  bool found = false;                ///< true if the delay differs from the prior
   TriadDelay guess;                  ///< latest estimate from impacts alone
   std::optional<TimeNs> updated_ns;  ///< time of the last estimate from impacts
   bool operator==(const RateStreamDelay&) const = default;

@@ -13,7 +13,7 @@ struct ImuOutlierParams {
   double force_m_s2 = 3.0;   ///< maximum difference from the median
   /// A reading above subsample_saturation_ratio * range may be saturated during a part of its averaging window.
   double subsample_saturation_ratio = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< largest force error that is attributed to saturation during a part of the window
+  double hidden_force_m_s2 = 3.0;  ///< largest force error attributed to saturation during a part of the window
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -40,7 +40,7 @@ struct FrozenImuParams {
   double after_s = 0.1;
   double rate_rad_s = 0.03;  ///< minimum change of the rates of other IMUs
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;  ///< minimum rotation of gravity during a repeated force, also if all IMUs repeat readings
+  double turned_rad = 1.0;        ///< minimum rotation of gravity during a repeated force; also used if all IMUs repeat
   double unfreeze_after_s = 0.5;  ///< duration of changing readings after which an IMU is used again
 
   template <class Self, class Visitor>

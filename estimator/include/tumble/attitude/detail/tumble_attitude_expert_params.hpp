@@ -7,8 +7,7 @@
 /// The structs in tumble_attitude_expert_params.hpp are parts of TumbleAttitudeParams::Expert.
 namespace tumble {
 
-/// AttitudeRestParams contains the standard deviations of velocity and rate while the body is at rest. Their means are
-/// zero.
+/// AttitudeRestParams contains the standard deviations of velocity and rate about zero while the body is at rest.
 struct AttitudeRestParams {
   double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity at rest, per node
   double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s

@@ -16,7 +16,7 @@ struct UnitSignCheck {
       12;  ///< gyros, then accelerometers: x, y or z flipped; xy, yz or zx swapped
   static constexpr double kEffectMin_m2_s3 = 0.3;  ///< minimum effect on the forces; the effect of biases is smaller
   static constexpr double kExplainedRatioMin =
-      0.5;  ///< minimum of explained / effect; 1: the alternative is correct, -1: the given axes are correct
+      0.5;  ///< minimum ratio explained / effect; the ratio is 1 if the alternative is correct, and -1 if not
 
   std::array<double, kAlternatives> explained_m2_s3{}, effect_m2_s3{};
 

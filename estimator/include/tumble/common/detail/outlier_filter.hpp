@@ -11,7 +11,8 @@
 
 namespace tumble {
 
-/// Rejects single outliers among IMU readings, which bus faults cause. A rejected reading counts as missing.
+/// Rejects single outliers among the readings of an IMU. Outliers result from bus faults. A rejected reading counts as
+/// missing.
 ///
 /// A reading is an outlier if it is far above or far below two neighbours that agree with each other, and nothing else
 /// explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump of
@@ -19,10 +20,10 @@ namespace tumble {
 /// OutlierFilter are outliers.md (O1) to (O6).
 ///
 /// The filter is causal. OutlierFilter delays an unexplained jump by one sample, until the next reading confirms or
-/// refutes the jump. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never
-/// pass. If the first reading is an outlier, it passes, but the next two readings refute it (first_is_outlier()). Cost:
-/// O(1) per reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a hard
-/// impact.
+/// refutes the jump. All other readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2
+/// never pass. If the first reading is an outlier, it passes, but the next two readings refute it (first_is_outlier()).
+/// Cost: O(1) per reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a
+/// hard impact.
 class OutlierFilter {
  public:
   /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of

@@ -17,9 +17,9 @@ struct InertialNoiseParams {
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// Rotation error / rotation angle, due to scale, misalignment, and rate changes within a sample.
+  /// Rotation error relative to the rotation angle, due to scale, misalignment, and rate changes within a sample.
   double rotation_noise_ratio = 0.001;
-  /// Velocity error / integral of the specific force. The velocity error is important at impacts.
+  /// Velocity error relative to the integral of the specific force. The velocity error is important at impacts.
   double force_share = 0.03;
   /// Random walks of velocity and rate over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
   /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
@@ -71,7 +71,9 @@ struct SaturatedImuParams {
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
   double deficit_carry_max = 3.0;  ///< maximum growth factor of the saturation deficit at a sweep boundary
-  double knot_sigma_ratio = 0.05;  ///< sigma of the change between adjacent knots / sigma of the deficit
+  /// Standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
+  /// deficit.
+  double knot_sigma_ratio = 0.05;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -34,10 +34,10 @@ struct LocalMapParams {
 /// 8.
 struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
-  /// Drift per sweep / standard deviation of the pose in the least constrained direction. The value was measured where
-  /// surfaces do not constrain a direction.
+  /// Drift per sweep, relative to the standard deviation of the pose in the least constrained direction. The ratio was
+  /// measured where surfaces do not constrain a direction.
   double drift_ratio = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< upper bound of that standard deviation
+  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation that drift_ratio multiplies
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -55,7 +55,7 @@ struct MatchingParams {
 /// iterations with a subsample, and a coarse stage for starting poses far from the prior.
 struct RegistrationStagesParams {
   int full_iterations = 8;  ///< number of iterations with all points, before iterations with a subsample
-  /// number of points of the subsample that decides whether a starting pose converges
+  /// Number of points of the subsample. The iterations with the subsample decide whether a starting pose converges.
   std::size_t subsample_points = 1000;
   int coarse_iterations = 15;           ///< number of iterations for a starting pose far from the prior
   std::size_t coarse_points = 300;      ///< number of points in the coarse stage

@@ -27,7 +27,8 @@ struct RestBoundsParams {
   }
 };
 
-/// OdometryStartParams contains the accuracy of the state at the start, and limits the corrections by the first sweeps.
+/// OdometryStartParams contains the accuracy of the state at the start, which limits the corrections by the first
+/// sweeps.
 struct OdometryStartParams {
   /// Standard deviation of the initial tilt for the registration: five times tilt_sigma_rad of WorldCovarianceParams,
   /// to allow for a start in motion.
@@ -52,8 +53,8 @@ struct StandstillParams {
   /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
   /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< minimum number of consecutive sweeps for using creep_max_m_s
-  double noise_share = 0.02;  ///< noise of the inertial prediction: at rest / in motion
+  int sweeps_min = 3;         ///< minimum number of consecutive sweeps at rest before creep_max_m_s applies
+  double noise_share = 0.02;  ///< ratio of the inertial prediction's noise at rest to its noise in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -85,7 +85,7 @@ class SecondPass {
   void abandon();
 
   bool is_running() const { return pass_.has_value(); }
-  /// Returns whether the first pass received the map of the second pass.
+  /// Returns true if the first pass received the map of the second pass.
   bool applied() const { return applied_; }
 
   /// Calls `visit` for every member of the state (see state_visitor.hpp).
@@ -131,7 +131,7 @@ class SecondPass {
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
   bool last_sweep_rejected_ = false;  ///< the second pass rejected its last sweep
   bool started_by_tracking_failure_ = false,
-       early_pass_tried_ = false;  ///< a pass was started because of tracking failure; a pass of this kind was tried
+       early_pass_tried_ = false;  ///< tracking failure started the current pass; tracking failure started any pass
 };
 
 }  // namespace tumble

@@ -10,13 +10,15 @@ namespace tumble {
 /// RollingContactParams contains the accuracy of the rolling constraint and the properties of floors.
 struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
-  double grip_sigma_ratio = 1.5e-3;  ///< additional standard deviation / rolling speed
+  double grip_sigma_ratio = 1.5e-3;  ///< additional standard deviation, relative to the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.055;               ///< additional vertical velocity sigma on a rough floor / rolling speed
+  /// Standard deviation of the vertical velocity on a rough floor, relative to the rolling speed.
+  double rough_share = 0.055;
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
   double slope_sigma = 0.15;                ///< standard deviation of both components of the slope when a slope begins
   double slope_walk_sqrts = 0.02;
-  double impact_sigma_ratio = 0.06;  ///< velocity error due to timing and direction of an impact / its velocity change
+  /// Velocity error due to the uncertain timing and direction of an impact, relative to the impact's velocity change.
+  double impact_sigma_ratio = 0.06;
   /// Mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;

@@ -75,9 +75,9 @@ struct RollingRailParams {
   /// no clip flag. The value 0 means that ImuMerge recovers no rates.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// Standard deviation of the force deficit / force, for saturation that is shorter than a sample. A short impact may
-  /// saturate the accelerometer within a sample although the mean stays below the range. The full standard deviation
-  /// applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
+  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the force. A short
+  /// impact may saturate the accelerometer within a sample although the mean stays below the range. The full standard
+  /// deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
   double subsample_saturation_ratio = 0.25;
 
   template <class Self, class Visitor>
