@@ -90,8 +90,8 @@ struct RateModelExpertParams {
   /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within this time
   /// reduces their noise, but not their model error.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate about zero at rest, independent for each sample. It covers vibration and false
-  /// detections of rest.
+  /// Standard deviation of the rate about zero at rest, independent for each sample. The value covers vibration and
+  /// false detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorPriors error_priors = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

@@ -16,8 +16,8 @@ struct RigInflationParams {
   /// covariance of the gyro's bias is unchanged.
   double covariance = 60.0;
   double samples = 30.0;
-  /// Rates that are recovered in contact depend on the calibration. Their standard deviation is at least contact / (1 +
-  /// n / samples) times the saturation deficit.
+  /// Rates that are recovered in contact depend on the calibration. The standard deviation of such a rate is at least
+  /// contact / (1 + n / samples) times the saturation deficit.
   double contact = 0.5;
   /// Minimum standard deviation of a rate in a run of clipped samples in contact. The slopes of the rate before and
   /// after the run predict a saturation deficit. The minimum is slopes * predicted deficit - estimated deficit.

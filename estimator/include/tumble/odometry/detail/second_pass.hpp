@@ -131,7 +131,7 @@ class SecondPass {
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
   bool last_sweep_rejected_ = false;  ///< the second pass rejected its last sweep
   bool started_by_tracking_failure_ = false,
-       early_pass_tried_ = false;  ///< tracking failure started the current pass; tracking failure started any pass
+       early_pass_tried_ = false;  ///< tracking failure started the current pass; such a pass ended before
 };
 
 }  // namespace tumble
