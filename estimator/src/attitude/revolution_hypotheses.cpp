@@ -21,7 +21,7 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kBeyondSigmas = 3.0;      // tested below this mean distance from the level
+constexpr double kBeyondSigmas = 3.0;      // a segment is tested if its mean rate is this close to the level
 constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
 constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors

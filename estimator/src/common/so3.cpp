@@ -80,7 +80,7 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   // The rotation is the quaternion with real part |h| / 2 and imaginary part (from x to) / |h|, where h = from + to.
-  // The code computes from x h, which equals from x to. For nearly opposite vectors, h is exact to rounding, so the
+  // The code computes from x to as from x h. For nearly opposite vectors, h is exact to rounding, so the
   // formula is accurate up to a half turn.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
