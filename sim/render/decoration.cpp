@@ -114,7 +114,7 @@ void add_paths(const View& view, mjvScene& scene) {
         from = &to;
         continue;
       }
-      // path samples closer than the line's width are skipped to save time
+      // Path samples closer than the line's width are skipped to save time.
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());

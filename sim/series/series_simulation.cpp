@@ -41,7 +41,7 @@ class Reader {
     const ReadingErrors& errors = measured_->errors;
     const double noise = errors.noise > 0.0 ? errors.noise * noise_.normal() : 0.0;
     const double read = exact + bias_ + noise;
-    // quantisation comes before the range limit, so that no reading is out of range
+    // Quantisation comes before the range limit, so that no reading is out of range.
     const double step = errors.quantum > 0.0 ? errors.quantum * std::round(read / errors.quantum) : read;
     return std::clamp(step, errors.low, errors.high);
   }

@@ -20,7 +20,7 @@ inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
-/// kCoverParameters lists the parameters of relief, rocks, trunks and blocks, which follow the parameters of a world in
+/// kCoverParameters lists the parameters of relief, rocks, trunks and blocks. The parameters of a world precede them in
 /// its table.
 inline constexpr std::array kCoverParameters = {
     Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square height of the relief; 0: none"},
@@ -47,8 +47,8 @@ inline constexpr std::array kCoverParameters = {
 /// Share returns the fraction of the relief's height that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
-/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). Relief and bumps fade around the start, so
-/// that the robot can rest there, and according to `share`.
+/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). They fade around the start, so that the robot
+/// can rest there, and according to `share`.
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);
 
 /// Adds the ground, rocks, trunks and blocks to the world, and sets the world's start and extent (streams
