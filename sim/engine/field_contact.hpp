@@ -15,8 +15,8 @@ namespace tumble::sim::engine {
 /// are ordered by rows and columns. A contact is midway between the two surfaces, and its normal points from the ground
 /// to the axis. `contacts` must have room for mjMAXCONPAIR contacts. `field` and `capsule` are geoms whose poses must
 /// be up to date. If the strut is parallel to a face, MuJoCo may place the contact anywhere along the face;
-/// field_contacts() places it at one end. Returns nothing if the caller must use MuJoCo's own search: if the strut's
-/// axis is below the ground surface, the field is rotated, or the strut is as low as the field's bottom.
+/// field_contacts() places it at one end. Returns nothing if the strut's axis is below the ground surface, the field is
+/// rotated, or the strut is as low as the field's bottom. The caller must then use MuJoCo's own search.
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 

@@ -28,9 +28,9 @@ struct GivenElements {
 /// The errors of the device apply in this order (headers in brackets): lever arm and mounting (truth/record_truth.hpp),
 /// delay, analogue low-pass, scale and misalignment, bias, g-sensitivity, white noise of the active range, sensing
 /// elements, saturation, compensation of the elements (elements.hpp), quantum, digital low-pass, mean over the window
-/// (imu_chain.hpp), stamps and losses (time_stamps.hpp). magnetometer.hpp describes the magnetic field. The unclipped
-/// readings in ImuTruth have the same noise as the readings, but no saturation. The model excludes temperature,
-/// vibration rectification and bending of the mount.
+/// (imu_chain.hpp), stamps and losses (time_stamps.hpp). The header magnetometer.hpp describes the magnetic field. The
+/// unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The model excludes
+/// temperature, vibration rectification and bending of the mount.
 ///
 /// `sensor.values` must be complete (see resolve()). `T_BI` is the true mounting of the IMU. Clip flags mark windows in
 /// which an element saturated at any moment; a saturated tilted element also makes the readings of unflagged axes

@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 /// CageMask precomputes which firings of a repeating pattern may hit the robot's own cage. The cage is rigidly attached
 /// to the lidar, and most firings miss it, so the mask saves time. The mask contains every firing that hits the cage,
-/// and some that do not: it tests the beam at the middle of each direction cell against enlarged shapes, which cover
+/// and some that do not. The test uses the beam at the middle of each direction cell, and enlarged shapes, which cover
 /// all other beams of the cell.
 class CageMask {
  public:

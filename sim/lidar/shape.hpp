@@ -10,8 +10,8 @@ namespace tumble::sim {
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
 /// Shape is a primitive with its pose in a frame F (world or body). The shape's axes S and its size `size_m` are
-/// defined as in MuJoCo. A plane has half sizes x, y and the normal z (size 0: infinite); a sphere has a radius; a capsule
-/// and a cylinder have a radius and a half length along z; an ellipsoid has semi-axes; a box has half sizes.
+/// defined as in MuJoCo. A plane has half sizes x, y (0: infinite) and the normal z. A sphere has a radius. A capsule
+/// and a cylinder have a radius and a half length along z. An ellipsoid has semi-axes, and a box has half sizes.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();

@@ -16,8 +16,8 @@ namespace {
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
 // A reading belongs to a flat maximum if it is within the fraction `kTopRatio` of the segment's largest reading.
-// Saturated readings vary by this fraction if the plane is tilted by kMaxPlaneTilt and the rate about the other axes is
-// a sixth of the saturation level. The saturation levels of two sensing elements differ by at most `kMaxElementSigmas`
+// Example: on a plane tilted by kMaxPlaneTilt, saturated readings vary by this fraction if the rate about the other
+// axes is a sixth of the level. The saturation levels of two sensing elements differ by at most `kMaxElementSigmas`
 // standard deviations.
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
 

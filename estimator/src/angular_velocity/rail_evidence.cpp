@@ -203,8 +203,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // The log odds of saturation increase with the flatness of a segment, rails.md (R62), and with the number of
-    // segments of similar mean reading, rails.md (R63).
+    // Two properties increase the log odds of saturation: the flatness of a segment, rails.md (R62), and the number of
+    // segments with similar mean reading, (R63).
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);

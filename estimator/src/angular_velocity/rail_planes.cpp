@@ -34,9 +34,9 @@ constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 // The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
 // If another axis reads more than this fraction above a level, the log odds of the level decrease.
 constexpr double kElementLevelRatio = 0.04;
-// The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element, by
-// `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the data sheet's range.
-// An impossible level has the log odds `kImpossibleLogOdds`.
+// The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element. They
+// increase by `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the data
+// sheet's range. An impossible level has the log odds `kImpossibleLogOdds`.
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
 // The log odds of a saturation level increase by `kNearKnownLogOdds` near the same element's level in an earlier run.

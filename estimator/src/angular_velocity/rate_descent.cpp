@@ -13,7 +13,7 @@ namespace tumble {
 namespace {
 
 // If less than the fraction kFlightShareExpected of the clipped samples is in flight, the optimisation restarts with
-// other contact thresholds. kRestartThresholds contains the factors of the threshold.
+// other contact thresholds. The thresholds are multiplied by kRestartThresholds.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 

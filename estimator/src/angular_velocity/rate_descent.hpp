@@ -32,8 +32,8 @@ class RateIteration {
     }
   }
 
-  /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors, and the
-  /// information about the sensor errors after elimination of all other unknowns. Both results belong to the last
+  /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors. `evidence` is
+  /// the information about the sensor errors after elimination of all other unknowns. Both results belong to the last
   /// factorisation, with its `estimates` and `rig`, before apply().
   struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;

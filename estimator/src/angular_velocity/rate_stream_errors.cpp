@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RateStream treats the sensor errors as consider parameters (Schmidt, 1966): it sums the information about sensor
-// errors and adds their uncertainty to the covariances of the rates.
+// RateStream treats the sensor errors as consider parameters (Schmidt, 1966). RateStream sums the information about
+// sensor errors, and adds their uncertainty to the covariances of the rates.
 #include <algorithm>
 #include <cmath>
 

@@ -22,8 +22,8 @@ constexpr std::size_t kBeside = 4;
 // `StreamingClippingFinder` always stores the latest readings, and the first readings of a run, which determine the
 // gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
-// StreamingClippingFinder searches for saturation again when the number of readings near the extremes has grown by the
-// fraction 1 / kSearchGrowthDivisor, and by at least two readings.
+// StreamingClippingFinder repeats the search for saturation when the number n of readings near the extremes has grown
+// by n / kSearchGrowthDivisor, and by at least two.
 constexpr std::size_t kSearchGrowthDivisor = 8;
 // A reading is far from saturation if it is below this fraction of the lowest possible saturation level (gyro,
 // accelerometer). The larger fraction for the accelerometer excludes gravity.

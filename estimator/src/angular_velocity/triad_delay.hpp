@@ -23,9 +23,10 @@ namespace tumble {
 /// The standard deviation of this estimate is 0.15 of the slower sensor's period.
 ///
 /// Flight: used if the impacts give no estimate. With the best delay, most accelerometer readings equal the force of
-/// flight on a rigid body, alpha x t + w x (w x t) + bias, with lever arm t, rate w and angular acceleration alpha. For
-/// each delay, the function fits lever arm (prior `lever_arm_m`, 0.02 m) and bias robustly (Geman-McClure). Returns
-/// nothing if fewer than 20 unclipped readings exceed 2 rad/s, or if the improvement may be due to chance.
+/// flight on a rigid body. This force is alpha x t + w x (w x t) + bias, with lever arm t, rate w and angular
+/// acceleration alpha. For each delay, the function fits lever arm (prior `lever_arm_m`, 0.02 m) and bias robustly
+/// (Geman-McClure). Returns nothing if fewer than 20 unclipped readings exceed 2 rad/s, or if the improvement may be
+/// due to chance.
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Eigen::Vector3d& lever_arm_m);
 

@@ -47,8 +47,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// GyroRows contains the derivatives of one sensing element's rate (`value`, `border`) and angular acceleration
-// (`slope`) with respect to the errors of a node's state and of the constants.
+// GyroRows contains derivatives of one sensing element: of its rate with respect to a node's state (`value`) and the
+// constants (`border`), and of its angular acceleration with respect to the state (`slope`).
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();

@@ -53,8 +53,8 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 namespace {
 
 // Returns the reading noise for covariances. Lower bounds of the rate do not reduce a covariance. The mean rate over a
-// window P differs from the rate at the window's centre; for white jerk of density q, the variance of this difference
-// is q P^3/320: carried.md (C26).
+// window P differs from the rate at the window's centre. For white jerk of density q, the variance of the difference is
+// q P^3/320: carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);

@@ -49,8 +49,8 @@ class LocalMap {
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Replaces the map by the points of a prior map. Normals of map points are directed towards the sensor, so the
-  /// points are attributed to six distant sensor positions on the axes, which preserve the signs of the prior map's
+  /// Replaces the map by the points of a prior map. Normals of map points are directed towards the sensor. The points
+  /// are therefore attributed to six distant sensor positions on the axes, which preserve the signs of the prior map's
   /// normals. If `T_MW` is given, the points of the replaced map are also kept, transformed to the prior map's frame.
   void start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 

@@ -51,7 +51,7 @@ class PriorScene {
   /// map: O(surface area of the map), about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position, about which poses are refined
-  /// @param attempt     number of the search; each search anchors the local map at another surface point
+  /// @param attempt     number of the search; each search uses another surface point as anchor
   /// @param region      limits of the search; null: the whole map
   /// @param tried       receives the number of poses that the search compared
   std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,

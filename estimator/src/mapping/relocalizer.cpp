@@ -33,8 +33,7 @@ bool fits(const Params& params, const Registration::Result& found) {
 }
 
 /// Registers a sweep from its prior if tracking has not failed. If the registration fails and an axis is clipped,
-/// track() tries larger saturation deficits, because saturation within one sweep may rotate the initial pose by a
-/// radian.
+/// track() tries larger saturation deficits. Saturation within one sweep may rotate the initial pose by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);

@@ -28,8 +28,8 @@ inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 /// kMinVariance is the prior variance of an exactly known unknown. The value is above 0, so that the prior covariance
 /// is invertible.
 inline constexpr double kMinVariance = 1e-12;
-/// A sweep's motion agrees with its prior if the squared Mahalanobis distance is at most kAgreementChi2Max, the 95 %
-/// quantile of chi-square with nine degrees of freedom: mapping.md (R25), (R71).
+/// A sweep's motion agrees with its prior if the squared Mahalanobis distance is at most kAgreementChi2Max: mapping.md
+/// (R25), (R71). The limit is the 95 % quantile of chi-square with nine degrees of freedom.
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 

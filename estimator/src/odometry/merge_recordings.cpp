@@ -19,8 +19,8 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
 // Standard deviation of an element's cross-axis sensitivity if no saturation plane was observed. The element is then
-// assumed to be aligned with its axis, because with a standard deviation of 0.03, three clipped IMUs could not
-// determine the rate.
+// assumed to be aligned with its axis. With a standard deviation of 0.03, three clipped IMUs could not determine the
+// rate.
 constexpr double kUnknownSlope = 0.0;
 
 /// Units contains the IMUs that provide samples, resampled to common times.

@@ -17,7 +17,7 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
 }
 
 /// Returns the angular rate for the mapper. If the rate of a clipped axis is too uncertain for the mapper, the result
-/// contains the gyro's reading, which is a lower bound, and the registration estimates the saturation deficit. With an
+/// contains the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
 /// uncertain calibration, a rate that RateStream recovers at an impact may be wrong by tens of rad/s, with a
 /// correspondingly large standard deviation.
 RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-// Standard deviations of the motion in a gap: horizontal speed in addition to the last speed, rate about the vertical,
-// and heading after a long gap (uniform over a turn).
+// Standard deviations of the motion in a gap: change of the horizontal speed, and rate about the vertical.
+// kUnknownHeading_rad applies after a long gap (uniform over a turn).
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
 /// Returns the covariance of position and heading. The tilt is omitted, because a restart levels the attitude.

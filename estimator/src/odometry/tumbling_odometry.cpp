@@ -220,8 +220,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
 }
 
 /// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
-/// the next sample arrives. In addition, the newest sample must be later than the sweep's end by at least lag_s minus
-/// 1.5 periods, which delays a sweep after a gap.
+/// the next sample arrives. In addition, newest sample - end of sweep > lag_s - 1.5 periods must hold, which delays a
+/// sweep after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;

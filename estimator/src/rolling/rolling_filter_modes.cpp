@@ -23,8 +23,8 @@ constexpr double kPruneLogWeight =
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // an older mode counts as this old
-// During slip, the density of the horizontal change of the contact velocity per node is a mixture of three Gaussians
-// with the standard deviations kPlateau_m_s, kSteady_m_s and kJump_m_s. kPlateau_m_s is as small as the standard
+// Horizontal change of the contact velocity per node during slip: its density is a mixture of three Gaussians with the
+// standard deviations kPlateau_m_s, kSteady_m_s and kJump_m_s. The smallest, kPlateau_m_s, equals the standard
 // deviation of grip. With a larger value, each phase of constant slip velocity would count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;

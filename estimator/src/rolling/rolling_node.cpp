@@ -288,8 +288,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The contact velocity is u = v + w x (-arm - r n), with the IMU's velocity v and the vector -arm - r n from the IMU
-  // to the contact point.
+  // The contact velocity is u = v + w x (-arm - r n). Here v is the IMU's velocity, and -arm - r n is the vector from
+  // the IMU to the contact point.
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
