@@ -133,7 +133,7 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;
-  // This is the only integrator of MuJoCo that preserves energy and momentum of a tumbling body.
+  // RK4 is the only integrator of MuJoCo that preserves energy and momentum of a tumbling body.
   spec->option.integrator = mjINT_RK4;
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), situation->robot.values, world);

@@ -12,7 +12,7 @@
 
 namespace tumble::sim {
 
-/// SensorContext is the input of a sensor's simulation. Its references are valid during the call.
+/// SensorContext is the input of a sensor's simulation. The references in SensorContext are valid during the call.
 struct SensorContext {
   const engine::World& world;
   const SensorSpec& sensor;             ///< sensor with resolved parameters

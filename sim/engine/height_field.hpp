@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-/// height_field.hpp describes a height field and a strut above it, in axes of the field. These axes are parallel to the
+/// height_field.hpp describes a height field and a strut above it, in axes of the field, which are parallel to the
 /// world's axes.
 namespace tumble::sim::engine {
 

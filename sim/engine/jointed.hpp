@@ -8,8 +8,8 @@
 /// body.
 namespace tumble::sim::engine {
 
-/// Updates poses and velocities of all bodies from the joints, after a step or a manual change. Without this call,
-/// MuJoCo's bodies have the poses of the last integration stage of a step.
+/// Updates poses and velocities of all bodies from the joints, after a step or a manual change. Without a call of
+/// update_bodies(), MuJoCo's bodies have the poses of the last integration stage of a step.
 void update_bodies(const mjModel& model, mjData& data);
 
 /// Returns the state of a body. The caller must call update_bodies first.

@@ -22,7 +22,7 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// FrictionPatch is a rectangle of floor. Its sliding friction applies while the robot touches the floor inside the
+/// FrictionPatch is a rectangle of floor whose sliding friction applies while the robot touches the floor inside the
 /// rectangle.
 struct FrictionPatch {
   double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
@@ -32,7 +32,7 @@ struct FrictionPatch {
 /// World is a compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  /// Id of the body that carries the sensors. Its inertial frame is B.
+  /// Id of the body that carries the sensors. The inertial frame of this body is B.
   int robot_body = -1;
   bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`

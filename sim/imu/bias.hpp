@@ -13,10 +13,10 @@ namespace tumble::sim {
 /// - in-run instability: flicker noise over three decades, from four first-order Gauss-Markov processes of equal size,
 ///   with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),
 /// - a random walk.
-/// The Gauss-Markov processes start in their stationary state, so the in-run instability is bounded. Its standard
-/// deviation is 2.58 times the floor of the Allan deviation. Its Allan deviation is flat at `in_run` within 5 % for
-/// averaging times from 1/200 to 1/2 of `in_run_s`. Data sheets call `in_run` the "in-run bias stability" (IEEE Std
-/// 952-1997, annex C). The model excludes temperature and any dependence on earlier motion.
+/// The Gauss-Markov processes start in their stationary state, so the in-run instability is bounded. The in-run
+/// instability has a standard deviation of 2.58 times the floor of its Allan deviation. This Allan deviation is flat at
+/// `in_run` within 5 % for averaging times from 1/200 to 1/2 of `in_run_s`. Data sheets call `in_run` the "in-run bias
+/// stability" (IEEE Std 952-1997, annex C). The model excludes temperature and any dependence on earlier motion.
 class Bias {
  public:
   struct Params {

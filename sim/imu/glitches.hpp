@@ -12,8 +12,8 @@
 namespace tumble::sim {
 
 /// Glitches replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong
-/// reading is independent of the signal, and uniform within 1.5 times the stated range. It does not count as
-/// saturation, so it also replaces the unclipped reading in the truth. The model excludes runs of several wrong
+/// reading is independent of the signal, and uniform within 1.5 times the stated range. A wrong reading does not count
+/// as saturation, so it also replaces the unclipped reading in the truth. The model excludes runs of several wrong
 /// samples, and wrong time stamps.
 class Glitches {
  public:

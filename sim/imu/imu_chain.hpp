@@ -29,9 +29,9 @@ struct TriadReading {
 ///
 /// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling). The caller
 /// therefore passes the ideal reading of the window, and TriadChain adds the mean of the errors. If every stage is off,
-/// the reading equals the ideal reading, bit for bit. The reading is the plain mean of the chain's output in two cases.
-/// Either an element saturated in the window, or the device has a separate window or update rate (sampling.hpp). A
-/// second chain with equal stages and noise, but without saturation, computes the unclipped reading.
+/// the reading equals the ideal reading, bit for bit. If an element saturated in the window, its reading is the plain
+/// mean of the chain's output. The same applies to all readings of a device with a separate window or update rate
+/// (sampling.hpp). A second chain with equal stages and noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
   /// Constructs the chain of one triad. `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and

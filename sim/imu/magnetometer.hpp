@@ -28,11 +28,11 @@ struct MagneticField {
 };
 
 /// Draws the magnetic field of one situation. The Earth's field has strength earth_field_t and dip
-/// earth_inclination_rad. Its horizontal part points earth_north_rad from the world's x axis towards y. There are
-/// magnetic_sources dipoles. Each dipole is at least magnetic_source_nearest_m away from the path `p_W_m`, and within
-/// magnetic_source_farthest_m of a random position of the path. The moments of the dipoles are log-uniform within a
-/// factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal parameters and seeds give equal fields for
-/// every magnetometer.
+/// earth_inclination_rad. The horizontal part of the Earth's field points earth_north_rad from the world's x axis
+/// towards y. There are magnetic_sources dipoles. Each dipole is at least magnetic_source_nearest_m away from the path
+/// `p_W_m`, and within magnetic_source_farthest_m of a random position of the path. The moments of the dipoles are
+/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal parameters and seeds
+/// give equal fields for every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Magnetometer applies the errors of a magnetometer with three axes: soft iron (scale and misalignment), hard iron (a

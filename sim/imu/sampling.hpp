@@ -28,8 +28,8 @@ class Sampling {
   /// readings is drawn from `stream`.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns whether the device averages over a separate window, instead of integrating between outputs. Only then may
-  /// the other members be called.
+  /// Returns whether the device averages over a separate window, instead of integrating between outputs. Call the other
+  /// members only if on() is true.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
   /// Returns the current output. Cost: O(window) for a device without a separate update rate.

@@ -14,7 +14,7 @@ struct Share {
 };
 
 /// Echo is the strongest echo of a beam: the rays `first` to `last` - 1 in order of range. Among echoes with equal
-/// energy, the nearest is the strongest.
+/// energy, the nearest echo counts as the strongest.
 struct Echo {
   int first = 0, last = 0;
   float energy = 0.0f;

@@ -48,7 +48,8 @@ class Trial {
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
   /// Advances the trial by one step under gravity, contacts and `wrench`. Throws SimulationFailure like Physics::step.
   void step(const Wrench& wrench = {});
-  /// Returns the contacts at the end of the last step. Their time is the time of the state, rounded to nanoseconds.
+  /// Returns the contacts at the end of the last step. The time of a contact is the time of the state, rounded to
+  /// nanoseconds.
   std::vector<ContactTruth> contacts() const;
 
  private:

@@ -47,8 +47,8 @@ inline constexpr std::array kCoverParameters = {
 /// Share returns the fraction of the relief's height that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
-/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). They fade around the start, so that the robot
-/// can rest there, and according to `share`.
+/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). Relief and bumps fade around the start, so
+/// that the robot can rest there, and according to `share`.
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);
 
 /// Adds the ground, rocks, trunks and blocks to the world, and sets the world's start and extent (streams

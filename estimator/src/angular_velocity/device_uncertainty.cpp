@@ -14,8 +14,9 @@ using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
 // DeviceUncertainty tests whether a device is calibrated, and multiplies the information of the readings by
-// kOddsEvidenceWeight in this test. The weight is ten times kEvidenceWeight, the weight for estimates of sensor errors.
-// With a weight of 1, half of the calibrated devices would count as uncalibrated if the rig's calibration is uncertain.
+// kOddsEvidenceWeight in this test. kOddsEvidenceWeight is ten times kEvidenceWeight, the weight for estimates of
+// sensor errors. With a weight of 1, half of the calibrated devices would count as uncalibrated if the rig's
+// calibration is uncertain.
 constexpr double kOddsEvidenceWeight = 0.3;
 
 // Computes I + share U L U. L is the symmetrised information matrix of the sensor errors; U contains their standard

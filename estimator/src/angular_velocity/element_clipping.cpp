@@ -47,16 +47,16 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeStepRatio * (before - depth);
 }
 
-// Returns whether the saturation levels of positive and negative readings differ. The two levels differ if the device
-// subtracts the element's offset after clipping.
+// Returns whether the saturation levels of positive and negative readings differ. The levels of both signs differ if
+// the device subtracts the element's offset after clipping.
 bool has_unequal_levels(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) >
              kUnequalLevelsRatio * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two finders of saturation planes. The first finder uses the range of the data sheet, or else the saturation
-// levels that were detected for single axes. The second finder uses no range.
+// Returns two finders of saturation planes, with and without a range. The range is that of the data sheet. If the data
+// sheet states none, the saturation levels that were detected for single axes replace the range.
 std::array<RailPlaneFinder, 2> finders_with_and_without_range(RailPlaneFinder::Params params,
                                                               const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;

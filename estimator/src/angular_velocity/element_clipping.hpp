@@ -41,8 +41,8 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 
 /// Classifies samples as clipped by saturation planes, in addition to the classification by equal readings. A sensing
 /// element with a known saturation plane is clipped if its reading is on the plane or flagged by the device. A sample
-/// next to a clipped sample also counts as clipped if it was saturated for a part of its averaging window. The
-/// criterion is: distance from the plane < half of the step to its other neighbour. `before` and `after` are the
+/// next to a clipped sample also counts as clipped if it was saturated for a part of its averaging window. A sample was
+/// partly saturated if: distance from the plane < half of the step to its other neighbour. `before` and `after` are the
 /// neighbouring samples, or null.
 Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
                             const ImuSample* before, const ImuSample& now, const ImuSample* after);

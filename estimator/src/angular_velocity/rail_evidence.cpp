@@ -23,8 +23,8 @@ constexpr double kConstantRateFraction = 0.05;
 constexpr double kBendRatioMin = 3.0;
 // Constant rates are assumed to vary over kLevelRangeFraction times the saturation level.
 constexpr double kLevelRangeFraction = 0.2;
-// Readings are split into windows of kNoiseWindow readings, and each window yields a noise estimate. The estimate at
-// the quantile `kNoiseQuantile` is the noise of the gyro.
+// Each window of kNoiseWindow readings yields an estimate of the gyro's noise. The quantile `kNoiseQuantile` of these
+// estimates is the noise of the gyro.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
 // A kink is an end of a segment at which the clipped axis bends and the other axes move smoothly. One kink contributes
@@ -35,8 +35,8 @@ constexpr double kMotionSigmasMin = 10.0;
 // A segment without a flat maximum counts only if thin_log_likelihood() is at least kThinLogLikelihoodMin, that is, if
 // its readings scatter far less than noise.
 constexpr double kThinLogLikelihoodMin = 8.0;
-// The scatter of a segment of n readings has n - kThinLostFreedom degrees of freedom. Two are lost to the fitted line
-// and two to the partly saturated ends.
+// The scatter of a segment of n readings has n - kThinLostFreedom degrees of freedom. The fitted line and the partly
+// saturated ends of the segment each cost two degrees of freedom.
 constexpr std::size_t kThinLostFreedom = 4;
 // A reading is at the saturation level if its distance from the saturation plane is at most kAtRailSigmas standard
 // deviations of the noise. The distance is also limited to kAtRailRatioMax times the level.
@@ -72,7 +72,7 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
 
 // Returns the log-likelihood ratio of two explanations for the scatter of a segment about a straight line: saturation
 // and gyro noise, rails.md (R65). Unsaturated readings contain gyro noise; saturated readings contain none if the
-// device adds the noise before it clips. The ratio is zero if quantisation hides the noise.
+// device adds the noise before it clips. The log-likelihood ratio is zero if quantisation hides the noise.
 double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -220,8 +220,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   // A reading counts as saturated if its distance from the saturation plane is within the noise or the error of the
   // plane.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.level));
-  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The factor penalises the
-  // fitted saturation level and cross-axis sensitivities.
+  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The Occam factor penalises
+  // the fitted saturation level and cross-axis sensitivities.
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -12,7 +12,8 @@
 namespace tumble::rails {
 
 /// Gate selects the readings near a saturation plane. Selected readings have a projection onto `row` of at least
-/// `from`. Their highest_value(), for cross-axis sensitivities up to `steepest`, is at least `near_min`.
+/// `from`. The highest_value() of selected readings, for cross-axis sensitivities up to `steepest`, is at least
+/// `near_min`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double from = 0.0, steepest = 0.0, near_min = 0.0;

@@ -28,15 +28,15 @@ using rails::others;
 using rails::Side;
 
 // kInitialSigmaRatios contains two initial standard deviations for the robust fit of a plane to a layer of readings, as
-// fractions of the layer's thickness. The small value suits a thin layer with a few partly saturated readings below it.
-// The large value suits a thick layer.
+// fractions of the layer's thickness. The small standard deviation suits a thin layer with a few partly saturated
+// readings below it. The large standard deviation suits a thick layer.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 // The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
 // If another axis reads more than this fraction above a level, the log odds of the level decrease.
 constexpr double kElementLevelRatio = 0.04;
-// The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element. They
-// increase by `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the data
-// sheet's range. An impossible level has the log odds `kImpossibleLogOdds`.
+// The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element. The
+// log odds increase by `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the
+// data sheet's range. An impossible level has the log odds `kImpossibleLogOdds`.
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
 // The log odds of a saturation level increase by `kNearKnownLogOdds` near the same element's level in an earlier run.

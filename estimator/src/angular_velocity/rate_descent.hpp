@@ -33,8 +33,8 @@ class RateIteration {
   }
 
   /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors. `evidence` is
-  /// the information about the sensor errors after elimination of all other unknowns. Both results belong to the last
-  /// factorisation, with its `estimates` and `rig`, before apply().
+  /// the information about the sensor errors after elimination of all other unknowns. Derivatives and evidence belong
+  /// to the last factorisation, with its `estimates` and `rig`, before apply().
   struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
@@ -44,8 +44,8 @@ class RateIteration {
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the decrease of the cost that the last factorisation predicts. This is also the largest squared
-  /// change of a linear combination of unknowns, divided by the variance of the combination.
+  /// Returns twice the decrease of the cost that the last factorisation predicts. The Newton decrement is also the
+  /// largest squared change of a linear combination of unknowns, divided by the variance of the combination.
   double newton_decrement() const;
 
  private:

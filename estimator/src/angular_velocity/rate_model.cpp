@@ -73,8 +73,8 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Returns the squared normalised residual. Its covariance contains sensor noise and the uncertainty of the calibration:
-// rate_smoother.md (R16).
+// Returns the squared normalised residual. The covariance of the residual contains sensor noise and the uncertainty of
+// the calibration: rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;

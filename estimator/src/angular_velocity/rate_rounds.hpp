@@ -19,8 +19,9 @@ struct RateFit {
 
 /// Repeats the optimisation, each time with readings corrected by the last estimated sensor errors. A linear correction
 /// follows at the end. If the calibration changes by more than its uncertainty and the sensor errors allow, the
-/// optimisation has classified contact as flight. It then restarts with the other accelerometer delay (assumed, or
-/// estimated from impacts). If this does not help, the function fixes the calibration at its prior.
+/// optimisation has classified contact as flight. The optimisation then restarts with the other accelerometer delay
+/// (assumed, or estimated from impacts). If the calibration still changes too much, the function fixes the calibration
+/// at its prior.
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

@@ -28,8 +28,8 @@ std::vector<std::optional<InterpolatedRate>> interpolate_gyro(std::span<const Im
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
-// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). Its trace is limited to
-// rate_max_rad_s^2.
+// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). The trace of this covariance
+// is limited to rate_max_rad_s^2.
 Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                         double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;

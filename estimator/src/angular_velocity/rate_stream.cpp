@@ -157,7 +157,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // The flight weight of a sample that leaves the window is final. The weight assumes an exact calibration.
+  // The flight weight of a sample that leaves the window is final. This flight weight assumes an exact calibration.
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(change_before_window(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
@@ -239,8 +239,8 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   mark_possible_saturation(state);
 }
 
-// Initialises the clipped axes of a new sample. The candidates are the predicted rate and the rate from the centripetal
-// force; the better agreement with flight decides.
+// Initialises the clipped axes of a new sample. The initial rate is the predicted rate or the rate from the centripetal
+// force, whichever agrees better with flight.
 void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const RateKnot& before = previous.estimate.knot;

@@ -22,9 +22,9 @@ constexpr double kDelayChangeMin_s = 3e-4;
 // sheet. A delay estimated from impacts replaces the current delay if they differ by more than `kGuessSigmasMax`
 // standard deviations.
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// A delay is estimated from at least `kIntervalsMin` intervals between readings. Its correlation of force and rate
-// change must exceed the correlation at the stated delay by `kCorrelationGainMin`, because the first few impacts
-// correlate by chance.
+// A delay is estimated from at least `kIntervalsMin` intervals between readings. At the estimated delay, the
+// correlation of force and rate change must exceed the correlation at the stated delay by `kCorrelationGainMin`. The
+// first few impacts may correlate by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
 // Maximum delay, in prior standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;

@@ -16,8 +16,8 @@ using Eigen::Matrix3d;
 // a step of the stream.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
-// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). Its trace is limited to
-// rate_max_rad_s^2.
+// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). The trace of this covariance
+// is limited to rate_max_rad_s^2.
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);

@@ -56,8 +56,9 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 // The readings clearly contradict the data sheet if the probability of its standard deviations is below kPlain.
 constexpr double kPlain = 0.05;
 
-// Factor on the readings' information for the covariance of the sensor errors. The factor is below 1, because errors of
-// the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full weight.
+// Factor on the readings' information for the covariance of the sensor errors. kEvidenceWeight is below 1, because
+// errors of the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full
+// weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {

@@ -19,7 +19,7 @@ namespace tumble {
 /// rate, with a separate variance per axis. No sample measures the angle, so the angle is eliminated exactly, from the
 /// last sample backwards. The motion prior of (rate, acceleration) then has the process noise Q = q [dt^3/3, dt^2/2;
 /// dt^2/2, dt]. Square-root information elimination and back-substitution give mean and variance of the rate at every
-/// sample. They stay accurate even if the variances of the samples differ by many orders of magnitude.
+/// sample. The square-root form stays accurate even if the variances of the samples differ by many orders of magnitude.
 ///
 /// WnojSmoother smooths the three axes independently. The neglected commutators of SO(3) would change the angular
 /// acceleration by about dt^2 |w x alpha| / 4. The published code uses the gyro's rates with the wrong sign for its

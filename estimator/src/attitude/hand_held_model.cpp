@@ -82,8 +82,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// Adds the unclipped readings of a sensing element near a node. They form two independent measurements, the rate at the
-// mean time and the slope of the rate: carried.md (C13).
+// Adds the unclipped readings of a sensing element near a node. The unclipped readings form two independent
+// measurements, the rate at the mean time and the slope of the rate: carried.md (C13).
 double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                               System::Corner& corner) {
   const double mean_t = e.time_sum_s / e.count;

@@ -127,8 +127,8 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level. Its sign is that
-  // of the last reading before the segment.
+  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level. The rate then has
+  // the sign of the last reading before the segment.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }

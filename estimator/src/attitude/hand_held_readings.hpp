@@ -55,8 +55,8 @@ NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSamp
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
 /// Estimates the root density of the angular jerk near each of `nodes` nodes [rad/s^3 sqrt(s)] from the readings:
-/// carried.md (C24), (C25). Cost: O(N). The estimate uses the curvature of unsaturated readings, and the change of
-/// slope across clipped segments. The estimate is 0 where the readings do not determine the jerk.
+/// carried.md (C24), (C25). Cost: O(N). The jerk follows from the curvature of unsaturated readings, and from the
+/// change of slope across clipped segments. The result is 0 where the readings do not determine the jerk.
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 

@@ -55,8 +55,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 }
 
 /// Adds the effect of the gyro's scale error to the attitude covariance: carried.md (C27). The attitude error grows
-/// with the rotation since the last rest, or until the next rest if this rotation is smaller. The effect is large only
-/// for long rotations in one direction, which a hand cannot make.
+/// with the rotation since the last rest, or until the next rest if this rotation is smaller. The scale error matters
+/// only for long rotations in one direction, which a hand cannot make.
 void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_sigma;

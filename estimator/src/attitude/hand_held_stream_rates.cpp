@@ -49,8 +49,8 @@ std::size_t HandHeldStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// Stores the current rate of the oldest node, because the node may leave the window before its rate is reported. This
-// happens if samples are sparser than params_.period_s.
+// Stores the current rate of the oldest node, because the node may leave the window before its rate is reported. A node
+// leaves early if samples are sparser than params_.period_s.
 void HandHeldStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {

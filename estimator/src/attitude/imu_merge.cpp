@@ -282,10 +282,10 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
 }
 
 /// Excludes IMUs whose accelerometer may be saturated for a part of the window because of an impact: imu_merge.md (I6).
-/// On a rigid body, the force at one IMU predicts the force at another IMU along the line between them. This component
-/// does not depend on the angular acceleration. The reference is the IMU that agrees with most other IMUs. IMUs that
-/// disagree with the reference are excluded. If no two IMUs agree, the function first estimates a common angular
-/// acceleration that started within the window: imu_merge.md (I7).
+/// On a rigid body, the force at one IMU predicts the force at another IMU along the line between them. The force along
+/// this line does not depend on the angular acceleration. The reference is the IMU that agrees with most other IMUs.
+/// IMUs that disagree with the reference are excluded. If no two IMUs agree, the function first estimates a common
+/// angular acceleration that started within the window: imu_merge.md (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);

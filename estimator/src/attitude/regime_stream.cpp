@@ -18,8 +18,8 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // HandHeldStream restarts after a gap longer than gap_max_s. This limit ensures that HandHeldStream reports samples
-  // before they leave its window.
+  // HandHeldStream restarts after a gap longer than gap_max_s. The limit on gap_max_s ensures that HandHeldStream
+  // reports samples before they leave its window.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }

@@ -30,8 +30,8 @@ double log_about_gravity(double n, double g, double variance) {
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// Hand-held motion is either gentle or rough: carried.md (C33). One in kRoughly samples is rough; its force has a
-// standard deviation kRougher times as large.
+// Hand-held motion is either gentle or rough: carried.md (C33). One in kRoughly samples of hand-held motion is rough.
+// Rough motion has a force with a standard deviation kRougher times as large.
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_hand_held(double n, double g, double hand_variance, double grip_variance) {

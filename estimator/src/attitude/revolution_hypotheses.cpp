@@ -200,9 +200,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests the number of revolutions in each segment. Another solution replaces the current solution if it is clearly
-/// better. In segments marked in `fallen`, an earlier test has excluded the current solution, so the best alternative
-/// replaces it.
+/// Tests the number of revolutions in each segment. A clearly better solution replaces the current solution. In
+/// segments marked in `fallen`, an earlier test has excluded the current solution, so the best alternative replaces it.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;

@@ -19,10 +19,10 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// Cost: two eliminations over all nodes, plus O(N) for N nodes in tested segments.
 ///
 /// Data after a clipped segment determine the rotation during the segment only up to whole revolutions. The
-/// optimisation therefore finds the number of revolutions that is closest to its initial values. A segment is tested in
-/// two cases. Either the time integral of the rate's standard deviation, an upper bound of the angle's, reaches a third
-/// of pi. Or the estimated rate stays at the saturation level, and the segment is long enough for another revolution.
-/// In this case, the optimisation may have stopped with too few revolutions.
+/// optimisation therefore finds the number of revolutions that is closest to its initial values. A segment is tested if
+/// the time integral of the rate's standard deviation, an upper bound of the angle's standard deviation, reaches a
+/// third of pi. A segment is also tested if the estimated rate stays at the saturation level, and the segment is long
+/// enough for another revolution. At the saturation level, the optimisation may have stopped with too few revolutions.
 ///
 /// The function solves the segment and its surroundings again with one revolution more and less, and with two if
 /// possible. All other nodes act as a prior on the ends of this part. The solution with the lowest cost is selected;

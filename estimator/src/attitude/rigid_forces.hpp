@@ -43,8 +43,8 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the IMU that agrees with most other IMUs. Among IMUs with equal numbers, the force of the result changed
-  /// least.
+  /// Returns the IMU that agrees with most other IMUs. If several IMUs agree with equally many others, the function
+  /// returns the IMU whose force changed least.
   AgreeingForces most_agreed() const {
     AgreeingForces best;
     for (std::size_t k = 0; k < kUnits; ++k) {

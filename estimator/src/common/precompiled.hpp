@@ -15,12 +15,12 @@
 
 namespace tumble::precompiled {
 
-/// `known` instantiates the classes and evaluators of the given Eigen expressions. Its value is always true.
+/// `known` is always true; it instantiates the classes and evaluators of the given Eigen expressions.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
 
-/// `known_matrices` instantiates the given matrix types with their constants and identities. Its value is always true.
+/// `known_matrices` is always true; it instantiates the given matrix types with their constants and identities.
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>

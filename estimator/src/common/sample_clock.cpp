@@ -118,8 +118,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // Corrected stamps must increase, even after an uncorrected stamp or a burst of stamps. They then approach the
-  // received stamps.
+  // Corrected stamps must increase, even after an uncorrected stamp or a burst of stamps. After an uncorrected stamp or
+  // a burst, the corrected stamps approach the received stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns =
         state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kStepMin_periods * state.period_ns, 0.5 * step_ns)));

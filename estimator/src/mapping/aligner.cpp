@@ -18,8 +18,8 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
 // distance.
 constexpr double kCoarseReach = 2.0;
 
-/// Returns the parameters of a coarse registration. Its limits are wider, because its result only needs to be near the
-/// solution.
+/// Returns the parameters of a coarse registration. A coarse registration has wider limits, because its result only
+/// needs to be near the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;

@@ -26,8 +26,8 @@ struct WindowRate {
 /// Appends samples that fill the gap from the end of `before` to the start of `after`, see mapping.md (R44). The
 /// angular rate is interpolated linearly, with the standard deviation of a random walk whose ends are known. All axes
 /// of the appended samples count as clipped, so that a registration that estimates the saturation deficit also
-/// estimates the interpolation error. Their specific force is unknown (`bridges_gap`). Each appended sample is 10 ms
-/// long, or longer in gaps beyond 0.64 s.
+/// estimates the interpolation error. The specific force of the appended samples is unknown (`bridges_gap`). Each
+/// appended sample is 10 ms long, or longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

@@ -14,8 +14,8 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. Its unknowns refer to the start of the
-/// sweep.
+/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. The unknowns of a WindowSweep refer to
+/// the start of the sweep.
 struct WindowSweep {
   Estimated predicted;
   /// derivative of the unknowns with respect to the unknowns of the previous sweep

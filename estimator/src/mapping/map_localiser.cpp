@@ -11,8 +11,8 @@ namespace {
 // At a wrong pose, a surface point near the prior map's surfaces agrees with them by chance. The probability of this
 // agreement is at most kChanceAgreementMax.
 constexpr double kChanceAgreementMax = 0.8;
-// The second best pose of a search is wrong, so its fraction of agreeing points measures agreement by chance. As a
-// margin for sampling errors, the fraction kChanceMargin of its disagreeing points is added.
+// The second best pose of a search is wrong. The fraction of points that agree at this pose measures agreement by
+// chance. As a margin for sampling errors, the fraction kChanceMargin of the disagreeing points is added.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
@@ -71,8 +71,8 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
   return pose;
 }
 
-/// Searches the best and the second best pose of the local map in the prior map. The second best pose is wrong, so it
-/// measures how many points agree by chance.
+/// Searches the best and the second best pose of the local map in the prior map. The second best pose is wrong, and
+/// therefore measures how many points agree by chance.
 void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
   if (map().T_MI) {  // the stated pose defines the local frame, so the heading of W in M is about zero

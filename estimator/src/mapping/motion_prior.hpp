@@ -19,8 +19,8 @@ struct Prediction;
 /// InertialPrior adds no information: the IMU propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
 
-/// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis. It
-/// replaces the velocity of the last sweep, for example for a rolling robot.
+/// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis.
+/// KnownVelocity replaces the velocity of the last sweep, for example for a rolling robot.
 struct KnownVelocity {
   Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
   double sigma_m_s = 0.0;

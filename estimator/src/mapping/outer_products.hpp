@@ -43,8 +43,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Spare is a pool of work buffers for threads. Its size is the largest number of threads that used it at the same
-/// time.
+/// Spare is a pool of work buffers for threads. The pool grows to the number of threads that use it at the same time.
 template <class Work>
 class Spare {
  public:

@@ -14,8 +14,8 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// Derivative of the unknowns at the boundary with respect to the unknowns at the start of the last sweep.
   Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
-  /// Magnitude |s_j| of the saturation deficit's factor at the end of the last sweep, mapping.md (R8). The value is 0
-  /// for unsaturated axes, and if the last sweep was not registered.
+  /// Magnitude |s_j| of the saturation deficit's factor at the end of the last sweep, mapping.md (R8). The magnitude is
+  /// 0 for unsaturated axes, and if the last sweep was not registered.
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_m2_s2 =
       Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W

@@ -258,8 +258,8 @@ struct Registration::NormalNoise {
   }
 };
 
-/// Pulls contains the gradient sum q of each cluster of points. These sums determine the covariance of the gradient:
-/// mapping.md (R26).
+/// Pulls contains the gradient sum q of each cluster of points. The gradient sums of all clusters determine the
+/// covariance of the gradient: mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;

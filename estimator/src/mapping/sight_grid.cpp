@@ -15,8 +15,8 @@ namespace {
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
 // A map point counts as seen through if all returns in its direction are farther away by at least kBeyond_m +
-// kBeyondRatio * range + kDeviations * sigma. This distance covers the relative pose error of two sweeps, the noise of
-// a return, and the slope of the ground within a bin.
+// kBeyondRatio * range + kDeviations * sigma. The margin covers the relative pose error of two sweeps, the noise of a
+// return, and the slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 

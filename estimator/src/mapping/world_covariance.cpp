@@ -71,8 +71,8 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 }
 
 /// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
-/// This pose is the most certain pose of the sweep. Mounting errors of the lidar are excluded, because they do not
-/// change the map.
+/// The pose in the middle is the most certain pose of a sweep. Mounting errors of the lidar are excluded, because they
+/// do not change the map.
 void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

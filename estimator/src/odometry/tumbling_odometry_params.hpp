@@ -12,8 +12,9 @@ namespace tumble::odometry {
 /// bounds.
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
 
-/// Returns the parameters of the rate estimation over a whole recording. They equal the parameters of RegimeStream,
-/// except for larger prior standard deviations of accelerometer bias and inertia (see RateStreamParams::model).
+/// Returns the parameters of the rate estimation over a whole recording. The parameters of RegimeSmoother equal those
+/// of RegimeStream, except for larger prior standard deviations of accelerometer bias and inertia (see
+/// RateStreamParams::model).
 RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 
 OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params);

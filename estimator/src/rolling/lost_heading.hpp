@@ -11,7 +11,7 @@
 /// linearisation point changes.
 namespace tumble::rolling {
 
-/// The correction applies while the standard deviation of the heading exceeds kLostHeading_rad. The false information
+/// The filter is corrected while the standard deviation of the heading exceeds kLostHeading_rad. The false information
 /// grows with the square of this standard deviation.
 inline constexpr double kLostHeading_rad = 0.1;
 

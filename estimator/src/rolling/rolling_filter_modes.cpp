@@ -93,8 +93,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // A rough floor lasts for many nodes. Its density is normalised with the smaller standard deviation of grip, which
-    // avoids a penalty in each node.
+    // A rough floor lasts for many nodes. The density of a rough floor is normalised with the smaller standard
+    // deviation of grip, which avoids a penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -273,7 +273,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   keep_most_probable(kept.count, state);
 }
 
-/// Keeps the first `count` hypotheses. The others are cleared, so that equal estimates have equal states.
+/// Keeps the first `count` hypotheses, and clears all others, so that equal estimates have equal states.
 void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);

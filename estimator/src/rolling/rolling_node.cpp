@@ -104,8 +104,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// Returns the assumed specific force for a saturated reading: rolling.md (R8). The result is the larger of two forces:
-/// the reading, and the force that keeps the velocity of the centre constant.
+/// Returns the assumed specific force for a saturated reading: rolling.md (R8). The assumed force is the larger of two
+/// forces: the reading, and the force that keeps the velocity of the centre constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -288,8 +288,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The contact velocity is u = v + w x (-arm - r n). Here v is the IMU's velocity, and -arm - r n is the vector from
-  // the IMU to the contact point.
+  // The contact velocity is u = v + w x (-arm - r n). The symbol v is the IMU's velocity, and -arm - r n is the vector
+  // from the IMU to the contact point.
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
