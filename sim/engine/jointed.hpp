@@ -4,8 +4,8 @@
 #include "sim/body_state.hpp"
 #include "sim/engine/model.hpp"
 
-/// jointed.hpp is for robots whose sensor body is attached by joints. The joint angles determine the state of this
-/// body.
+/// jointed.hpp is for robots whose sensor body is attached by joints. The joint angles determine the state of the
+/// sensor body.
 namespace tumble::sim::engine {
 
 /// Updates poses and velocities of all bodies from the joints, after a step or a manual change. Without a call of

@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// The tree contains geoms up to this distance from the robot, so that one tree is valid for hundreds of steps.
+/// Maximum distance of a geom in the tree from the robot. One tree is then valid for hundreds of steps.
 constexpr double kMargin_m = 0.5;
-/// A new tree is built when the remaining margin is the distance that a robot moves in one step at 400 m/s.
+/// A new tree is built when the remaining margin is kStep_m: the distance that a robot moves in one step at 400 m/s.
 constexpr double kStep_m = 0.2;
 
 Box everything() {

@@ -23,7 +23,7 @@ class NearGeoms {
   /// Returns whether the model's only moving body is a single free body.
   static bool serves(const mjModel& model);
 
-  /// Selects the geoms near the robot. Call this function before each step with the position of the robot's body. The
+  /// Selects the geoms near the robot. Call around() before each step with the position of the robot's body. The
   /// selection is valid for a step of at most 0.2 m.
   void around(const Eigen::Vector3d& p_WB_m);
 

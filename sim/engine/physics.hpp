@@ -28,7 +28,7 @@ class Physics {
   void set_state(const BodyState& state);
 
   /// Returns angle and angular velocity of the hinge with the given name. Throws InvalidSituation if the robot has no
-  /// such hinge.
+  /// hinge of this name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
@@ -39,7 +39,7 @@ class Physics {
   void step(const Wrench& wrench);
 
   /// Appends the contacts of the robot with the world at the end of the last step, in arbitrary order. MuJoCo computes
-  /// them at the last stage of RK4, whose position differs from the final state by an error of second order in the
+  /// contacts at the last stage of RK4, whose position differs from the final state by an error of second order in the
   /// step. Each contact stores `time_ns`.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 

@@ -50,10 +50,10 @@ struct AllanInterval {
   double low = 0.0, high = 0.0;
 };
 
-/// Returns the confidence interval of the true Allan deviation. The probability is that of `sigmas` standard deviations
-/// of a normal distribution (3: 99.73 %). The interval uses the chi-squared distribution, with the quantiles of Wilson
-/// and Hilferty (1931; within 1 % for 3 degrees of freedom or more). Throws std::invalid_argument for `sigmas` outside
-/// (0, 6].
+/// Returns the confidence interval of the true Allan deviation. The confidence equals the probability of `sigmas`
+/// standard deviations of a normal distribution (3: 99.73 %). The interval uses the chi-squared distribution, with the
+/// quantiles of Wilson and Hilferty (1931; within 1 % for 3 degrees of freedom or more). Throws std::invalid_argument
+/// for `sigmas` outside (0, 6].
 AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, double sigmas = 3.0);
 
 /// Returns the Allan deviation of white noise of density N [unit / sqrt(Hz)] at averaging time `tau_s`, in closed form.

@@ -11,8 +11,8 @@
 /// contain larger stages. A stage that is off returns its input bit for bit, and draws no random numbers.
 namespace tumble::sim {
 
-/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, they are zero, and no
-/// random number is drawn.
+/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, the numbers are zero, and
+/// no random number is drawn.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
 /// Returns a normally distributed number with standard deviation `sigma`, truncated at three standard deviations. For

@@ -20,8 +20,8 @@ struct ChannelFirings {
 };
 
 /// FiringBlock contains the firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast
-/// together. Neighbouring lanes have similar directions, so they are fast to cast. Lanes beyond the number of slots are
-/// also filled.
+/// together. Neighbouring lanes have similar directions, so a packet of lanes is fast to cast. Lanes beyond the number
+/// of slots are also filled.
 struct FiringBlock {
   /// Number of the slot since the start of the recording, which determines the random numbers.
   std::int64_t first_slot = 0;

@@ -54,8 +54,8 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;
 }
 
-/// Delivery decides for each sweep in turn whether the device delivers it. Sweeps before the start of the device, and
-/// random sweeps, are lost.
+/// Delivery decides for each sweep in turn whether the device delivers the sweep. Sweeps before the start of the
+/// device, and random sweeps, are lost.
 class Delivery {
  public:
   Delivery(const SensorSpec& sensor, std::uint64_t seed)

@@ -141,7 +141,7 @@ double signed_box_distance(const Vector& point, const Vector& half) {
 
 /// Returns the distance of a point y from an ellipsoid with the semi-axes a_i (Eberly, Distance from a point to an
 /// ellipsoid). The nearest point follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2.
-/// Bisection finds this root, because the sum decreases monotonically there.
+/// Bisection finds the root, because the sum decreases monotonically for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;

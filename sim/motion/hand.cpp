@@ -10,7 +10,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-// A waiting hand is steady. Above this speed, the tremor has its full amplitude.
+// A waiting hand is steady. At or above kFullTremor_m_s, the tremor has its full amplitude.
 constexpr double kFullTremor_m_s = 0.1;
 
 /// Returns the smallest rotation that turns the unit vector `from` upwards, or a half turn about x if `from` points

@@ -63,7 +63,7 @@ double smooth(double share) {
 }
 
 /// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a
-/// damper pull this segment to a moving target. The hand applies no torque, and has no body in the simulation.
+/// damper pull the lowest segment to a moving target. The hand applies no torque, and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)

@@ -27,8 +27,8 @@ struct MeshPart {
 /// for a geom without a surface.
 std::vector<MeshPart> world_mesh(const BuiltSituation& built, int segments = 12);
 
-/// Returns the visible parts of the body that carries the sensors, in frame B. For a robot on joints (pendulum), this
-/// body is the last segment. The list of parts is empty without a robot.
+/// Returns the visible parts of the body that carries the sensors, in frame B. For a robot on joints (pendulum), the
+/// sensors are on the last segment. The list of parts is empty without a robot.
 std::vector<MeshPart> robot_mesh(const BuiltSituation& built, int segments = 20);
 
 }  // namespace tumble::sim

@@ -46,7 +46,8 @@ bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& dev
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // The estimated scale and misalignment errors stay zero, because errors of the flight model look the same.
+  // The estimated scale and misalignment errors stay zero, because errors of the flight model look like scale and
+  // misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

@@ -24,7 +24,7 @@ constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // neighbour|.
 constexpr double kEdgeStepRatio = 0.5;
 
-// Returns the sign of element j's reading. A clipped reading is at the saturation level of this sign.
+// Returns the sign of element j's reading, which is also the sign of the saturation level if the reading is clipped.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }

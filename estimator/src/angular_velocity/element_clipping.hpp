@@ -27,7 +27,7 @@ inline std::size_t first_channel(Triad triad) {
 /// sheet's range and one that does not.
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
-/// Returns whether the readings contradict the range of the data sheet. RailPlaneFinder then ignores this range.
+/// Returns whether the readings contradict the range of the data sheet. RailPlaneFinder ignores a contradicted range.
 bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad);
 
 /// Returns whether the device clips each output axis separately (upright rails). The proof needs two cross-axis

@@ -17,7 +17,7 @@ namespace {
 // motion looks like flight for up to 0.05 s. Real flights are longer.
 constexpr double kHalfScaleRun_s = 0.08;
 constexpr double kAcross = 0.05;    // (minimum lever arm component across a saturated axis)^2 / |lever arm|^2
-constexpr double kBelowRail = 0.1;  // A recovered rate may be below the reading by this fraction.
+constexpr double kBelowRail = 0.1;  // fraction of the reading by which a recovered rate may be below it
 
 struct Axes {
   std::array<int, 3> axis;
@@ -61,8 +61,8 @@ constexpr std::array<ReadingHypothesis, FlightSignCheck::kAlternatives> kReading
 }};
 
 /// Corrects a reading for a hypothetical sign, axis order or scale of the sensor: imu_merge.md (I32). The rate of a
-/// single saturated axis follows from the centripetal force. `known` is false if this rate contradicts the saturated
-/// reading.
+/// single saturated axis follows from the centripetal force. `known` is false if the recovered rate contradicts the
+/// saturated reading.
 FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const ReadingHypothesis& sense,
                                          const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;

@@ -28,8 +28,8 @@ Vector3d slope(const TimedReading& a, const TimedReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
-// Interpolates the angular rate between the readings a and b by a cubic. The slopes at a and b use the reading z before
-// a and the reading c after b, if they are usable.
+// Interpolates the angular rate between the readings a and b by a cubic. The slope at a uses the earlier reading z, and
+// the slope at b uses the later reading c, if z and c are usable.
 std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReading& a, const TimedReading& b,
                                         const TimedReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;

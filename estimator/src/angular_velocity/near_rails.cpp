@@ -11,9 +11,9 @@ namespace tumble {
 namespace {
 
 // A reading close to a saturation level is compared with `kReach` neighbours on each side. "Close" means within the
-// fraction `kRoundedPeakRatio` of the level. A gyro's filter may lower the first and last saturated readings by this
-// fraction. One hand-held wand reported readings up to 2 % below the saturation level while the rate exceeded the
-// level.
+// fraction `kRoundedPeakRatio` of the level. A gyro's filter may lower the first and last saturated readings by up to
+// `kRoundedPeakRatio` of the level. One hand-held wand reported readings up to 2 % below the saturation level while the
+// rate exceeded the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundedPeakRatio = 0.03;
 

@@ -16,9 +16,9 @@ namespace {
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
 // A reading belongs to a flat maximum if it is within the fraction `kTopRatio` of the segment's largest reading.
-// Example: on a plane tilted by kMaxPlaneTilt, saturated readings vary by this fraction if the rate about the other
-// axes is a sixth of the level. The saturation levels of two sensing elements differ by at most `kMaxElementSigmas`
-// standard deviations.
+// Example: on a plane tilted by kMaxPlaneTilt, saturated readings vary by `kTopRatio` if the rate about the other axes
+// is a sixth of the level. The saturation levels of two sensing elements differ by at most `kMaxElementSigmas` standard
+// deviations.
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
 
 // Returns the lowest known saturation level, or 0 if no level is known.

@@ -23,8 +23,8 @@ constexpr double kConstantRateFraction = 0.05;
 constexpr double kBendRatioMin = 3.0;
 // Constant rates are assumed to vary over kLevelRangeFraction times the saturation level.
 constexpr double kLevelRangeFraction = 0.2;
-// Each window of kNoiseWindow readings yields an estimate of the gyro's noise. The quantile `kNoiseQuantile` of these
-// estimates is the noise of the gyro.
+// Each window of kNoiseWindow readings yields an estimate of the gyro's noise. The quantile `kNoiseQuantile` of the
+// estimates of all windows is the noise of the gyro.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
 // A kink is an end of a segment at which the clipped axis bends and the other axes move smoothly. One kink contributes
@@ -99,7 +99,8 @@ double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& fa
 }
 
 // SegmentShape describes a segment of readings close to a possible saturation level. `bend` is the height of a rounded
-// maximum (parabola) of the same length. `flat` is the difference between the largest and the smallest reading.
+// maximum (parabola) that is as long as the segment. `flat` is the difference between the largest and the smallest
+// reading.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBendRatioMin * flat; }
@@ -126,8 +127,8 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
 }
 
 // Returns the log-likelihood that saturation causes a kink at one end of a segment: rails.md (R64). The test compares
-// the second difference of the clipped axis with those of the other axes. An impact causes a kink on all axes;
-// saturation causes a kink on one axis.
+// the second difference of the clipped axis with the second differences of all other axes. An impact causes a kink on
+// all axes; saturation causes a kink on one axis.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;

@@ -32,7 +32,7 @@ using rails::Side;
 // readings below it. The large standard deviation suits a thick layer.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 // The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
-// If another axis reads more than this fraction above a level, the log odds of the level decrease.
+// If another axis reads above a level by more than kElementLevelRatio, the log odds of the level decrease.
 constexpr double kElementLevelRatio = 0.04;
 // The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element. The
 // log odds increase by `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the

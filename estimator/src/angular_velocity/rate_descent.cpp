@@ -148,8 +148,8 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// Computes two results for the sensor errors: the derivatives of the estimated rates with respect to them, and the
-// information about them. See rate_smoother.md (R37), (R38), (R39).
+// Computes the derivatives of the estimated rates with respect to the sensor errors, and the information about the
+// sensor errors. See rate_smoother.md (R37), (R38), (R39).
 RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const RateModel& model,
                                                                        std::span<const RateEstimate> estimates,
                                                                        const RigConstants& rig) const {

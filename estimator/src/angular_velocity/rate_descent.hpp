@@ -18,7 +18,7 @@ class RateIteration {
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
   /// Adds the step of the last factorisation to the estimates. No angular rate changes by more than step_max. Returns
-  /// the largest change of an angular rate before this limitation.
+  /// the largest change of an angular rate before the limitation to step_max.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
   /// Calls use(k, conditional) for each sample k, from the last to the first. `conditional` is the conditional

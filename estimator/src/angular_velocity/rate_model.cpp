@@ -46,7 +46,7 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// In contact, the saturation deficit of a partly saturated reading has this additional standard deviation [rad/s].
+// Additional standard deviation [rad/s] of the saturation deficit of a partly saturated reading in contact.
 constexpr double kSubsampleInContact = 0.25;
 
 // kLever, kAccelBias and kInertia are indices in RigConstants::vector(). The flight model depends on lever arm and

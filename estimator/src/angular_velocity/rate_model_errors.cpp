@@ -50,7 +50,7 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
   // Averaging over the accelerometer's window changes the force in proportion to the second time derivative of the
-  // force: rate_smoother.md (R13). The derivatives of this small term are neglected.
+  // force: rate_smoother.md (R13). The derivatives of this small force change are neglected.
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }

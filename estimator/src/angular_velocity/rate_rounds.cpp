@@ -89,7 +89,7 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// Optimises the rates and the calibration. If this result classifies contact as flight, a second optimisation fixes the
+// Optimises the rates and the calibration. If the result classifies contact as flight, a second optimisation fixes the
 // calibration.
 Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                              std::span<const RateObservation> observations, bool struck, RateFit& fit,
@@ -165,7 +165,7 @@ SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownS
 }
 
 // Estimates sensor errors relative to the errors `given` by the user. `learnt` is the estimate of an earlier run,
-// relative to the same errors.
+// relative to `given`.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -188,8 +188,8 @@ struct Rounds {
 
   const SensorErrorPriors& stated() const { return known.expert.error_priors; }
   bool is_delay_unknown() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// Returns whether the body has impacts and flight, and is therefore not hand-held. For such a body, sensor errors
-  /// may explain a changed calibration.
+  /// Returns whether the body has impacts and flight, and is therefore not hand-held. Sensor errors may explain a
+  /// changed calibration only for a body that is not hand-held.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -208,8 +208,8 @@ Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& kn
   return out;
 }
 
-// Start contains the initial values of one optimisation. The first optimisation uses `errors`. If it had to fix the
-// calibration, a second optimisation uses `other_delay_s` as accelerometer delay.
+// Start contains the initial values of one optimisation. The first optimisation uses `errors`. If the first
+// optimisation had to fix the calibration, a second optimisation uses `other_delay_s` as accelerometer delay.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -299,7 +299,8 @@ Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observat
 }
 
 // Returns the prior standard deviations of the sensor errors. If the readings clearly contradict the data sheet, the
-// function returns those of an uncalibrated device and enlarges the covariance of the estimated errors.
+// function returns the standard deviations of an uncalibrated device, and enlarges the covariance of the estimated
+// errors.
 SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open = rounds.is_delay_unknown() &&
                     (contradicts_data_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -348,8 +349,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // The next run uses the same device, so the same sensor errors affect it. The stored covariance of the calibration
-  // therefore includes the uncertainty of the sensor errors.
+  // The next run uses the same device, and therefore has the same sensor errors. The stored covariance of the
+  // calibration therefore includes the uncertainty of the sensor errors.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance +=
       fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();

@@ -36,7 +36,7 @@ void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// Adds the prior that summarises the samples before the window. The gradient of this prior is moved to the current
+// Adds the prior that summarises the samples before the window. The gradient of the prior is moved to the current
 // linearisation point: rate_stream.md (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
@@ -161,8 +161,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(change_before_window(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // The 20 calibration constants can explain any short contact as flight. A flight therefore updates the calibration
-  // only if it has a minimum number of samples.
+  // The 20 calibration constants can explain any short contact as flight. Only a flight with a minimum number of
+  // samples therefore updates the calibration.
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };

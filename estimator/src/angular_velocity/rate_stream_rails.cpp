@@ -36,8 +36,8 @@ bool is_near_other_rails(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
-// Returns the first sample of the reading before the reading of sample k. Returns nothing if this sample is outside the
-// window.
+// Returns the first sample of the reading before the reading of sample k. Returns nothing if the reading begins before
+// the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -57,7 +57,7 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
 }
 
 // Beside points to the samples with the gyro readings before and after a sample's reading. A pointer is null if the
-// window contains no such reading.
+// window contains no earlier or later reading.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
@@ -246,8 +246,8 @@ Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the slope before a run of clipped readings, because the run needs this slope after its first reading has left
-// the window.
+// Stores the slope before a run of clipped readings. The saturation deficit of the run depends on this slope after the
+// first reading of the run has left the window.
 void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
@@ -259,7 +259,7 @@ void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& ne
   }
 }
 
-// Adds the information of the saturation planes about the sensing directions of clipped elements. Each step adds this
+// Adds the information of the saturation planes about the sensing directions of clipped elements. Each step adds the
 // information again, because the planes become more accurate.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.rails.known;

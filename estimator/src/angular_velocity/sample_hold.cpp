@@ -18,7 +18,7 @@ using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMoving
 // fraction kPeriodRangeRatio of the mean period. A finer search around the best clock has kFineSteps steps.
 constexpr int kPeriods = 100, kPhases = 24, kFineSteps = 10;
 constexpr double kPeriodRangeRatio = 0.03;
-// An accelerometer is assumed to average over this fraction of its period; the true fraction is unknown.
+// Assumed averaging window of an accelerometer, as a fraction of its period. The true fraction is unknown.
 constexpr double kAccelWindowRatio = 0.5;
 
 struct Clock {
@@ -76,7 +76,7 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
 }
 
 // Returns a clock near `first` with the fewest wrong predictions. Several equally good clocks form an area in period
-// and phase. The result is the clock in the middle of this area, where the run of adjacent phases is longest.
+// and phase. The result is the clock in the middle of the area, where the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   PhaseRun best{moving.size()};

@@ -30,9 +30,10 @@ struct RepeatedReadings {
 };
 
 /// Detects repeated readings in a recording. Cost: O(N), plus tests of about 5000 clocks on at most 1000 samples.
-/// Samples in motion have a rate above 0.3 rad/s. Returns nothing if there are fewer than 30, or if less than a
-/// twentieth of them repeat the previous reading. Period and phase are those of the regular clock that best predicts
-/// the repetitions. Ages and window lag are zero if this clock is wrong for more than 10 % of the samples.
+/// Samples in motion have a rate above 0.3 rad/s. Returns nothing for fewer than 30 samples in motion, or if less than
+/// a twentieth of the samples in motion repeat the previous reading. Period and phase belong to the regular clock that
+/// best predicts the repetitions. Ages and window lag are zero if the best clock is wrong for more than 10 % of the
+/// samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 /// Neighbours points to the nearest earlier and later samples whose reading differs, or null.

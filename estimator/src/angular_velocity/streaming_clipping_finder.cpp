@@ -25,8 +25,8 @@ constexpr std::size_t kLatestReadings = 48;
 // StreamingClippingFinder repeats the search for saturation when the number n of readings near the extremes has grown
 // by n / kSearchGrowthDivisor, and by at least two.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// A reading is far from saturation if it is below this fraction of the lowest possible saturation level (gyro,
-// accelerometer). The larger fraction for the accelerometer excludes gravity.
+// A reading is far from saturation if it is below kLowReadingRatios (gyro, accelerometer) times the lowest possible
+// saturation level. The larger fraction for the accelerometer excludes gravity.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,

@@ -8,8 +8,8 @@ namespace tumble {
 
 namespace {
 
-// Maximum saturated fraction of an averaging window. Above this fraction, the reading does not determine the slope of
-// the rate.
+// Maximum saturated fraction of an averaging window. If a larger fraction is saturated, the reading does not determine
+// the slope of the rate.
 constexpr double kSaturatedFractionMax = 0.85;
 // The variance of the saturation deficit is the sum of two squares: `kDeficitSigmaRatio` times the deficit, and
 // `kDepthSigmaRatio` times the distance from the saturation level (at most `kDepthMax` [rad/s]).

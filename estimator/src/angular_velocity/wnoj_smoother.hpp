@@ -23,7 +23,7 @@ namespace tumble {
 ///
 /// WnojSmoother smooths the three axes independently. The neglected commutators of SO(3) would change the angular
 /// acceleration by about dt^2 |w x alpha| / 4. The published code uses the gyro's rates with the wrong sign for its
-/// convention, which matters only in these commutators.
+/// convention, which matters only in the neglected commutators.
 class WnojSmoother {
  public:
   struct Params {

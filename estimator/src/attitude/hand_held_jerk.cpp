@@ -56,7 +56,7 @@ void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& r
 }
 
 // Computes the slope between the consecutive readings k and k + 1 of sensing element `axis`, and the time of the slope.
-// Returns false if one of them is saturated, or if a reading is missing between them.
+// Returns false if reading k or k + 1 is saturated, or if a reading is missing between k and k + 1.
 bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
               double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;

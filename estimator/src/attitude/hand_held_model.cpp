@@ -170,7 +170,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
       // All readings of a node share the tilt error of the saturation plane, so averaging the readings does not reduce
-      // it.
+      // the tilt error.
       const double tilt = noise.deficit_error_ratio * deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

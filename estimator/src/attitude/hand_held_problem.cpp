@@ -263,8 +263,8 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
 }
 
 // Compares the hand's mean acceleration over windows with its motion model: carried.md (C30). The model is a random
-// process with standard deviation s and correlation time tau. The mean of this process over a window T has the variance
-// s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
+// process with standard deviation s and correlation time tau. The mean of the random process over a window T has the
+// variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
 double Problem::hand_acceleration_ratio() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,

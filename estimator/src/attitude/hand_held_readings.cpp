@@ -46,7 +46,7 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 }
 
 // Equal readings are repetitions of a slow sensor if a regular clock predicts at least the fraction kMinClockAgreement
-// of them.
+// of the equal readings.
 constexpr double kMinClockAgreement = 0.9;
 // A reading may be partly saturated if its averaging window is longer than kLongWindow node intervals. In recordings of
 // pendulums, averaging windows of 20 ms were partly saturated. In recordings of hand-held wands, averaging windows of
@@ -157,7 +157,7 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
 // (C12). The corrected centre is the middle of its possible range. Returns the standard deviations of the forces due to
-// this range.
+// the possible range of the centre.
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);

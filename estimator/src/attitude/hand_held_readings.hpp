@@ -36,7 +36,7 @@ struct TimedReadings {
 /// GyroReadings contains the readings of the gyro without repetitions, corrected for partial saturation of the
 /// averaging window.
 struct GyroReadings : TimedReadings {
-  /// Standard deviation of this correction, per sensing element; 0: not corrected.
+  /// Standard deviation of the correction for partial saturation, per sensing element; 0: not corrected.
   std::vector<Eigen::Vector3d> subsample_sigma_rad_s;
 };
 

@@ -213,9 +213,9 @@ void HandHeldStream::rebuild(State& state) const {
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds an IMU reading to the nearest nodes of the window, except if it repeats the last reading. A slow sensor averages
-// over its period, and the averaging window ended at an unknown time since the previous sample: rate_stream.md (R95). A
-// slow accelerometer averages over an unknown part of its period: carried.md (C12).
+// Adds an IMU reading to the nearest nodes of the window. A repetition of the last reading is ignored. A slow sensor
+// averages over its period, and the averaging window ended at an unknown time since the previous sample: rate_stream.md
+// (R95). A slow accelerometer averages over an unknown part of its period: carried.md (C12).
 void HandHeldStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> hand_held::NodeReadings* {

@@ -17,7 +17,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-// Up to this time from clipped nodes, covariances use the inflated jerk density.
+// Covariances use the inflated jerk density if the time from a clipped node is at most kNear_s.
 constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {

@@ -22,14 +22,14 @@ constexpr int kMinImusForRecovery = 3;  // minimum number of IMUs for recovering
 constexpr double kUnsaturatedForceRatio =
     0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// Minimum integral of the squared lever arm force: 1 m/s^2 for 1 s. At this limit, an accelerometer bias of 0.05 m/s^2
-// changes lever_arm_agreement() by 0.05.
+// Minimum integral of the squared lever arm force: 1 m/s^2 for 1 s. At kArmSquareMin_m2_s3, an accelerometer bias of
+// 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// An accelerometer stays suspect for this time after an impact, because impacts come in groups and filters prolong
-// them.
+// An accelerometer stays suspect for kSuspect_s after an impact, because impacts come in groups, and filters prolong
+// impacts.
 constexpr double kSuspect_s = 0.04;
 // standard deviation of an angular acceleration, as a fraction of its change per sample
 constexpr double kAccelerationSigmaRatio = 0.3;
@@ -282,10 +282,10 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
 }
 
 /// Excludes IMUs whose accelerometer may be saturated for a part of the window because of an impact: imu_merge.md (I6).
-/// On a rigid body, the force at one IMU predicts the force at another IMU along the line between them. The force along
-/// this line does not depend on the angular acceleration. The reference is the IMU that agrees with most other IMUs.
-/// IMUs that disagree with the reference are excluded. If no two IMUs agree, the function first estimates a common
-/// angular acceleration that started within the window: imu_merge.md (I7).
+/// On a rigid body, the force at one IMU predicts the force at another IMU along the line between the IMUs. The force
+/// along this line does not depend on the angular acceleration. The reference is the IMU that agrees with most other
+/// IMUs. IMUs that disagree with the reference are excluded. If no two IMUs agree, the function first estimates a
+/// common angular acceleration that started within the window: imu_merge.md (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAccelerationSpan_s =
     0.01;  // = model_error_s of the rate model
-// The calibration is unstable if more than this fraction of the solver steps within a lag resets it.
+// The calibration is unstable if more than kResetFraction of the solver steps within a lag reset the calibration.
 constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
@@ -48,8 +48,8 @@ RateState mixed_rate(const RateState& rate, const RateState& hand_held, double s
 }
 
 // Returns the angular acceleration around sample k as the derivative of the rates: carried.md (C44). The derivative
-// covers kAccelerationSpan_s seconds if the window contains enough samples. RateStream's angular acceleration is
-// unsuitable, because it depends on the specific force under test.
+// covers kAccelerationSpan_s seconds if the window contains enough samples. The angular acceleration of RateStream is
+// unsuitable, because RateStream uses the specific force under test.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
   // Integer time stamps are subtracted, because seconds since the epoch would lose precision.
   const auto between_s = [&](std::size_t from, std::size_t to) {

@@ -201,7 +201,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
 }
 
 /// Tests the number of revolutions in each segment. A clearly better solution replaces the current solution. In
-/// segments marked in `fallen`, an earlier test has excluded the current solution, so the best alternative replaces it.
+/// segments marked in `fallen`, an earlier test has excluded the current solution, so the best alternative replaces the
+/// current solution.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;

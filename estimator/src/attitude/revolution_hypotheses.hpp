@@ -25,18 +25,19 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// enough for another revolution. At the saturation level, the optimisation may have stopped with too few revolutions.
 ///
 /// The function solves the segment and its surroundings again with one revolution more and less, and with two if
-/// possible. All other nodes act as a prior on the ends of this part. The solution with the lowest cost is selected;
-/// the widths of the cost minima hardly differ. Alternatives with odds above 1 to 1000 enlarge the covariances of the
-/// nodes to those of the mixture of all solutions. If a number of revolutions changes, the function solves the whole
-/// problem again. If this fails, the previous solution remains, and the alternatives enlarge the covariances. The
-/// problem is unchanged if no segment is tested.
+/// possible. All nodes outside of the tested part act as a prior on the ends of the part. The solution with the lowest
+/// cost is selected; the widths of the cost minima hardly differ. Alternatives with odds above 1 to 1000 enlarge the
+/// covariances of the nodes to the covariances of the mixture of all solutions. If a number of revolutions changes, the
+/// function solves the whole problem again. If the whole problem has no solution, the previous solution remains, and
+/// the alternatives enlarge the covariances. The problem is unchanged if no segment is tested.
 ///
 /// The caller must have computed the covariances of `problem`. The function sets the counters of `report`. The test
 /// neglects correlations between the revolutions of two segments, and the effect of a revolution on the calibration
 /// constants. The alternatives differ only by whole revolutions about the clipped element's axis.
 void test_revolutions(Problem& problem, HandHeldSmoother::Report& report);
 
-/// Tests the revolutions as above, with `again` as solver of the whole problem. Unit tests use a solver that fails.
+/// Tests the revolutions of clipped segments, with `again` as solver of the whole problem. Unit tests use a solver that
+/// fails.
 using SolveAgain = Status (*)(Problem& problem, HandHeldSmoother::Report& report);
 void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveAgain again);
 

@@ -38,8 +38,8 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Returns the reported tilt variance. During a coarse alignment, it is at least the variance at the start of the
-/// alignment.
+/// Returns the reported tilt variance. During a coarse alignment, the reported variance is at least the variance at the
+/// start of the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;

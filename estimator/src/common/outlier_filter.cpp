@@ -13,15 +13,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// docs/maths/outliers.md, section "Thresholds", lists the measurements that justify these thresholds.
+// The section "Thresholds" of docs/maths/outliers.md justifies the thresholds of the outlier test by measurements.
 constexpr double kRateMin_rad_s = 1.0;   // smallest jump of a gyro reading that is an outlier
 constexpr double kForceMin_m_s2 = 30.0;  // smallest jump of an accelerometer reading that is an outlier
-constexpr double kOutlierRatio = 3.0;    // an outlier is larger than this multiple of the neighbours' difference
+constexpr double kOutlierRatio = 3.0;    // minimum ratio of an outlier to the difference of its neighbours
 constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration of a robot per unit of force
 constexpr double kLever_m = 10.0;                     // largest force of a robot per unit of angular acceleration
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
-constexpr double kNear_s = 0.1;                       // neighbours further away than this are not compared
+constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
 // After a longer step between stamps, the sample is delayed, because the next stamp may be earlier.
 constexpr double kStampStepMax_periods = 1.75;
 

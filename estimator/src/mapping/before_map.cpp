@@ -128,8 +128,8 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in the frame of the map, which is rotated by the IMU's tilt error φ. In this frame, the
-/// attitude has no error, and velocity v and gravity g have the errors δv + v × φ and g × φ.
+/// Returns the state estimate in the frame of the map, which is rotated by the IMU's tilt error φ. In the frame of the
+/// map, the attitude has no error, and velocity v and gravity g have the errors δv + v × φ and g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

@@ -19,7 +19,8 @@ void widen_for_motion(MotionState& levelled);
 MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
 StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
-/// Returns the estimate with the tilt of another source. The errors of this tilt are independent of all other errors.
+/// Returns the estimate with the tilt of another source. The errors of the new tilt are independent of all other
+/// errors.
 StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
 /// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. Without a
@@ -27,9 +28,9 @@ StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const Stat
 /// over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
-/// Returns the state at the start of the sweep that starts the map. The lidar's pose at this time defines the map
-/// frame, so the pose has no error. The tilt error of dead reckoning therefore becomes an error of gravity's direction.
-/// `reckoned` is the result of reset_origin_and_yaw() or estimate_before_map().
+/// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the first sweep
+/// defines the map frame, so this pose has no error. The tilt error of dead reckoning therefore becomes an error of
+/// gravity's direction. `reckoned` is the result of reset_origin_and_yaw() or estimate_before_map().
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 /// Returns the covariance of the map relative to the world at the start. The map's vertical is as uncertain as the tilt

@@ -10,8 +10,8 @@
 namespace tumble::mapping {
 
 /// DeadReckoning predicts an alternative pose from the IMU after a relocalisation. While the relocalisation is
-/// unconfirmed, the alternative is the pose without it. If later sweeps contradict the relocalisation, the alternative
-/// becomes the relocalised pose.
+/// unconfirmed, the alternative is the pose without the relocalisation. If later sweeps contradict the relocalisation,
+/// the alternative becomes the relocalised pose.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;

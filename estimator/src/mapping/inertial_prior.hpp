@@ -10,7 +10,7 @@
 namespace tumble::mapping {
 
 /// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
-/// velocity. Rate errors come mainly from saturation, so they are assumed constant over the sweep. The standard
+/// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. The standard
 /// deviation of the attitude is therefore the time integral of the rate's standard deviation. The axes in
 /// `deficit_axes` (bits) are excluded, because the registration estimates their saturation deficit.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
@@ -23,8 +23,8 @@ Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& p
                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
 
 /// Computes the state of an IMU at rest at the start of the first sample's window, at the origin of W with yaw 0. The
-/// mean specific force of the first `rest.levelling_max_s` seconds levels the attitude. Returns `degenerate` if this
-/// mean is below 1 m/s^2.
+/// mean specific force of the first `rest.levelling_max_s` seconds levels the attitude. Returns `degenerate` if the
+/// mean specific force is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
 /// Computes the state of an IMU at rest from its specific force, without a time stamp.

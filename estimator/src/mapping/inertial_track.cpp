@@ -166,7 +166,8 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   pending_rates_rad_s_.clear();
 }
 
-/// Marks all samples since the start of the last averaged reading as motion, unless the rest continues from before it.
+/// Marks all samples of the last averaged reading as motion. The caller has found that no rest continues through this
+/// averaged reading.
 void InertialTrack::revoke_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(pending_rates_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {

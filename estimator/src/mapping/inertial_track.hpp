@@ -33,7 +33,7 @@ class InertialTrack {
   /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
   /// Returns whether the robot was at rest during the first `lasted_s` seconds of samples, or during all samples if
-  /// they cover less time.
+  /// there are fewer seconds of samples.
   bool starts_at_rest(double lasted_s) const;
   /// Returns whether the initial rest continues.
   bool has_not_moved() const { return initial_.lasts; }

@@ -44,7 +44,7 @@ class LagWindow {
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
   /// Clears the lists of inserted points, because the point indices of the map have changed. Smoothing then no longer
-  /// moves these points.
+  /// moves the inserted points.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

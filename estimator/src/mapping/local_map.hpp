@@ -40,8 +40,8 @@ class LocalMap {
   bool empty() const { return map_.size() == 0; }
 
   /// Adds the points of a sweep to the map, and appends the added points to `inserted`. `noise` computes the variance
-  /// of a lidar return. If the pose of the sweep is certain, the function counts which map points the sweep saw, and
-  /// which it saw through. Cost: O(points of the map).
+  /// of a lidar return. If the pose of the sweep is certain, the function counts the map points that the sweep saw, and
+  /// the map points that the sweep saw through. Cost: O(points of the map).
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
   /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times, see

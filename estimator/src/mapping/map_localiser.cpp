@@ -8,8 +8,8 @@ namespace tumble::mapping {
 
 namespace {
 
-// At a wrong pose, a surface point near the prior map's surfaces agrees with them by chance. The probability of this
-// agreement is at most kChanceAgreementMax.
+// kChanceAgreementMax is the maximum probability that a surface point near the prior map's surfaces agrees with the
+// prior map at a wrong pose.
 constexpr double kChanceAgreementMax = 0.8;
 // The second best pose of a search is wrong. The fraction of points that agree at this pose measures agreement by
 // chance. As a margin for sampling errors, the fraction kChanceMargin of the disagreeing points is added.

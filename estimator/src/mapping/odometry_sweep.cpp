@@ -305,7 +305,8 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
 }
 
 /// Propagates the alternative pose (see DeadReckoning) by inertial prediction. While a relocalisation is unconfirmed,
-/// the alternative is the pose without it. After a contradiction, the alternative is the relocalised pose.
+/// the alternative is the pose without the relocalisation. After a contradiction, the alternative is the relocalised
+/// pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   if (relocalisation_unconfirmed && !unconfirmed_before) {

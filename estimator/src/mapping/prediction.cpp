@@ -122,7 +122,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force that saturates late in a sweep hardly affects the registration of this sweep. The velocity variance due to
+  // A force that saturates late in a sweep hardly affects the registration of the sweep. The velocity variance due to
   // this force is therefore added to the next sweep as well.
   u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
   u::block(within, u::velocity) += clipped_force_m2_s2;

@@ -30,7 +30,7 @@ constexpr double kApart_rad = 0.12;
 // Largest difference between the vertical components of the normals of an anchor and of a cell.
 constexpr float kNormalZ = 0.3f;
 
-constexpr float kCovered_m = 1.0f;  // a point is covered if the prior map has a surface within this distance
+constexpr float kCovered_m = 1.0f;  // maximum distance of a covered point from the prior map
 constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 0.7f;
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;

@@ -218,8 +218,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 }
 
 /// NormalNoise is the part of the normal matrix that is due to noise of the surface normals, for all free unknowns:
-/// mapping.md (R28), (R29). If NormalNoise covered only the motion, this noise would seem to determine combinations
-/// that surfaces cannot determine, for example attitude with mounting rotation. The covariance (R52) of such
+/// mapping.md (R28), (R29). If NormalNoise covered only the motion, noise would seem to determine combinations of
+/// unknowns that surfaces cannot determine, for example attitude with mounting rotation. The covariance (R52) of such
 /// combinations would then grow without bound.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;

@@ -17,7 +17,7 @@ using Params = LidarInertialOdometry::Params;
 // kDeficitTries lists the saturation deficits that are tried, as multiples of deficit_try_rad_s. Small deficits are the
 // most frequent, so most values are small.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
-constexpr double kDeficitSigmas = 5.0;  // deficits above this number of standard deviations are not tried
+constexpr double kDeficitSigmas = 5.0;  // largest tried deficit, in standard deviations
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 // Distance of an initial pose from the prior, in standard deviations. The maximum distance grows with each round.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The operations and their
-// order are those of Eigen's quaternions, so the results are equal.
+// order equal those of Eigen's quaternions, so the results are bit-identical.
 #include <algorithm>
 #include <limits>
 

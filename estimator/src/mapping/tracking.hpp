@@ -22,7 +22,7 @@ struct Lost {
 };
 
 /// Relocalised is the state after a relocalisation that is not confirmed yet. Inertial prediction continues in parallel
-/// (DeadReckoning), and replaces the relocalisation if a sweep contradicts it: mapping.md (R67), (R68).
+/// (DeadReckoning), and replaces a relocalisation that a sweep contradicts: mapping.md (R67), (R68).
 struct Relocalised {
   int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;

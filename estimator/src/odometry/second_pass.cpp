@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
-    20;  // the second pass may reject one more sweep per this many sweeps than the first pass
+    20;  // rejections by second pass <= rejections by first pass + sweeps / kSweepsPerExtraRejection
 // The second pass uses the estimated calibration only if at most one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
@@ -186,7 +186,7 @@ void SecondPass::replace_first_pass(OdometryPass& first) {
       (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*pass_));
     applied_ = true;
-    // The regular second pass later compares its number of rejected sweeps with this number.
+    // The regular second pass later compares its number of rejected sweeps with rejected_by_first_.
     rejected_by_first_ = rejected_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

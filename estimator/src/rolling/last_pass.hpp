@@ -39,8 +39,9 @@ class LastPass {
     std::size_t index;
   };
 
-  /// Constructs the pass. All arguments must outlive it. A known `distance` is a measurement after the last sample.
-  /// `segment` is the number of nodes whose records are stored at a time; it affects only memory and computing time.
+  /// Constructs the pass. All arguments must outlive the pass. A known `distance` is a measurement after the last
+  /// sample. `segment` is the number of nodes whose records are stored at a time. The segment length affects only
+  /// memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 

@@ -12,7 +12,7 @@
 namespace tumble::rolling {
 
 /// The filter is corrected while the standard deviation of the heading exceeds kLostHeading_rad. The false information
-/// grows with the square of this standard deviation.
+/// about the heading grows with the square of this standard deviation.
 inline constexpr double kLostHeading_rad = 0.1;
 
 inline bool heading_lost(const Covariance& P) {

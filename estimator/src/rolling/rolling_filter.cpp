@@ -16,7 +16,7 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
-constexpr double kEventProbability = 0.5;  // a slip or bump is reported above this probability
+constexpr double kEventProbability = 0.5;  // minimum probability of a reported slip or bump
 constexpr double kSpinSigmas = 4.0;        // a larger rate at rest, in standard deviations of the bias, is a rotation
 
 static_assert(RollingFilter::kStates == rolling::kStates);

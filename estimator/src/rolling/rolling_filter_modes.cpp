@@ -22,7 +22,7 @@ constexpr double kPruneLogWeight =
     -120.0;  // minimum log weight of a hypothesis, relative to the best hypothesis
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
-constexpr double kModeAgeMax_s = 1.0;  // an older mode counts as this old
+constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
 // Horizontal change of the contact velocity per node during slip: its density is a mixture of three Gaussians with the
 // standard deviations kPlateau_m_s, kSteady_m_s and kJump_m_s. The smallest, kPlateau_m_s, equals the standard
 // deviation of grip. With a larger value, each phase of constant slip velocity would count as grip.

@@ -30,7 +30,7 @@ constexpr double kForceTilt_rad = 0.35;                           // direction e
 constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
 constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// If the force differs from gravity by more than this fraction, the sphere is pushed or rotates fast.
+// If the force differs from gravity by more than kPushForceRatio * gravity, the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate

@@ -89,7 +89,7 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  // level() cannot fail, because the filter already levelled with this force.
+  // level() cannot fail, because the filter already levelled with the force of this sample.
   if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);
