@@ -18,9 +18,8 @@ namespace {
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
-constexpr int kMinImusForRecovery = 3;  // minimum number of IMUs for recovering a rate from accelerometers
-constexpr double kUnsaturatedForceRatio =
-    0.8;  // accelerometer errors are estimated up to this fraction of the range
+constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
+constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
 // Minimum integral of the squared lever arm force: 1 m/s^2 for 1 s. At kArmSquareMin_m2_s3, an accelerometer bias of
 // 0.05 m/s^2 changes lever_arm_agreement() by 0.05.

@@ -8,8 +8,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kAccelerationSpan_s =
-    0.01;  // = model_error_s of the rate model
+constexpr double kAccelerationSpan_s = 0.01;  // = model_error_s of the rate model
 // The calibration is unstable if more than kResetFraction of the solver steps within a lag reset the calibration.
 constexpr double kResetFraction = 0.5;
 

@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector3d;
 
 // The section "Thresholds" of docs/maths/outliers.md justifies the thresholds of the outlier test by measurements.
-constexpr double kRateMin_rad_s = 1.0;   // smallest jump of a gyro reading that is an outlier
-constexpr double kForceMin_m_s2 = 30.0;  // smallest jump of an accelerometer reading that is an outlier
-constexpr double kOutlierRatio = 3.0;    // minimum ratio of an outlier to the difference of its neighbours
+constexpr double kRateMin_rad_s = 1.0;                // smallest jump of a gyro reading that is an outlier
+constexpr double kForceMin_m_s2 = 30.0;               // smallest jump of an accelerometer reading that is an outlier
+constexpr double kOutlierRatio = 3.0;                 // minimum ratio of an outlier to the difference of its neighbours
 constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration of a robot per unit of force
 constexpr double kLever_m = 10.0;                     // largest force of a robot per unit of angular acceleration
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample

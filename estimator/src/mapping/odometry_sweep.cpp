@@ -298,9 +298,8 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
-  if (mapping::is_unconfirmed(tracking))
-    return;                              // pruning would change the sweep numbers for remove_sweeps_since()
-  if (localiser.is_localised()) return;  // the prior map is never pruned
+  if (mapping::is_unconfirmed(tracking)) return;  // pruning would change the sweep numbers for remove_sweeps_since()
+  if (localiser.is_localised()) return;           // the prior map is never pruned
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 

@@ -18,8 +18,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kPruneLogWeight =
-    -120.0;  // minimum log weight of a hypothesis, relative to the best hypothesis
+constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesis, relative to the best hypothesis
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
