@@ -22,7 +22,6 @@ struct Parameter {
   std::string_view doc;   ///< meaning and source, one sentence
 };
 
-/// Concatenates two tables of parameters.
 template <std::size_t M, std::size_t N>
 constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
                                               const std::array<Parameter, N>& second) {

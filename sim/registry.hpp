@@ -24,7 +24,6 @@ const Type& find_entry(std::span<const Type* const> registry, std::string_view n
                          (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
-/// Returns the entries of a registry as a list of ComponentType.
 template <typename Type>
 std::vector<ComponentType> components(std::span<const Type* const> registry) {
   std::vector<ComponentType> list;

@@ -56,7 +56,6 @@ class TriadChain {
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();
-    /// Returns the signal after all stages of the error chain.
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 

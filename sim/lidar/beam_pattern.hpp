@@ -23,7 +23,7 @@ struct ChannelFirings {
 /// together. Neighbouring lanes have similar directions, so a packet of lanes is fast to cast. Lanes beyond the number
 /// of slots are also filled.
 struct FiringBlock {
-  /// Number of the slot since the start of the recording, which determines the random numbers.
+  /// Number of the slot since the start of the recording. This number determines the random numbers of the slot.
   std::int64_t first_slot = 0;
   int slots = 0;
   std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording

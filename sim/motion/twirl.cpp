@@ -100,7 +100,6 @@ class Twirl : public Motion {
   }
 
  private:
-  /// Returns the intended pose of the robot.
   HandHeldPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {

@@ -41,7 +41,6 @@ class Current {
   unsigned char pixels_[4 * kSide * kSide];
 };
 
-/// Scene is MuJoCo's scene for one picture.
 class Scene {
  public:
   Scene(const mjModel& model, int geoms) {

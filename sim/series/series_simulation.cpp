@@ -15,7 +15,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the number of physics steps per averaging window.
 std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   const double steps = 1e9 / (sensor.values.at("output_rate_hz") * static_cast<double>(step_ns));
   const double whole = std::round(steps);

@@ -26,7 +26,7 @@ struct RailFacet {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
-  int segments = 0;  ///< number of runs of readings on the plane that are not rounded maxima
+  int segments = 0;  ///< number of runs of readings on the plane, without rounded maxima
 };
 
 /// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for

@@ -17,8 +17,8 @@ using Workspace = RailPlaneFinder::Workspace;
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
 // A reading is on a saturation plane if its distance from the plane is at most `kSlabDeviations` standard deviations of
-// the distances of all such readings. The maximum distance is between kSlabRatioMin and kSlabRatioMax times the
-// saturation level.
+// the distances of all such readings. The maximum distance is limited to the range from kSlabRatioMin to kSlabRatioMax
+// times the saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
 // Collects readings that may be within `slab` of the largest reading along a sensing direction, for any cross-axis

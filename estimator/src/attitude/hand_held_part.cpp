@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hand_held_part.cpp solves for a part of the nodes of a hand-held motion. The other nodes act as a prior on the first
-// and last node of the part.
+// hand_held_part.cpp solves for a part of the nodes of a hand-held motion. All nodes outside of the part act as a prior
+// on its first and last node.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -162,7 +162,6 @@ bool Problem::step(double& largest) {
   return true;
 }
 
-// Changes nodes and constants by the fraction `share` of the last Gauss-Newton step.
 void Problem::go(double share) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
   constants_.move(share * border_step_);

@@ -18,7 +18,6 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
-/// Adds the zero-mean priors of the calibration constants.
 double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner);
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector moved(const Node& from, const Node& to);

@@ -366,7 +366,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_,
                           by_rotation = jacobian_position * from_mean_m;
     state.sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all IMUs cancels
+    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean force cancels
     state.lever_arm_effect_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

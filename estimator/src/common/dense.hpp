@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 
 /// dense.hpp declares decompositions of large symmetric matrices, which are compiled once for all sizes. Eigen
-/// instantiates fixed-size decompositions in each file and for each size, which would double the compile time of those
-/// files. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition
-/// allocates memory, so call it at most once per sweep or run.
+/// instantiates fixed-size decompositions in each file and for each size, which would double the compile time of the
+/// files that decompose matrices. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to
+/// rounding. Each decomposition allocates memory, so call it at most once per sweep or run.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read

@@ -69,7 +69,6 @@ struct LidarInertialOdometry::Impl {
                                              bool has_ring_numbers, const mapping::Placed& placed, SweepReport& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  /// Adds a registered sweep to the lag window.
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
   /// Sets the predicted velocity to zero if the robot is at rest after a tracking failure. The function has no effect
@@ -89,7 +88,6 @@ struct LidarInertialOdometry::Impl {
   /// continues in the frame of the prior map, with its points.
   void localise(const SweepReport& report);
   void enter_prior_map(const mapping::FramePose& pose);
-  /// Returns whether new sweeps extend the map.
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;

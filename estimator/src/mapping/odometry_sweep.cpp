@@ -348,7 +348,7 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
 /// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since then, and
 /// continues from the inertial prediction. The relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
-  map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
+  map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // 0, because pruning changes sweep numbers
   std::swap(boundary, other->boundary);
   std::swap(window, other->window);
   other->window.clear_inserted();

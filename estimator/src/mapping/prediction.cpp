@@ -156,8 +156,9 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the matrix that converts errors of the prior to errors after the registration: mapping.md (R52). A separate
-/// function limits the use of the stack.
+/// Computes the matrix that converts errors of the prior to errors after the registration: mapping.md (R52).
+/// prior_error_gain() is a separate function, because its matrices would otherwise enlarge the stack frame of
+/// posterior().
 [[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
                                         Registration::Matrix& out) {
   // Noise of the surface normals carries no information about the motion.

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 
 /// SweepBoundary is the state at the boundary between two sweeps, with all data that the next sweep needs.
 struct SweepBoundary {
-  /// Estimate of the unknowns at the boundary.
+  /// Estimate of the unknowns at the boundary between both sweeps.
   StateEstimate state_estimate;
   /// Derivative of the unknowns at the boundary with respect to the unknowns at the start of the last sweep.
   Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();

@@ -208,7 +208,7 @@ Status Registration::finalise(const Problem& problem, const IterationState& at, 
 /// Computes how well the surfaces constrain each direction: mapping.md (R30), (R31).
 void Registration::compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                        Result& result) const {
-  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // with robust weights, without variances
+  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // weighted robustly, but not by variance
   double weight = 0.0, lever2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;

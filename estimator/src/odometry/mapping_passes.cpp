@@ -29,7 +29,6 @@ bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   return true;
 }
 
-/// Pass is one pass of the mapper over a recording.
 class Pass {
  public:
   Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)

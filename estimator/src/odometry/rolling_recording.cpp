@@ -24,7 +24,6 @@ Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   return {};
 }
 
-/// Estimates all poses from the recorded readings.
 Status RollingOdometry::finish_whole_recording() {
   std::vector<UnitRecording> recordings;
   for (std::size_t k = 0; k < params_.units.size(); ++k) {

@@ -74,7 +74,6 @@ Status TumblingOdometry::record(const ImuSample& sample) {
   return {};
 }
 
-/// Estimates rates, map and poses from the recorded data.
 Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
   if (finished_) return {};
   finished_ = true;

@@ -136,7 +136,7 @@ void RollingFilter::detect_rest(State& state) const {
     return;
   }
   const Eigen::Vector3d w_mean = state.sums.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
-  const TimeNs from_ns = state.rest.last_mean_ns;  // nodes are contiguous
+  const TimeNs from_ns = state.rest.last_mean_ns;  // the last node ended where this node starts
   state.at_rest =
       rest_detector_.observe_mean(w_mean, state.sums.force_integral_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
                                   state.nominal.gyro_bias_rad_s, state.rest);

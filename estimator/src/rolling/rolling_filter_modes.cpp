@@ -28,8 +28,8 @@ constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes cou
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
-                 // vertical change of the contact velocity on a bump [m/s], with the weight of a sphere that rolls over
-                 // it
+                 // vertical change of the contact velocity on a bump [m/s]: standard deviations for rolling over the
+                 // bump and hitting it, and the fraction of rolling over
     kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
 // At least kMinDissentingHypotheses of the kept hypotheses do not share the last mode change of the best hypothesis. A
@@ -228,7 +228,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // The remaining copies form cycles of slots.
+  // The remaining pending copies form cycles of slots.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

@@ -28,7 +28,7 @@ constexpr double kImuOffset_m = 0.02;        // distance of an IMU from the cent
 constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
 constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
-constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
+constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
 // If the force differs from gravity by more than kPushForceRatio * gravity, the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;

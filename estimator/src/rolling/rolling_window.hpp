@@ -14,7 +14,7 @@ struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
   bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
-  bool stands = false;          ///< the rest has lasted long enough for a constant position
+  bool stands = false;          ///< the sphere has rested long enough for a constant reported position
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
