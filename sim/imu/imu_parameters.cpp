@@ -155,7 +155,6 @@ constexpr std::array kParameters = {
 
 constexpr double kSlowestUpdate_hz = 0.1;
 
-/// Checks the saturation parameters of one triad.
 void check_rail(const Values& values, const std::string& place, const std::string& prefix, const std::string& unit) {
   const std::string rail_name = prefix + "_rail_" + unit;
   const std::string axis_name = prefix + "_plateau_axis_spread_" + unit;
