@@ -25,7 +25,7 @@ class Clean:
 
     def __init__(self, root: pathlib.Path, folder: pathlib.Path, headers: list[str], depends_on: bytes):
         self._root, self._folder, self._depends_on = root, folder, depends_on
-        # an include names the end of a header's path. If the paths of two headers have this end, the source depends on both
+        # An include names the end of a header's path. If two headers match, the source depends on both.
         self._ending: dict[str, list[str]] = {}
         for name in headers:
             parts = pathlib.PurePath(name).parts

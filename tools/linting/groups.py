@@ -86,9 +86,9 @@ def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
     for at, source in enumerate(group):
         renamed = source.own & taken
         taken |= source.own
-        # members and qualified names stay unchanged, because they belong to other classes or namespaces
+        # Members and qualified names belong to other classes or namespaces, so they stay unchanged.
         pattern = re.compile(r"(?<![.>:\w])(" + "|".join(sorted(renamed)) + r")\b") if renamed else None
-        depth = 0  # depth of preprocessor conditions; an include within a condition is not moved
+        depth = 0  # depth of preprocessor conditions; a conditional include is not moved
         for number, line in enumerate(source.text.splitlines(), 1):
             depth += line.startswith("#if")
             depth -= line.startswith("#endif")
