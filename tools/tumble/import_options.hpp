@@ -18,21 +18,21 @@ struct ImportOptions {
   std::filesystem::path path, out;
   std::string format, robot;
   double radius_m = 0.0;
-  // properties of the IMU
+  // Properties of the IMU.
   std::string device, accel_unit, gyro_unit, columns;
   std::vector<double> lever_arm_m;
   std::filesystem::path imu;
-  // properties of the lidar
+  // Properties of the lidar.
   std::string lidar, stem, bin_columns, time_field, time_unit;
   std::vector<double> T_body_lidar;
   std::filesystem::path times;
   double sweep_period_s = 0.0;
   bool not_skewed = false;
-  // properties of the reference
+  // Properties of the reference.
   std::filesystem::path reference;
   std::string reference_frame;
   bool sorted = false, align_reference = false;
-  // topics of a bag
+  // Topics of a bag.
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
   bool leave_out_topics = false;  ///< skip a faulty topic if another topic of its kind is readable
