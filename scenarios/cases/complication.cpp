@@ -31,7 +31,7 @@ struct ComplicationLine {
 };
 
 /// Returns the removable details of a world, such as rocks, with the parameter values that remove them (sim/world, "0:
-/// none"). These values change neither type nor size of the world.
+/// none"). The ideal values change neither type nor size of the world.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},

@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Complication is a removable detail of a simulated run, for example a sensor error, stones on the floor or a spin. It
-/// consists of scenario parameters, each with the ideal value that removes the detail.
+/// Complication is a removable detail of a simulated run, for example a sensor error, stones on the floor or a spin. A
+/// complication consists of scenario parameters, each with the ideal value that removes the detail.
 struct Complication {
   std::string name;                                     ///< "sensors.imu: white noise", "world: rocks"
   std::vector<std::pair<std::string, double>> without;  ///< parameter name (fixed_number.hpp) and ideal value

@@ -21,8 +21,9 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// The control is a method of the same kind, which must succeed on every accepted run. It excludes scenarios that no
-  /// method can solve. Null disables the control. If the control fails on the original run, the search ignores it.
+  /// The control is a method of the same kind, which must succeed on every accepted run. The control excludes scenarios
+  /// that no method can solve. Null disables the control. If the control fails on the original run, the search ignores
+  /// it.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< time limit of one method run
@@ -60,9 +61,9 @@ struct Shrunk {
 /// 3. Reduce the remaining sizes and counts, then the duration again.
 ///
 /// The search accepts a simpler run if it fails like the original run (same_failure.hpp). If the true value of an input
-/// prevents the original failure, it must also prevent the failure of the simpler run. Otherwise the search could end
-/// at another cause. All trials use the random seed of the original run, so the search is deterministic. The search
-/// misses a simpler run that can only be reached through a passing run.
+/// prevents the original failure, it must also prevent the failure of the simpler run. Without this condition, the
+/// search could end at another cause. All trials use the random seed of the original run, so the search is
+/// deterministic. The search misses a simpler run that can only be reached through a passing run.
 ///
 /// Throws BadInput if the original run does not fail, or if `method` or the control cannot process the run. Throws the
 /// exceptions of simulate_draw if the original run cannot be simulated.

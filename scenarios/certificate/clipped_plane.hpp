@@ -7,8 +7,8 @@
 #include "sim/recording.hpp"
 
 /// The functions in clipped_plane.hpp compute the saturation plane of a sensing element: the plane that limits the
-/// readings while the element is saturated. The plane comes from a fit or from the closed form. It is y_j = +-rho + b +
-/// sum over k != j of c_k y_k, where c_k = -M_jk / M_jj, rho = r / M_jj and b = -o_j / M_jj. The file
+/// readings while the element is saturated. The plane comes from a fit or from the closed form. The plane is y_j =
+/// +-rho + b + sum over k != j of c_k y_k, with c_k = -M_jk / M_jj, rho = r / M_jj and b = -o_j / M_jj. The file
 /// sim/imu/elements.hpp defines the matrix M and the offset o; r is the saturation limit.
 namespace tumble::scenarios {
 

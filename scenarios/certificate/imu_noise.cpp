@@ -21,8 +21,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns the sensor specification with noise and bias only. Filters would need a higher sample rate. The other sensor
-/// errors are constant at rest.
+/// Returns the sensor specification with noise and bias only. Filters would need a higher sample rate. Sensor errors
+/// other than noise and bias are constant at rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :

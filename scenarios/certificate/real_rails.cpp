@@ -22,7 +22,8 @@
 // Pendulum, z axis: the gyro of the third segment saturates in Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37
 // readings) and Test07 trial 3 (10 readings) have residuals of 0.0003 (0.07 and 0.09), below the gyro's resolution of
 // 0.0005. The offsets of the two planes are 0.0001 and 0.0003. Fits with repeated readings and partly saturated windows
-// have residuals of 0.02 to 0.07. Their cross-axis sensitivities scatter: 0.045 to 0.054 and -0.027 to 0.009.
+// have residuals of 0.02 to 0.07. The cross-axis sensitivities of such fits scatter: 0.045 to 0.054 and -0.027 to
+// 0.009.
 #include <algorithm>
 #include <array>
 #include <cmath>

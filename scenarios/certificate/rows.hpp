@@ -55,8 +55,9 @@ struct SlipToGripSetup {
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
 /// The impact measurement drops the rig on its corners and computes the first peak of the specific force, averaged over
-/// 2 ms. It reports the relative change of the peak at a quarter of the simulation step. It also reports the exponent
-/// of the peak as a function of the contact time constant; an ideal spring has the exponent -1.
+/// 2 ms. The measurement reports the relative change of the peak at a quarter of the simulation step. The measurement
+/// also reports the exponent of the peak as a function of the contact time constant. An ideal spring has the exponent
+/// -1.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step

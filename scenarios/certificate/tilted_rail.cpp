@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each sensing element saturates along its own axis, so its saturated readings form one plane per sign
 // (clipped_plane.hpp). The measurement simulates IMUs with random misalignments, scales and offsets, and saturates one
-// sensing element at a time. It then compares the plane that fits the readings with the simulated plane. The file
-// real_rails.cpp contains the measurement with planes of real devices.
+// sensing element at a time. The measurement then compares the plane that fits the readings with the simulated plane.
+// The file real_rails.cpp contains the measurement with planes of real devices.
 #include <algorithm>
 #include <cmath>
 

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// DataSheet contains the numbers of a sensor, each with value, unit and source. It is stored in
+/// DataSheet contains the numbers of a sensor, each with value, unit and source. The file of a data sheet is
 /// models/sensors/DEVICE.yaml.
 struct DataSheet {
   struct Entry {

@@ -51,9 +51,9 @@ ImuSheet imu_sheet(const sim::ImuRecord& record);
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
 /// Returns true for each usable sample of an IMU. A sample is unusable if it is not finite, exceeds the range of any
-/// sensor, or has a time stamp out of order, provided that such samples are rare (may_leave_out). A sample is also
-/// unusable if OutlierFilter rejects it. If the arrays of the IMU record differ in length, all samples count as usable.
-/// The cost is O(N log N).
+/// sensor, or has a time stamp out of order. If such samples are not rare (may_leave_out), all of them count as usable.
+/// A sample is also unusable if OutlierFilter rejects it. If the arrays of the IMU record differ in length, all samples
+/// count as usable. The cost is O(N log N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
 /// Converts the samples of an IMU, in order, without the faulty readings (find_inliers). Possible errors are `empty`,

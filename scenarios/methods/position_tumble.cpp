@@ -34,7 +34,7 @@ Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<st
                 "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2",
-                          // These priors depend on whether the device has a data sheet.
+                          // The priors below depend on whether the device has a data sheet.
                           "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s", "rolling_accel_bias_sigma_m_s2",
                           "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma", "rolling_gyro_scale_sigma",
                           "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},

@@ -222,7 +222,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Reads the poses of a method of kind position, slam or attitude. Those of kind attitude have no positions.
+/// Reads the poses of a method of kind position, slam or attitude. Poses of kind attitude have no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());

@@ -24,8 +24,8 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
-    // RegimeStream sets these parameters from its RateStream. Its hand-held stream makes one iteration per node of the
-    // trajectory.
+    // RegimeStream sets the parameters below from its RateStream. The HandHeldStream of RegimeStream makes one
+    // iteration per node of the trajectory.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});

@@ -17,8 +17,8 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The templates in settings.hpp convert the `Params` struct of a library class to the parameters of a method. They use
-/// the descriptions of the struct's fields (common/parameters.hpp), as do tables, parsing and tests.
+/// The templates in settings.hpp convert the `Params` struct of a library class to the parameters of a method. The
+/// templates use only the descriptions of the struct's fields (common/parameters.hpp), like tables, parsing and tests.
 namespace tumble::scenarios {
 
 namespace detail {
@@ -56,8 +56,8 @@ struct SettingsOptions {
   std::string prefix = {};
 };
 
-/// SettingsTable contains the names, descriptions and values of a method's parameters. It is the base class of all
-/// Settings, independent of the `Params` type.
+/// SettingsTable contains the names, descriptions and values of a method's parameters. SettingsTable is the base class
+/// of all Settings and does not depend on the `Params` type.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;

@@ -15,8 +15,9 @@ constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IM
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// ConstantVelocity predicts that the pose change over the last sweep repeats, in translation and rotation. It uses the
-/// IMU only for the times of the poses and the initial vertical. Without an IMU, it assumes an upright start.
+/// ConstantVelocity predicts that the pose change over the last sweep repeats, in translation and rotation.
+/// ConstantVelocity uses the IMU only for the times of the poses and the initial vertical. Without an IMU,
+/// ConstantVelocity assumes an upright start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {

@@ -5,8 +5,8 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// These methods build maps of a rolling sphere from the poses of a position method, without registration, as
-/// published.
+/// The methods in slam_poses.cpp build maps of a rolling sphere from the poses of a position method, without
+/// registration, as published.
 namespace tumble::scenarios {
 
 namespace {

@@ -42,7 +42,7 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
 }
 
 const Settings<TumblingOdometry::Params>& whole_settings() {
-  // These parameters apply only to streaming and to the second pass.
+  // The parameters below apply only to streaming and to the second pass.
   static const auto all =
       odometry_settings(TumblingOdometry::kWholeRecording,
                         {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma",

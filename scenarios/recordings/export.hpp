@@ -40,9 +40,9 @@ struct ExportChoices {
 /// replaced atomically. In all formats, time 0 of the recording is export_origin_ns.
 ///
 /// Returns notes about renamed sensors (export_names.hpp), and about sensors for which a bag has no message type.
-/// Throws BadInput for an unknown format (the message suggests the nearest name), if the recording lacks data that the
-/// format needs, or if the output path cannot be written. A bag is written sweep by sweep; memory contains the IMU
-/// samples, 32 bytes per message, and the poses from `choices`.
+/// Throws BadInput for an unknown format; the message suggests the nearest name. Throws BadInput if the recording lacks
+/// data that the format needs, or if the output path cannot be written. A bag is written sweep by sweep; memory
+/// contains the IMU samples, 32 bytes per message, and the poses from `choices`.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
@@ -51,9 +51,9 @@ std::vector<std::string> export_recording(const std::filesystem::path& recording
 /// lists the known names.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
-/// Writes the true poses T_WA of frame A to a TUM file, one line "t x y z qx qy qz qw" per physics sample, with t in
-/// seconds with nine decimals. Reading restores all numbers exactly, except for the rounded time. `origin_ns` is added
-/// to all times. Times with an unknown pose are omitted.
+/// Writes the true poses T_WA of frame A to a TUM file. Each physics sample has one line "t x y z qx qy qz qw", with t
+/// in seconds with nine decimals. Reading restores all numbers exactly, except for the rounded time. `origin_ns` is
+/// added to all times. Times with an unknown pose are omitted.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 /// Writes a truth that is on disk to a TUM file, part by part.

@@ -21,8 +21,8 @@ struct ExportNames {
   std::set<std::string> taken;  ///< names of the sensors, and topics and frames of the export itself
 };
 
-/// Returns unique names for the sensors, of letters, digits, - and _, which are safe as file names. They differ from
-/// the topics and frames of the export (truth, body, world, tf …) and from frames that readers reserve (map, odom,
+/// Returns unique names for the sensors, of letters, digits, - and _, which are safe as file names. The names differ
+/// from the topics and frames of the export (truth, body, world, tf …) and from frames that readers reserve (map, odom,
 /// base_link). If an earlier sensor has the same name, a number is appended. For a truth, returns the names of the
 /// sensors in the truth.
 ExportNames export_names(const sim::Sensors& sensors);

@@ -138,8 +138,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. It is unnecessary, because
-  // the handles close all files.
+  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. The cleanup is
+  // unnecessary, because the handles close all files.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

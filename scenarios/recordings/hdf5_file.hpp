@@ -49,8 +49,8 @@ class MemoryFile {
   Group root_;
 };
 
-/// DiskFile is an HDF5 file that replaces an empty file on disk. It reserves the maximum disk space first, so that the
-/// HDF5 library never writes to a full disk.
+/// DiskFile is an HDF5 file that replaces an empty file on disk. DiskFile reserves the maximum disk space first, so
+/// that the HDF5 library never writes to a full disk.
 class DiskFile {
  public:
   /// Creates an HDF5 file at `path` and reserves `most_bytes` bytes. Error messages start with `name`. Throws BadInput

@@ -45,13 +45,13 @@ enum class GyroUnit { rad_s, deg_s };
 /// 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. A non-empty `columns` names the columns:
 /// "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Instead of a name, it may contain a position, from 0.
 ///
-/// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI. Its period and readings are
-/// replaced. Times count from the first stamp; the period is the median step. Stamps that are rounded to milliseconds
-/// are moved to the true period of the IMU, with a note (rounded_stamps.hpp). The size and the rotation of gravity
-/// confirm the units, with a note, if the motion is sufficient.
+/// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI. The period and the readings of
+/// `device` are replaced. Times count from the first stamp; the period is the median step. Stamps that are rounded to
+/// milliseconds are moved to the true period of the IMU, with a note (rounded_stamps.hpp). The size and the rotation of
+/// gravity confirm the units, with a note, if the motion is sufficient.
 ///
-/// A line is skipped, with a note, if it has an invalid or non-finite number, a wrong number of columns, readings that
-/// are all 0, or a stamp that does not increase (left_out.hpp).
+/// A line is skipped, with a note, if it has an invalid or non-finite number, or a wrong number of columns
+/// (left_out.hpp). A line is also skipped if its readings are all 0 or its stamp does not increase.
 ///
 /// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or a truncated last
 /// line. Throws BadInput if more than 5 % of the lines are faulty, for fewer than two samples, or if one of these
@@ -86,8 +86,8 @@ struct SweepSource {
 /// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from the file `times`, or else from the file name,
 /// from absolute point times, or from `steady_ns`. Time 0 of the recording is the start of the first sweep, or the zero
 /// of the clock if it is less than a second earlier. A file that cannot be used is skipped with a note. Throws BadInput
-/// with the file if more than 5 % of the files are faulty, and for different numbers of stamps and files, files of
-/// several lidars, or sweeps without times.
+/// with the file if more than 5 % of the files are faulty. Throws BadInput for different numbers of stamps and files,
+/// files of several lidars, or sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// ReferenceSource describes a pose file of another program.
@@ -104,9 +104,9 @@ struct ReferenceSource {
 /// import_sweeps. Throws BadInput if the file is invalid.
 Imported import_trajectory(const ReferenceSource& source);
 
-/// Reads a pose file and uses its poses as the truth of `recording`. Their stamps are in the clock of the recording's
-/// source (`origin_ns`). A KITTI file must have one pose per sweep. The truth ends with the sensor data. Throws
-/// BadInput for errors of the reader, for lidar poses without a lidar, or if the times do not overlap.
+/// Reads a pose file and uses its poses as the truth of `recording`. The stamps of the poses are in the clock of the
+/// recording's source (`origin_ns`). A KITTI file must have one pose per sweep. The truth ends with the sensor data.
+/// Throws BadInput for errors of the reader, for lidar poses without a lidar, or if the times do not overlap.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
 /// Adds the IMUs of `imu` to `recording`, which must use the same clock. The result has the earlier time 0 of both.

@@ -32,8 +32,8 @@ class LeftOut {
   /// Counts an item as faulty. `cause` completes the note "1 of 150 readings is left out: 1 with ...". `error` is the
   /// message with the location of the item, which require_few() throws if too many items are faulty.
   void add(const std::string& cause, const std::string& error);
-  /// Counts an item that is skipped for a cause that may affect any number of items, for example the empty reading that
-  /// a driver publishes in place of a lost reading.
+  /// Counts a skipped item whose cause may affect any number of items. For example, some drivers publish an empty
+  /// reading in place of a lost reading.
   void add_unlimited(const std::string& cause, const std::string& error);
   /// Calls `read`. If it throws BadInput, counts an item with faulty data.
   template <class Read>

@@ -39,8 +39,9 @@ void start_clock(Imported& recording);
 /// Adds a lidar with its points to the recording.
 void add_lidar(Imported& recording, BuiltSweeps built);
 
-/// Uses the poses of a frame A, mounted at T_BA on the body, as the truth of a recording. Their stamps are in the clock
-/// of the recording's source. If the poses are invalid, throws BadInput with a message that starts with `where`.
+/// Uses the poses of a frame A, mounted at T_BA on the body, as the truth of a recording. The stamps of the poses are
+/// in the clock of the recording's source. If the poses are invalid, throws BadInput with a message that starts with
+/// `where`.
 void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
                   const std::string& where);
 

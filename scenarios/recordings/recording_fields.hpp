@@ -15,7 +15,7 @@
 /// A visitor (archive) has the members value(name, text | double | int64), pose(name, isometry), point(name, vector,
 /// unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
 /// record, fields). The members optional_rows, optional_point, optional_list and point_times visit fields that later
-/// versions added. Such a field is neither stored nor hashed if it is empty, zero or "measured", so older files keep
+/// versions added. A later field is neither stored nor hashed if it is empty, zero or "measured", so older files keep
 /// their digests. Rows are a std::vector, or a ColumnFile if they are on disk.
 namespace tumble::scenarios {
 

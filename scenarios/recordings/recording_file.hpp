@@ -61,9 +61,9 @@ void write_recording(const std::filesystem::path& path, const RecordingInfo& inf
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// Reads the metadata of a recording file. This function and the following readers open only the group that they need.
-/// They throw BadInput with path and reason if the file is missing, truncated or not HDF5, if a dataset is missing or
-/// has a wrong shape, or if format version, lengths or digest do not match.
+/// Reads the metadata of a recording file. Each reader function opens only the group that it needs. All reader
+/// functions throw BadInput with path and reason if the file is missing, truncated or not HDF5, or if a dataset is
+/// missing or has a wrong shape. They also throw BadInput if format version, lengths or digest do not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
 /// Reads the sensors without points; stores the points on disk in the folder `scratch`, one PointStore per lidar.

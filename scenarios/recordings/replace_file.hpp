@@ -37,9 +37,9 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// OutputFolder is a folder for all files of one output. It must be missing or empty, so that users do not mistake old
-/// files for new ones; otherwise, throws BadInput. The content of an incomplete output is removed, even if a signal
-/// ends the program. If OutputFolder created the folder, it is removed too.
+/// OutputFolder is a folder for all files of one output. The folder must be missing or empty, so that users do not
+/// mistake old files for new ones. Throws BadInput if the folder is not empty. The content of an incomplete output is
+/// removed, even if a signal ends the program. If OutputFolder created the folder, it is removed too.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);

@@ -14,7 +14,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// These metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
+/// The binned metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
 /// clipped axes.
 namespace tumble::scenarios {
 

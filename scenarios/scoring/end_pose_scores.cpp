@@ -97,8 +97,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose. Its mean is 1
-// if the covariance is consistent.
+// Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose. The mean of
+// the normalised error is 1 if the covariance is consistent.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// These metrics measure whether an estimate is wrong, and whether its health reports that.
+// The health metrics measure whether an estimate is wrong, and whether its health reports the error.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kWrongDeviations = 5.0;
 // Independent of its covariance, an estimate is wrong if more than half of the samples during motion exceed an error
-// limit: kWrongRateShare times the true rate, or a tilt error of kWrongTilt_rad.
+// limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of kWrongTilt_rad.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr double kMoves_rad_s = 1.0;  // samples with a smaller true rate do not count
 

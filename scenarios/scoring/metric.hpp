@@ -72,7 +72,7 @@ double how_bad(const MetricInfo& metric, double value);
 double worst_value(const MetricInfo& metric);
 
 /// headline_metrics returns the most important metrics of a kind; held_metrics returns all metrics that gates compare.
-/// Both are in order of registration.
+/// Both functions return metrics in order of registration.
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
 

@@ -80,9 +80,9 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// NormalisedErrors contains squared rate errors divided by their reported variances: of clipped axes at all samples
-// (`all`), in flight (`flight`) and in contact (`impact`), and of unclipped axes that a clipped element disturbs
-// (`cross_axis`).
+// NormalisedErrors contains squared rate errors divided by their reported variances. The errors of clipped axes are at
+// all samples (`all`), in flight (`flight`) and in contact (`impact`). `cross_axis` contains the errors of unclipped
+// axes that a clipped element disturbs.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// ReferenceRail is the saturation limit of axis j with sign s, a tilted plane of readings: s y_j = rail + slopes *
-/// (the other two axes, in order). It is tilted because sensing elements saturate along their own, slightly
+/// (the other two axes, in order). The plane is tilted because sensing elements saturate along their own, slightly
 /// non-orthogonal axes, before the device calibrates its readings.
 struct ReferenceRail {
   bool found = false;
@@ -22,10 +22,10 @@ struct ReferenceRail {
 
 /// Estimates the saturation planes of the three axes for both signs.
 ///
-/// A candidate is a sample with a known reference rate, within 5 % of the extreme reading of the axis and sign. It is
-/// confirmed if the reference exceeds the reading by more than 2 %, and by more than four times the median difference
-/// between reading and reference on this axis. A saturation limit exists if at least five candidates, and at least half
-/// of the candidates, are confirmed.
+/// A candidate is a sample with a known reference rate, within 5 % of the extreme reading of the axis and sign. A
+/// candidate is confirmed if the reference exceeds the reading by more than 2 %. The difference must also exceed four
+/// times the median difference between reading and reference on this axis. A saturation limit exists if at least five
+/// candidates, and at least half of the candidates, are confirmed.
 ///
 /// The plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
 /// sensitivities and a residual deviation of 0.02 rad/s. A second fit uses only samples within 2 % of the first plane.

@@ -62,8 +62,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variance of the reference rate per axis: the square of 1.4826 times the median absolute difference
-/// between reference and unclipped gyro, which is assumed to be normally distributed.
+/// Returns the variance of the reference rate per axis. The standard deviation is 1.4826 times the median absolute
+/// difference between reference and unclipped gyro, which is assumed to be normally distributed.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -139,7 +139,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// These metrics describe the reference and not the method, so they are not ranked.
+/// Metrics that describe the reference and not the method are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -18,7 +18,7 @@ struct ScoringInput {
 };
 
 /// ScoredEstimate refers to an estimate and its recording, and caches results that several metrics share, such as
-/// paired poses and map distances. It is not thread-safe.
+/// paired poses and map distances. ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
   /// Throws BadInput if the sensors or the truth are missing.

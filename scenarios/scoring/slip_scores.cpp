@@ -10,12 +10,12 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// These metrics compare the slip and slide events that a position method detects with the true events.
+/// The slip metrics compare the slip and slide events that a position method detects with the true events.
 ///
-/// A slip event is a time interval with the contact labels slip and slide. It may contain up to kBridge_ns of grip, and
-/// up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event is scored if it lasts at
-/// least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Other true events cannot be distinguished from
-/// grip and cause no position error. The scores do not distinguish slip and slide.
+/// A slip event is a time interval with the contact labels slip and slide. A slip event may contain up to kBridge_ns of
+/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event is scored if it
+/// lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Other true events cannot be distinguished
+/// from grip and cause no position error. The scores do not distinguish slip and slide.
 ///
 /// An estimated event is correct if true events cover at least half of it. For this test, weak and short true events
 /// also count, and each true event is widened by kMargin_ns. A true event is detected if correct estimated events cover

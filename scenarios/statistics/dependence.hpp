@@ -33,10 +33,10 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y with respect to x from existing data; y may depend on further
-/// variables. The estimator is that of Plischke, Borgonovo, Smith, EJOR 226:536, 2013. It divides x into equally large
-/// classes, and computes the variance of the class means of y, equation (S18) of statistics.md. It subtracts the
-/// variance that is expected without dependence, equation (S19). If x takes few values, each value is a class. If y
-/// contains ranks, the p-value of equation (S20) is that of the Kruskal-Wallis test.
+/// variables. The estimator is that of Plischke, Borgonovo, Smith, EJOR 226:536, 2013. The estimator divides x into
+/// equally large classes, and computes the variance of the class means of y, equation (S18) of statistics.md. The
+/// variance that is expected without dependence, equation (S19), is subtracted. If x takes few values, each value is a
+/// class. If y contains ranks, the p-value of equation (S20) is that of the Kruskal-Wallis test.
 ///
 /// Values of y must be finite or NaN; pairs with NaN are ignored. The estimate needs at least 24 pairs. Throws BadInput
 /// if the lengths differ.

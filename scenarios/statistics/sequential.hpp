@@ -7,16 +7,17 @@
 namespace tumble::scenarios {
 
 /// Returns the probability of a false verdict that one side of a two-sided test may have used when the fraction `share`
-/// of the simulated runs is complete. It is almost zero at first and `risk` / 2 at the end. The function is that of Lan
-/// and DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, equation (S13) of statistics.md.
+/// of the simulated runs is complete. The probability is almost zero at first and `risk` / 2 at the end. The function
+/// is that of Lan and DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, equation (S13) of
+/// statistics.md.
 double spent_by(double risk, double share);
 
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations
 /// (S13) to (S15) of statistics.md. Each analysis sets a threshold for the number of positive and of negative signs. If
 /// the methods do not differ, the probability of having reached a threshold is at most the risk that may be spent so
-/// far. This probability is exact, because outcomes that reached an earlier threshold are excluded. Zero differences
-/// are ignored. The number and times of the analyses are free, but must not depend on the results. The cost is O(pairs
-/// * sqrt(all pairs)).
+/// far. The probability of reaching a threshold is exact, because outcomes that reached an earlier threshold are
+/// excluded. Zero differences are ignored. The number and times of the analyses are free, but must not depend on the
+/// results. The cost is O(pairs * sqrt(all pairs)).
 class SequentialSignTest {
  public:
   enum class Verdict { open, negative, positive };  ///< sign that occurs significantly more often

@@ -13,16 +13,16 @@
 /// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Margin is the largest accepted deficit of a method (non-inferiority margin): in the unit of the metric, or as a
-/// fraction of the reference method's value on the same run.
+/// Margin is the largest accepted deficit of a method (non-inferiority margin). The margin is in the unit of the
+/// metric, or a fraction of the reference method's value on the same run.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. It is negative if `own` is
-/// better, or worse by less than the margin. A negative margin requires an improvement. The result is infinite if only
-/// `own` is a failed run, and 0 if both runs failed.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is negative if `own`
+/// is better, or worse by less than the margin. A negative margin requires an improvement. The result is infinite if
+/// only `own` is a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {

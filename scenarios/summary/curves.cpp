@@ -111,8 +111,8 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Returns true if any method has a value of the metric on the simulated run `seed`. Otherwise failures on this run do
-/// not count.
+/// Returns true if any method has a value of the metric on the simulated run `seed`. If no method has a value, failures
+/// on this run do not count.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;

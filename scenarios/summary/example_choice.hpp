@@ -24,8 +24,9 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the simulated run on which the baseline of the scenario has its median headline score: the first headline
-/// metric with a value, of the first kind of method other than attitude. Returns false if there is no headline score.
+/// Finds the simulated run on which the baseline of the scenario has its median headline score. The headline score is
+/// the first headline metric with a value, of the first kind of method other than attitude. Returns false if there is
+/// no headline score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
 /// Returns at most `count` typical simulated runs, in the order of the candidates: first one scenario of each robot,

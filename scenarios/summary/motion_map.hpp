@@ -41,10 +41,10 @@ struct MotionMap {
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Computes the density of the runs: counts in cells, smoothed along both logarithmic axes by a Gaussian. Its width is
-/// Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a cell. The part of a
-/// kernel beyond the grid is distributed over the grid. The two maxima of a run may occur at different times. The cost
-/// is O(draws + cells^(3/2)).
+/// Computes the density of the runs: counts in cells, smoothed along both logarithmic axes by a Gaussian. The width of
+/// the Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a
+/// cell. The part of a kernel beyond the grid is distributed over the grid. The two maxima of a run may occur at
+/// different times. The cost is O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

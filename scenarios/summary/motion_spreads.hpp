@@ -33,7 +33,7 @@ inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
 /// Computes one Spread per quantity and scenario, with the scenarios in the order of the simulated runs. For a fraction
-/// of runs ("draws that clip the gyro"), each run has the value 0 or 1; `median` is then the fraction, and the
+/// of runs ("draws that clip the gyro"), each run has the value 0 or 1. The `median` is then the fraction, and the
 /// quantiles are the limits of its 95 % interval. For a fraction of all clipped samples, each run is weighted by its
 /// number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);

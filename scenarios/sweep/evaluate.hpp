@@ -22,8 +22,8 @@ struct SimulatedDraw {
   bool has_truth = true;  ///< a recording without truth is estimated but not scored
 };
 
-/// Lidars states whether the lidars are simulated. Their simulation is slow, and methods of kind `rate` do not read
-/// them.
+/// Lidars states whether the lidars are simulated. The simulation of lidars is slow, and methods of kind `rate` do not
+/// read them.
 enum class Lidars { simulated, left_out };
 
 /// Draws the random numbers of a scenario, builds the situation and simulates it. Without lidars, motion and IMU
@@ -45,8 +45,8 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 void require_applies(const Method& method, const Scenario& scenario);
 
 /// Runs a method on the sensor data of `draw` and returns the estimate. The status of `outcome` is failed after an
-/// exception or an error status. Otherwise it is ok, and the estimate can be scored. The CPU time of the method is the
-/// first score.
+/// exception or an error status. Without an error, the status is ok, and the estimate can be scored. The CPU time of
+/// the method is the first score.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
 /// Adds status and scores of a completed estimate to the outcome. `surface` may be null.

@@ -62,7 +62,7 @@ struct GatePolicy {
 };
 
 /// Gate contains the accepted results of a suite (scenarios/gates/SUITE.csv) and the limits for new results
-/// (SUITE.yaml). Both files are kept in git.
+/// (SUITE.yaml). The two files of a gate are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -102,8 +102,8 @@ struct GateResult {
 /// results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a simulated run has no outcome, or if a method has no ok outcome. Such results must not be
-/// accepted.
+/// Throws BadInput if a simulated run has no outcome, or if a method has no ok outcome. Results without an ok outcome
+/// must not be accepted.
 void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

@@ -77,7 +77,7 @@ void state_no_rail(sim::ImuRecord& imu) {
 }
 
 /// Replaces clipped readings by unclipped readings plus an error that is constant in each clipping interval, and
-/// removes all clip flags. This simulates a rate method with a constant error.
+/// removes all clip flags. The changed readings simulate a rate method with a constant error.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);

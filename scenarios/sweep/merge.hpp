@@ -14,10 +14,10 @@ namespace tumble::scenarios {
 /// (`outranks`).
 ///
 /// Throws BadInput if two scored rows differ in status, digest or a score other than cost, because one build must give
-/// one result. Throws BadInput if a value is not a number, if the inputs have different builds, models or scenarios, if
-/// `out` is an input, or if another process writes to `out` (database_owner.hpp). If `mixed` is true, rows of different
-/// builds are joined, and the first of two different rows is kept. An `out` without rows receives the common keep rule
-/// of the inputs (merge_kept).
+/// one result. Throws BadInput if a value is not a number, or if the inputs have different builds, models or scenarios.
+/// Throws BadInput if `out` is an input, or if another process writes to `out` (database_owner.hpp). If `mixed` is
+/// true, rows of different builds are joined, and the first of two different rows is kept. An `out` without rows
+/// receives the common keep rule of the inputs (merge_kept).
 MergeCounts merge_results(const DatabaseOwner& out, std::span<const std::filesystem::path> in, bool mixed);
 /// Locks the database `out`, then joins results databases into it.
 MergeCounts merge_results(const std::filesystem::path& out, std::span<const std::filesystem::path> in, bool mixed);

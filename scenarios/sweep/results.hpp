@@ -44,8 +44,8 @@ struct MergeCounts {
 /// Names contains names that many rows share, such as metric names; the reader of a database stores each name once.
 using Names = std::set<std::string, std::less<>>;
 
-/// OutcomeView refers to an outcome while it is read. Its pointers are valid until the next outcome; pointers to names
-/// stay valid.
+/// OutcomeView refers to an outcome while it is read. The pointers in an OutcomeView are valid until the next outcome;
+/// pointers to names stay valid.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< points into the `Names` of the reader
@@ -65,13 +65,13 @@ struct OutcomeView {
 std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
-/// Results is a results database (SQLite). It has at most one row per scenario, seed, kind, method and setting; storing
-/// a row again replaces the old row. Each call of store is one transaction, so completed results survive the end of the
-/// process.
+/// Results is a results database (SQLite). The database has at most one row per scenario, seed, kind, method and
+/// setting. Storing a row again replaces the old row. Each call of store is one transaction, so completed results
+/// survive the end of the process.
 class Results {
  public:
-  /// `join` equals `create_or_append`, but does not check that each score has an outcome. It is for callers that only
-  /// use `absorb`, which ensures this.
+  /// `join` equals `create_or_append`, but does not check that each score has an outcome. The mode `join` is for
+  /// callers that only use `absorb`, which ensures this.
   enum class Mode { create_or_append, join, read_only };
   /// Opens a results database. Throws BadInput for a missing file (read_only), a file that is no results database, an
   /// incomplete schema, another build (note "build"; except read_only), or lack of space. All member functions throw

@@ -21,15 +21,15 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// ShardRow is a row of the table `outcomes` in the source database (the shard). Its texts are valid until the next row
-/// is read.
+/// ShardRow is a row of the table `outcomes` in the source database (the shard). The texts of a ShardRow are valid
+/// until the next row is read.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
   double setting;
 };
 
-/// Joining copies the rows of a source database (the shard) to another database. It reads outcomes and scores in
+/// Joining copies the rows of a source database (the shard) to another database. Joining reads outcomes and scores in
 /// parallel, sorted by the outcome's number. New numbers have the order of the old numbers, so scores are only
 /// appended.
 class Joining {

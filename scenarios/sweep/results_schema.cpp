@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 // The database stores an unsigned 64-bit seed as a signed number with the same bits. A run that could not be simulated
 // is an outcome with an empty kind and method and the status 'rejected'. The column `varied` contains the keys of a
 // curve point and `setting` their value; for unmodified scenarios and methods, `varied` is empty. The view `scores`
-// contains one row per score, and a row with a null metric for an outcome without scores. It contains only rows with an
-// empty `varied`; the view `curves` contains the others.
+// contains one row per score, and a row with a null metric for an outcome without scores. The view `scores` contains
+// only rows with an empty `varied`; the view `curves` contains the others.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,

@@ -39,10 +39,10 @@ struct SuiteTriageOptions {
   std::function<void(const DrawTriage&)> on_draw;  ///< called after each simulated run
 };
 
-/// Runs the triage of each simulated run in a separate process. Its time limit is that of its method runs plus two
-/// further runs; its memory limit is `memory_mib`. If the process dies or times out, its results so far are kept, with
-/// an error. The results are in the order of `draws`; if the triage was stopped, the last ones are missing. Throws
-/// BadInput for an unreadable scenario, an invalid memory limit, or if no process can be started.
+/// Runs the triage of each simulated run in a separate process. The time limit of the process is that of its method
+/// runs plus two further runs; its memory limit is `memory_mib`. If the process dies or times out, its results so far
+/// are kept, with an error. The results are in the order of `draws`; if the triage was stopped, the last ones are
+/// missing. Throws BadInput for an unreadable scenario, an invalid memory limit, or if no process can be started.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

@@ -51,9 +51,9 @@ struct Suite {
 void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// Loads a suite by its name, from a suite file, or for a scenario: the name of a scenario gives a suite of all methods
-/// on this scenario, and that of a named case uses its seed. Throws BadInput if the name is unknown or the file is
-/// invalid.
+/// Loads a suite by its name, from a suite file, or from the name of a scenario. The name of a scenario gives a suite
+/// of all methods on this scenario. A named case is used with its own seed. Throws BadInput if the name is unknown or
+/// the file is invalid.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {

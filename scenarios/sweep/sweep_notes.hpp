@@ -23,7 +23,7 @@ std::vector<std::string> commands_of(const std::string& note);
 /// Returns `note` with the lines of `more` that it lacks.
 std::string with_commands(const std::string& note, const std::string& more);
 
-/// Returns `text` as one word of a POSIX shell. It is quoted if it contains anything but letters, digits and
+/// Returns `text` as one word of a POSIX shell. The word is quoted if it contains anything but letters, digits and
 /// `_-./:=,+@%`.
 std::string shell_word(const std::string& text);
 

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// Fraction of a method's time limit that an external command receives. Its parent process can then end the command
+// Fraction of a method's time limit that an external command receives. The parent process can then end the command
 // before its own deadline.
 constexpr double kOwnShare = 0.9;
 

@@ -36,9 +36,9 @@ Reach reach(const Setting& setting);
 /// Returns true if the setting is an error in the data from a lidar.
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput if a key is unknown (the message suggests the nearest name), is of another sort than the other keys,
-/// or does not apply to one of the scenarios. Throws BadInput if no situation with seed `seed` can be drawn with one of
-/// the values.
+/// Throws BadInput if a key is unknown; the message suggests the nearest name. Throws BadInput if a key is of another
+/// sort than the other keys, or does not apply to one of the scenarios. Throws BadInput if no situation with seed
+/// `seed` can be drawn with one of the values.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 

@@ -40,8 +40,8 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
 /// by at least 1 m.
 Path near_truth(const Path& path, const Path& truth);
 
-/// Span contains the first and the last time at which the body moves (faster than 0.1 m/s or 0.2 rad/s), with
-/// `margin_s` on each side, limited to the time of the truth. Without motion, it is the whole truth.
+/// Span contains the first and the last time at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval
+/// is widened by `margin_s` on each side and limited to the time of the truth. Without motion, it is the whole truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

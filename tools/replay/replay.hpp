@@ -49,8 +49,8 @@ struct ReplayActor {
   std::string colour;
   bool is_truth = false;
   ReplayTrack track;  ///< empty if the actor has no positions
-  /// Transform from body axes of the estimator's calibration, in which the points are, to the actor's body axes. They
-  /// differ for the truth, which has the true mounting of the lidar.
+  /// Transform from body axes of the estimator's calibration, in which the points are, to the actor's body axes. The
+  /// two axes differ for the truth, which has the true mounting of the lidar.
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
   std::vector<float> error_m;               ///< error of each point as placed by this actor [m]; NaN if unknown; empty
                                             ///< without a true surface

@@ -18,8 +18,8 @@ std::size_t triangle_count(const sim::MeshPart& part);
 std::vector<sim::MeshPart> thinned_world(std::vector<sim::MeshPart> parts, const Eigen::AlignedBox3f& near,
                                          std::size_t most, Shown& triangles);
 
-/// Returns a generic body for a recording without a known robot: a sphere of this radius, or a box of 0.3 m by 0.2 m by
-/// 0.1 m with a nose along x.
+/// Returns a generic body for a recording without a known robot. The body is a sphere of this radius, or a box of 0.3 m
+/// by 0.2 m by 0.1 m with a nose along x.
 std::vector<sim::MeshPart> plain_body(double sphere_radius_m);
 
 }  // namespace tumble::tools

@@ -14,8 +14,8 @@ struct Badge {
   Colour colour = Colour::open;
 };
 
-/// Summarises a report as a badge: the suite and the number of contests won (best method against baseline). It is good
-/// if all contests are won, and bad if the certificate fails or a contest is lost.
+/// Summarises a report as a badge: the suite and the number of contests won (best method against baseline). The badge
+/// is good if all contests are won, and bad if the certificate fails or a contest is lost.
 Badge badge_of(const PageContent& content);
 
 /// Returns the badge as a self-contained SVG for documents or CI servers. Texts are embedded as data, never as markup.

@@ -54,9 +54,9 @@ struct PageContent {
   std::vector<std::string> warnings;  ///< missing content, and the reason
 };
 
-/// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. Its Content Security
-/// Policy forbids network access. The sections are first screen, motions, errors, paired differences, failures,
-/// sensitivity, cost, certificate, versions, commands. Texts are embedded as data, never as markup.
+/// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The Content Security
+/// Policy of the page forbids network access. The sections are first screen, motions, errors, paired differences,
+/// failures, sensitivity, cost, certificate, versions, commands. Texts are embedded as data, never as markup.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

@@ -36,7 +36,7 @@ double five_digits(double value);
 std::string plot_text(const std::string& text);
 
 /// Reduces a list to `most` (at least 2) sorted values: the smallest, the largest, and values at equal steps of rank.
-/// Their quantiles are close to those of all values. The cost is O(n log n).
+/// The quantiles of the reduced list are close to those of all values. The cost is O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
 /// Palette assigns one colour index to each method of a page, in the order of `add`. Methods of different kinds with

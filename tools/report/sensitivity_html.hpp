@@ -15,7 +15,7 @@ namespace tumble::tools {
 std::string sensitivity_html(const std::vector<scenarios::Sensitivity>& rows, const std::string& note);
 
 /// Describes how many more runs each scenario needs for the ranking of influences, and for the plot of the score over a
-/// parameter; empty if all scenarios have enough runs.
+/// parameter. The text is empty if all scenarios have enough runs.
 std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws);
 
 }  // namespace tumble::tools

@@ -171,8 +171,8 @@ void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// Stores the certificate of this build, if known, in a kept database, and describes its state. It is not measured
-/// here, because gates run often.
+/// Stores the certificate of this build, if known, in a kept database, and describes its state. The certificate is not
+/// measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));

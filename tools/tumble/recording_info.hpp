@@ -17,7 +17,7 @@ scenarios::RecordingInfo recording_versions();
 scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest);
 
 /// Returns a note if the body still moves at the end of the recording (faster than 0.05 m/s or 0.25 rad/s), because the
-/// scenario's `duration_s` may be too short; empty if the body is at rest.
+/// scenario's `duration_s` may be too short. Returns an empty text if the body is at rest.
 std::string end_in_motion(const sim::Truth& truth);
 
 /// Builds the world of a simulated recording from the parameters in its metadata. Sensors are omitted, so that unknown

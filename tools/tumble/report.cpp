@@ -178,7 +178,7 @@ PageContent content_of(const Session& session, const ReportVerbOptions& options,
 void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
-  // Both files are complete before the first is moved: a full disk then leaves neither.
+  // Page and badge are complete before the first is moved: a full disk then leaves neither.
   std::list<scenarios::OutputFile> files;
   const auto write = [&](const std::filesystem::path& path, const std::string& text) {
     files.emplace_back(path).write(std::as_bytes(std::span(text)));

@@ -85,8 +85,8 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// Stores the certificate of this build (checks of its simulation) with the results. It is measured at most once per
-/// build and machine.
+/// Stores the certificate of this build (checks of its simulation) with the results. The certificate is measured at
+/// most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);

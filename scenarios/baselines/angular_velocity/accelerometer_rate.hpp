@@ -18,13 +18,13 @@ namespace tumble::baselines {
 ///
 /// The filter state contains the angular rate w and the angular acceleration alpha, which is driven by white jerk. Each
 /// auxiliary IMU at position p gives one measurement: its specific force minus that of the primary IMU is alpha x p + w
-/// x (w x p). This motion model is valid in flight, in contact and at rest. The filter also uses unclipped gyro axes
-/// (`use_gyro`), so the accelerometers only replace the clipped axes.
+/// x (w x p). The motion model of white jerk is valid in flight, in contact and at rest. The filter also uses unclipped
+/// gyro axes (`use_gyro`), so the accelerometers only replace the clipped axes.
 ///
 /// AccelerometerRate is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Slow
 /// rotation is lost in noise and misalignment, because centripetal acceleration grows with the squared rate. The filter
 /// neglects accelerometer bias, misalignment, and the correlation between the force differences of the auxiliary IMUs.
-/// It does not use the equations of free rotation in flight.
+/// In flight, the filter does not use Euler's equations of free rotation.
 ///
 /// With one auxiliary IMU, only products of rates contain the rate about the line between the two IMUs. Without
 /// auxiliary IMUs, the filter assumes a smooth rate during clipping.

@@ -19,7 +19,7 @@ namespace tumble::baselines {
 /// level to a maximum rate. ClippedBaseline ignores the accelerometer.
 ///
 /// - The model `interpolate` bridges each gap of clipped samples by a cubic with the rate and the derivative at both
-///   ends of the gap. It suits gaps that are short compared with the motion.
+///   ends of the gap. The model suits gaps that are short compared with the motion.
 /// - The model `reject` is a causal Kalman filter with a random-walk rate, so the rate is constant during a gap.
 ///   Point-LIO also keeps the rate constant during saturation, until the next lidar correction. The model suits gaps
 ///   shorter than the time between corrections by another sensor.

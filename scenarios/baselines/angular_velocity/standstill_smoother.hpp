@@ -22,11 +22,11 @@ namespace tumble::baselines {
 /// filter also measures zero velocity, zero rate and the direction of gravity. A backward Rauch-Tung-Striebel pass
 /// follows the forward extended Kalman filter.
 ///
-/// The method follows zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). It is designed
-/// for motions of one or two seconds between standstills, with few clipped samples. If the tilt or velocity error at
-/// the next standstill is too large for a linear filter, the filter resets attitude and velocity. A tumble of several
-/// turns causes such a reset. Only the clipping limits and the smoothness then determine the rates before the reset.
-/// StandstillSmoother neglects clipped specific force, lever arms and sensor bias.
+/// The method follows zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). The smoother is
+/// designed for motions of one or two seconds between standstills, with few clipped samples. If the tilt or velocity
+/// error at the next standstill is too large for a linear filter, the filter resets attitude and velocity. A tumble of
+/// several turns causes such a reset. Only the clipping limits and the smoothness then determine the rates before the
+/// reset. StandstillSmoother neglects clipped specific force, lever arms and sensor bias.
 class StandstillSmoother {
  public:
   struct Params {

@@ -26,7 +26,7 @@ struct AutogainGains {
 };
 
 /// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). The filter first applies Madgwick's correction, whose gain grows with the rate. It then applies a
+/// 2-5). The filter first applies Madgwick's correction, whose gain grows with the rate. The filter then applies a
 /// complementary correction, whose weight falls with the rate. During slow rotation, the filter relies on the
 /// accelerometer even if the body accelerates. Autogain estimates neither gyro bias nor heading.
 class Autogain {

@@ -28,9 +28,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
 }
 
 /// Returns the time of the registered pose: the start of the sweep, or the common time if all points have the same
-/// time. With a common time, a pose at the start of the sweep would make the velocity feedback unstable: v' = v_true +
-/// (v - v'') has the root -1.6. Points spread over the sweep halve the term (v - v''), which gives the roots 0.5 and
-/// -1.
+/// time. If a common time were replaced by the start of the sweep, the velocity feedback would be unstable. The
+/// recursion v' = v_true + (v - v'') has the root -1.6. Points spread over the sweep halve the term (v - v''), which
+/// gives the roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(

@@ -21,8 +21,8 @@ namespace tumble::baselines {
 ///
 /// - Madgwick's filter estimates attitude. Accelerometer odometry estimates position, with velocity feedback from
 ///   registration.
-/// - Each sweep is deskewed to its start, or to the common time of its points. Its points are weighted by time and
-///   voxelised.
+/// - Each sweep is deskewed to its start, or to the common time of its points. The points of the sweep are weighted by
+///   time and voxelised.
 /// - Trimmed point-to-plane registration aligns the sweep to the map. Points are inserted only where the map is empty.
 ///
 /// One parameter switches each known error of the published chain. The defaults are those of the launch files.

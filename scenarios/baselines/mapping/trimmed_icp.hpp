@@ -15,9 +15,9 @@
 namespace tumble::baselines {
 
 /// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point, as the published chain
-/// does. It keeps only the closest matches; the data determine how many (Chetverikov et al., 2005; Phillips et al.,
-/// 2007, with lambda). Each match is weighted by the inverse variances of both points. Each iteration solves normal
-/// equations that are linearised for small angles.
+/// does. The registration keeps only the closest matches, and determines their number from the data (Chetverikov et
+/// al., 2005; Phillips et al., 2007, with lambda). Each match is weighted by the inverse variances of both points. Each
+/// iteration solves normal equations that are linearised for small angles.
 ///
 /// TrimmedIcp does not measure observability: along a corridor, the registration still reports success.
 /// LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to the number of

@@ -11,8 +11,8 @@
 
 namespace tumble::baselines {
 
-/// SlipObserver estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of
-/// the contact point: v = r w x n + u.
+/// SlipObserver estimates the position of a rolling sphere on a flat floor. An observer estimates the slip velocity u
+/// of the contact point, with v = r w x n + u.
 ///
 /// If the sphere rolls without slip, the acceleration of its centre is r w' x n. The residual e is the measured
 /// acceleration minus r w' x n, averaged over 11 samples. The window length suits a sample rate of about 125 Hz.

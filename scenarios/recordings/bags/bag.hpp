@@ -66,12 +66,13 @@ struct BagWriting {
 ///
 /// All bags contain these topics:
 ///
-/// - "/NAME" is a sensor_msgs/Imu without attitude. Its covariance is the white noise in the data sheet. NAME is the
-///   exported name of the sensor (export_names). The topic of the primary IMU is the first topic of its type.
+/// - "/NAME" is a sensor_msgs/Imu without attitude. The covariance of an Imu message is the white noise in the data
+///   sheet. NAME is the exported name of the sensor (export_names). The topic of the primary IMU is the first topic of
+///   its type.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
 ///   drivers: x y z intensity ring time. The field time contains float32 seconds after the stamp (4 ns resolution
-///   within 0.1 s); offset_ns contains the same time in whole nanoseconds. Both are omitted for points without times.
-///   The option `sweeps` can select another point layout.
+///   within 0.1 s); offset_ns contains the same time in whole nanoseconds. For points without times, `time` and
+///   `offset_ns` are omitted. The option `sweeps` can select another point layout.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
@@ -132,7 +133,7 @@ struct BagReading {
 /// If the caller does not set the pose of a sensor in "body" or "base_link", or relative to another sensor, it comes
 /// from /tf_static. With `sweeps.scratch`, memory contains only one sweep, the IMU data (81 bytes per sample) and some
 /// bytes per message; without it, all points. Throws BadInput with file and location for damaged or truncated data, a
-/// missing topic or wrong type, more than 5 % of faulty messages, or a cycle of frames.
+/// missing topic or a wrong type. Throws BadInput for more than 5 % of faulty messages, or a cycle of frames.
 Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

@@ -9,8 +9,8 @@
 namespace tumble::scenarios {
 
 /// Reads the poses of the topic `reading.reference_topic` (Odometry, PoseStamped or TransformStamped) as the truth of
-/// the recording. Their frame is the user's choice, or else the child_frame_id of the messages, if the bag contains its
-/// transform. Throws BadInput, with topic and message, if the poses are invalid.
+/// the recording. The frame of the poses is the user's choice, or else the child_frame_id of the messages, if the bag
+/// contains its transform. Throws BadInput, with topic and message, if the poses are invalid.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

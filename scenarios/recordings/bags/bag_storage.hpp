@@ -57,7 +57,7 @@ std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& fo
 /// Opens a ROS 1 bag: a file, or a folder of files that are parts of one recording, whose messages are merged by time.
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
-/// Opens several MCAP files that form one bag. They are read in the order of their first messages.
+/// Opens several MCAP files that form one bag. The files are read in the order of their first messages.
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
 /// Checks every length, position and offset in the records of a ROS 1 bag against the file size, because librosbag does

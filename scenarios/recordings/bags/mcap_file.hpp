@@ -38,8 +38,8 @@ class File {
  public:
   /// Opens an MCAP file and reads its summary; without a summary, scans the file. If the file contains a checksum of
   /// the data section, the checksum is verified. The cost is proportional to the file size; memory contains some MiB
-  /// and the summary. Throws BadInput with the offset if the file is not MCAP, is truncated or damaged, has a
-  /// compression other than none, lz4 or zstd, or has a chunk or record larger than 256 MiB.
+  /// and the summary. Throws BadInput with the offset if the file is not MCAP, is truncated or damaged, or has a
+  /// compression other than none, lz4 or zstd. Throws BadInput for a chunk or record larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
 
-/// RawRecord is one record of a ROS 1 bag. Its header is stored as bytes, so that a field can be changed in place.
+/// RawRecord is one record of a ROS 1 bag. The header of the record is stored as bytes, so that a field can be changed
+/// in place.
 struct RawRecord {
   std::uint64_t at = 0;
   std::string header;

@@ -20,9 +20,9 @@ class SensorMountings {
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA of a sensor from /tf_static. If the user has set T_BA (`given`, or not the identity), only
-  /// reports a difference. The mounting is relative to the body's frame if the bag has this frame. Otherwise, it is
-  /// relative to the first earlier sensor that /tf_static connects to this sensor. If /tf_static lacks the mounting, a
-  /// note names the option that sets it.
+  /// reports a difference. The mounting is relative to the body's frame if the bag has this frame. Without a body
+  /// frame, the mounting is relative to the first earlier sensor that /tf_static connects to this sensor. If /tf_static
+  /// lacks the mounting, a note names the option that sets it.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

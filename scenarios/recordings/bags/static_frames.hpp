@@ -18,9 +18,10 @@ std::string without_slash(const std::string& frame);
 class StaticFrames {
  public:
   /// Adds a transform to the tree. If a frame is repeated, the last transform is used, and a changed parent gives a
-  /// note (`remarks`). A transform is invalid if it has non-finite values, a translation above 1 km, a frame as its own
-  /// parent, or a quaternion whose norm differs from 1 by more than 1 %. An invalid transform gives a note with
-  /// `where`, and an exception only when it is used, because bags contain frames unrelated to the sensors.
+  /// note (`remarks`). A transform is invalid if it has non-finite values, a translation above 1 km, or a frame as its
+  /// own parent. A transform is also invalid if the norm of its quaternion differs from 1 by more than 1 %. An invalid
+  /// transform gives a note with `where`, and an exception only when it is used, because bags contain frames unrelated
+  /// to the sensors.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   /// Throws BadInput, with a message that starts with `where`, if the frames form a cycle.

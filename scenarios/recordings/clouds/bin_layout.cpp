@@ -22,8 +22,8 @@ constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Valid coordinates in metres and valid intensities have magnitudes from kSmallest to kLargest, or are 0. kSmallest is
-/// low, because the sine of 180 degrees times a range is about 1e-16.
+/// Valid coordinates in metres and valid intensities have magnitudes from kSmallest to kLargest, or are 0. The limit
+/// kSmallest is low, because the sine of 180 degrees times a range is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
 /// A larger number of columns is chosen only if the difference between the columns grows at least by this factor. In
 /// valid sweeps, the difference grows by at most 0.08, for a lidar in which every second ring looks down.

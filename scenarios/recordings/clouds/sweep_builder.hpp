@@ -38,9 +38,9 @@ struct PointTimeRule {
 
 /// Finds the field of the point times and its unit from the clouds in `first`. The field has one of these names (any
 /// case): t time timestamp timestamps time_stamp offset_time time_offset offset_ns. A suffix _s _ms _us _ns determines
-/// the unit. Without a suffix, the unit is that in which the times of a sweep cover 0.15 to 150 % of `period_ns`
-/// (median over the clouds); at most one unit fits. If the period is unknown (0), the size of times since 1970
-/// determines the unit. If all times of a sweep are equal, the points have no times.
+/// the unit. Without a suffix, the times of a sweep must cover 0.15 to 150 % of `period_ns` (median over the clouds) in
+/// the correct unit. At most one unit fits. If the period is unknown (0), the size of times since 1970 determines the
+/// unit. If all times of a sweep are equal, the points have no times.
 ///
 /// A unit from an option or suffix is rejected if it does not fit, another unit fits, and the sweeps have at least 100
 /// points. Point times are absolute if they start more than two periods from 0 in one cloud; of five or more clouds, in
@@ -68,7 +68,7 @@ struct BuiltSweeps {
 /// are required.
 ///
 /// A few points with times outside the sweep are skipped. A cloud is skipped if it lacks a field, has an invalid ring,
-/// or starts before the previous sweep. It is also skipped if many points have times outside the sweep, or if most
+/// or starts before the previous sweep. A cloud is also skipped if many points have times outside the sweep, or if most
 /// points are beyond twice the lidar's range. If absolute point times and stamps come from different clocks, the stamp
 /// is assumed to be the time of the first point of the sweep.
 class SweepBuilder {
@@ -89,8 +89,9 @@ class SweepBuilder {
 
   /// Returns the lidar record in the clock of the stamps, and adds notes, for example about the unit of point times. If
   /// the device has no period, the period is the median step of the stamps, or the largest point offset if it is
-  /// larger. Throws BadInput, with a message that starts with `where`, if too many clouds were skipped, there are no
-  /// points, most points are beyond twice the range in the data sheet, or a single sweep has unknown length.
+  /// larger. Throws BadInput, with a message that starts with `where`, if too many clouds were skipped or there are no
+  /// points. Throws BadInput if most points are beyond twice the range in the data sheet, or for a single sweep of
+  /// unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

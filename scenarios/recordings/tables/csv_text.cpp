@@ -43,8 +43,8 @@ char likely_separator(std::string_view text) {
   return line.find(most) == std::string_view::npos ? ' ' : most;
 }
 
-/// Throws BadInput if the file is not UTF-8 text with lines. This check precedes that of the columns, for a better
-/// error message.
+/// Throws BadInput if the file is not UTF-8 text with lines. The text is checked before the columns, for a better error
+/// message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
   if (mark == "\xFF\xFE" || mark == "\xFE\xFF")

@@ -32,13 +32,13 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
                              sim::ImuRecord& imu);
 
 /// Sets a period of 0 to the median step, and checks the readings. Throws BadInput, with a message that starts with
-/// `where`, for fewer than two readings, or a probably wrong unit: a median specific force outside 3 to 30 m/s^2, or a
-/// period outside 20 us to 2 s.
+/// `where`, for fewer than two readings or a probably wrong unit. The median specific force must be 3 to 30 m/s^2, and
+/// the period must be 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
-/// Returns true if the specific force is in g instead of m/s^2, as from some lidar drivers: the median norm is within
-/// 10 % of 1, and a fifth of the norms are within 2 % of the median (rest). Readings without gravity have no constant
-/// norm.
+/// Returns true if the specific force is in g instead of m/s^2, as from some lidar drivers. In g, the median norm is
+/// within 10 % of 1, and a fifth of the norms are within 2 % of the median (rest). Readings without gravity have no
+/// constant norm.
 bool is_in_g(const sim::ImuRecord& imu);
 
 /// Restores time stamps that were rounded to milliseconds (rounded_stamps.hpp), and sets the period to their mean step.
@@ -63,8 +63,8 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
 
 /// Checks the unit of the rates against the rotation of gravity. Returns a note on the result, or on a gyro that always
 /// reads 0; empty if the motion is insufficient. Throws BadInput if gravity indicates deg/s instead of rad/s or vice
-/// versa (factor 57.3), or if more than 1 % of the rates exceed twice the range of the IMU (100 rad/s if unknown). The
-/// message starts with `where`.
+/// versa (factor 57.3). Throws BadInput if more than 1 % of the rates exceed twice the range of the IMU (100 rad/s if
+/// unknown). The message starts with `where`.
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// Returns a note on the unit of the rates, for a format without a specified unit. The note also states if the motion

@@ -19,7 +19,8 @@ namespace tumble::scenarios {
 /// columns are ignored and listed in the notes.
 ///
 /// Empty if the table has none of these names. Throws BadInput with file and line if some columns are missing, an axis
-/// is repeated, a unit is unknown, axes have different units, or names contain several IMU numbers (gyro1_x, gyro2_x).
+/// is repeated, or a unit is unknown. Throws BadInput if axes have different units, or if names contain several IMU
+/// numbers (gyro1_x, gyro2_x).
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
 /// Finds the columns that the user lists, for example "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column

@@ -27,14 +27,14 @@ struct RepeatReport {
 
 /// Converts a log to IMU samples, without repeated readings. A sensor repeats its readings if 5 to 98 % of its rows
 /// equal the previous row in all three axes; with more, it counts as frozen. Only rows with a new gyro reading are
-/// kept. Their times become regular, within the log step in which each reading arrived. If the accelerometer is slower
-/// than the gyro, its readings are interpolated linearly at the gyro's times, which acts as a low-pass filter. Sets
-/// time_ns, gyro, accelerometer and clip_flags (0) of `imu`. The cost is O(N).
+/// kept. The times of the kept readings become regular, within the log step in which each reading arrived. If the
+/// accelerometer is slower than the gyro, its readings are interpolated linearly at the gyro's times, which acts as a
+/// low-pass filter. Sets time_ns, gyro, accelerometer and clip_flags (0) of `imu`. The cost is O(N).
 RepeatReport remove_repeats(const LoggedReadings& log, sim::ImuRecord& imu);
 
 /// Describes a probable saturation of the accelerometer; empty if there is none. An axis is saturated in one direction
-/// if readings accumulate at an extreme beyond 1.5 g: at least five readings are within 2 % of the extreme (a tilted
-/// limit), three times as many as from 2 to 4 %. Each repeated reading counts once.
+/// if readings accumulate at an extreme beyond 1.5 g. At least five readings must be within 2 % of the extreme (a
+/// tilted limit), and three times as many as from 2 to 4 %. Each repeated reading counts once.
 std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged);
 
 }  // namespace tumble::scenarios

@@ -167,9 +167,9 @@ Eigen::Vector3d up_in_world(const std::vector<SamplePair>& all, const Eigen::Qua
   return sum.normalized();
 }
 
-/// Returns the rotation R with the largest trace(R^T B) as a unit quaternion: the eigenvector of the largest eigenvalue
-/// of Davenport's matrix (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination and Control, 2014,
-/// section 5.3, which defines the matrix for R^T).
+/// Returns the rotation R with the largest trace(R^T B) as a unit quaternion. The quaternion is the eigenvector of the
+/// largest eigenvalue of Davenport's matrix (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination
+/// and Control, 2014, section 5.3, which defines the matrix for R^T).
 Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
   const Eigen::Vector3d z(B(2, 1) - B(1, 2), B(0, 2) - B(2, 0), B(1, 0) - B(0, 1));
   Eigen::Matrix4d K;

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 /// The alignment is w_I(t) = R_IV w_V(t + delay), where V is the body frame of the reference and I the IMU frame. R_WV
 /// rotates the reference's world to a world with z up. The uncertainties are standard deviations of separate estimates
-/// from eight parts of the recording. They exclude errors that are equal in all parts.
+/// from eight parts of the recording. The uncertainties exclude errors that are equal in all parts.
 struct ReferenceAlignment {
   bool known = false;  ///< false: too little rotation without saturation, or too few reference poses
   double delay_s = 0.0, delay_sigma_s = 0.0;

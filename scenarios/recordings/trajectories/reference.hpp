@@ -23,9 +23,9 @@ struct ReferencePose {
 /// Largest accepted difference of a reference quaternion's norm from 1.
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
-/// Explains why a pose is invalid; empty if it is valid. A pose is invalid if it has non-finite numbers, a quaternion
-/// norm that differs from 1 by more than 1 %, or a stamp that is not later than that of `before`. A valid quaternion is
-/// normalised.
+/// Explains why a pose is invalid; empty if it is valid. A pose is invalid if it has non-finite numbers, or a
+/// quaternion norm that differs from 1 by more than 1 %. A pose is also invalid if its stamp is not later than the
+/// stamp of `before`. A valid quaternion is normalised.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
 /// Checks the number and order of the poses of a file. If `sorted` is true, sorts the poses by time and keeps the first
@@ -38,13 +38,13 @@ std::string pose_format(const std::filesystem::path& file);
 
 /// Reads a TUM file with "t x y z qx qy qz qw" per line, t in seconds; '#' starts a comment, and blanks or commas
 /// separate numbers. `sorted` is that of finish_poses. Throws BadInput with file and line for a line without eight
-/// finite numbers, a quaternion norm that differs from 1 by more than 1 %, a stamp that does not increase (unless
-/// `sorted`), or fewer than two poses.
+/// finite numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput for a stamp that does not
+/// increase (if `sorted` is false), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
 /// Reads a KITTI file, whose lines contain the upper three rows of pose matrices. `times_ns` contains the times of the
-/// poses. Throws BadInput with file and line for a line without twelve finite numbers, a matrix that is not a rotation
-/// (within 1e-3), or different numbers of poses and times.
+/// poses. Throws BadInput with file and line for a line without twelve finite numbers, or a matrix that is not a
+/// rotation (within 1e-3). Throws BadInput for different numbers of poses and times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
@@ -67,17 +67,17 @@ std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// Converts reference poses of the body to a truth. The stamps of `poses` must increase in the recording's clock; they
 /// may start before time 0. If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid
-/// with unchanged poses. Otherwise it has steps of 1 ms, or longer steps if there would be more than two million
-/// samples. Between poses that are at most 2.5 median steps apart, position is interpolated linearly and attitude by
-/// slerp. In larger gaps, both are unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws
-/// BadInput if no pose is known, or if the truth would be longer than a day.
+/// with unchanged poses. If the poses are not on a grid, the truth has steps of 1 ms, or longer steps if it would have
+/// more than two million samples. Between poses that are at most 2.5 median steps apart, position is interpolated
+/// linearly and attitude by slerp. In larger gaps, both are unknown. The truth ends with the poses or at `end_ns`,
+/// whichever is earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 /// Returns the rotation vector of `q`, with an angle of at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
 
-/// Computes velocity and rate of the truth by central differences over `reach` samples on each side. They are unknown
-/// if one of these samples is unknown.
+/// Computes velocity and rate of the truth by central differences over `reach` samples on each side. Velocity and rate
+/// are unknown if one of the samples within `reach` is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach);
 
 }  // namespace tumble::scenarios

@@ -21,9 +21,9 @@ struct GlitchReport {
 };
 
 /// Removes erroneous samples from `poses`, judged by their attitudes alone. The time stamps must increase. A jump is a
-/// step whose rate exceeds the rates before and after by more than 10 rad/s. These rates are medians of four steps,
-/// three to six steps from the jump. No recorded body is assumed to rotate this much faster for only 30 ms. The three
-/// samples on either side of a jump are also removed.
+/// step whose rate exceeds the rates before and after by more than 10 rad/s. The rates before and after are medians of
+/// four steps, three to six steps from the jump. No recorded body is assumed to rotate this much faster for only 30 ms.
+/// The three samples on either side of a jump are also removed.
 ///
 /// Two jumps less than 0.5 s apart are a pair, and the samples between them are removed. After a single jump, the
 /// attitude is uncertain; such a jump is only counted in `leaps`. The cost is O(N).

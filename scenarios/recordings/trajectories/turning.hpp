@@ -31,7 +31,8 @@ struct CandidateFrame {
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
 /// TurningFit is the difference between gyro and attitudes in one interpretation (convention, frame, delay) of the
-/// file: the median rotation difference over pairs of attitudes, as a fraction of the median rotation.
+/// file. The difference is the median rotation difference over pairs of attitudes, as a fraction of the median
+/// rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
@@ -79,8 +80,8 @@ std::string delay_text(double delay_s);
 std::string delay_remedy(double delay_s);
 
 /// Compares the rotations between pairs of attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations from
-/// the gyro: products of exponentials of unsaturated samples, without a gap above 0.1 s. At most 400 pairs are used,
-/// spread evenly over the recording. Fewer than 6 pairs give no result.
+/// the gyro. A rotation from the gyro is the product of exponentials of unsaturated samples, without a gap above 0.1 s.
+/// At most 400 pairs are used, spread evenly over the recording. Fewer than 6 pairs give no result.
 ///
 /// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
