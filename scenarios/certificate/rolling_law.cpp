@@ -70,7 +70,7 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   std::vector<CertificateEntry> entries = {entry(input, setup, sim::resolve(plane), "plane", 1e-3)};
   if (!setup.terrains) return entries;
   // Within the 10 ms window of a contact label, a sphere may cross the edge of a patch or obstacle, and slip at up to
-  // 0.02 m/s. On the terrains of the scenarios, this causes errors of 2e-4 to 5.1e-4.
+  // 0.02 m/s. On the terrains of the scenarios, edges and permitted slip cause errors of 2e-4 to 5.1e-4.
   constexpr double kTerrainHigh = 1e-3;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);

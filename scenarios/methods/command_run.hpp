@@ -33,8 +33,7 @@ auto without_folder(const std::filesystem::path& scratch, Work&& work) {
 void require_done(const CommandEnd& end);
 
 /// Runs a command that prints a version. Returns the first line of its output, with a digest of the whole output. The
-/// command runs for at most 30 s. If it fails, throws BadInput with a message that starts with
-/// `place`.
+/// command runs for at most 30 s. If the command fails, throws BadInput with a message that starts with `place`.
 std::string reported_version(Command command, const std::string& place);
 
 }  // namespace tumble::scenarios

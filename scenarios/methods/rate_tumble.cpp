@@ -70,8 +70,8 @@ const CalibratedRig* RigCalibrationUse::found() const {
 
 namespace {
 
-/// Compares a saved calibration with that of a run without the saved calibration. If both cannot belong to one rig,
-/// returns false and adds a failed health check.
+/// Compares a saved calibration with that of a run without the saved calibration. If the two calibrations cannot belong
+/// to one rig, returns false and adds a failed health check.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // standard deviations; see calibration_distance
   if (!fresh || fresh->only_rails) return true;

@@ -50,8 +50,8 @@ struct SettingsOptions {
   std::vector<std::string> fixed = {};
   /// Fields that are first in the list of parameters.
   std::vector<std::string> first = {};
-  /// Parameters of another stage of the method. A field with the same name as one of them gets `prefix` before its
-  /// name.
+  /// Parameters of another stage of the method. A field with the same name as a parameter of that stage gets `prefix`
+  /// before its name.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };

@@ -87,7 +87,7 @@ struct Radius {
 };
 
 /// Estimates the radius at which the rolled distance equals the distance between registered sweeps, over segments of
-/// continuous contact. Empty if there are fewer than two segments.
+/// continuous contact. Returns nothing if there are fewer than two segments.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =

@@ -165,7 +165,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   for (const ImuSample& sample : samples) {
     const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
     last_ns = sample.time_ns;
-    // In real time, sweeps also arrive during a gap of the IMU. Most of them have no IMU data.
+    // In real time, sweeps also arrive during a gap of the IMU. Most sweeps in a gap have no IMU data.
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;

@@ -9,7 +9,7 @@
 namespace tumble::scenarios {
 
 /// Process is a child process that writes to a pipe. The child ends when its parent ends, leaves no core file, and
-/// never returns to the caller's code. Linux only.
+/// never returns to the caller's code. Process works on Linux only.
 class Process {
  public:
   struct End {

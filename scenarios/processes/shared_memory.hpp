@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor (Command::descriptors). The
-/// memory is freed when its last user ends. Linux only. The constructor throws std::system_error if there is not enough
-/// memory.
+/// memory is freed when its last user ends. SharedMemory works on Linux only. The constructor throws std::system_error
+/// if there is not enough memory.
 class SharedMemory {
  public:
   /// Creates empty shared memory; its `name` is visible in /proc.

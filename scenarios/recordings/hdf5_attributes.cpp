@@ -10,7 +10,7 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Limit far above the length of any valid text. Without it, a damaged length could request all memory.
+/// Limit far above the length of any valid text. Without a limit, a damaged length could request all memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
 /// Returns the HDF5 type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.

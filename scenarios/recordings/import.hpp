@@ -27,8 +27,8 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the samples of one IMU from a text table. The separator is the comma, semicolon or tab, whichever is most
-/// frequent in the first line that is no comment. If this line has none of them, blanks are the separator. The table
-/// may have comments, a row of units below the names, and a separator at the end of each line
+/// frequent in the first line that is no comment. If this line has no comma, semicolon or tab, blanks are the
+/// separator. The table may have comments, a row of units below the names, and a separator at the end of each line
 /// (tables/logged_table.hpp). Numbers may be in scientific notation.
 ///
 /// The names in the header line identify the columns:

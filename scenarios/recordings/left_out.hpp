@@ -35,7 +35,7 @@ class LeftOut {
   /// Counts a skipped item whose cause may affect any number of items. For example, some drivers publish an empty
   /// reading in place of a lost reading.
   void add_unlimited(const std::string& cause, const std::string& error);
-  /// Calls `read`. If it throws BadInput, counts an item with faulty data.
+  /// Calls `read`. If `read` throws BadInput, counts an item with faulty data.
   template <class Read>
   void guard(Read&& read) {
     try {
@@ -66,9 +66,9 @@ class LeftOut {
 
 /// Returns true for each time stamp to keep, so that the kept time stamps increase. As few as possible are dropped
 /// (longest increasing subsequence), preferably late ones. With at least ten time stamps, the first or last is also
-/// dropped if its distance from the others exceeds their duration. A few at either end are dropped if the gap to the
-/// others also exceeds a day, which occurs when a clock is set. The cost is O(N log N), or O(N) if all time stamps
-/// increase.
+/// dropped if its distance from the others exceeds their duration. A few time stamps at either end are dropped if the
+/// gap to the others also exceeds a day, which occurs when a clock is set. The cost is O(N log N), or O(N) if all time
+/// stamps increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// Removes the elements of `rows` for which `kept` is false. A list of another length is unchanged: the sensor lacks

@@ -17,11 +17,11 @@ bool parse_number(std::string_view text, double& value);
 
 /// Parses a time in the notation of parse_number, and converts it to nanoseconds by moving the decimal point by
 /// `decimals`: 9 for s, 6 for ms, 3 for us, 0 for ns. The result is exact, apart from rounding to whole nanoseconds.
-/// Empty for an invalid text, or a time after the year 2255.
+/// Returns nothing for an invalid text, or a time after the year 2255.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
 /// Parses a time stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
-/// ("2011-09-26 13:02:25.964389445"). Empty for another text.
+/// ("2011-09-26 13:02:25.964389445"). Returns nothing for another text.
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
 /// Appends the shortest text that parses to the same number.

@@ -14,7 +14,7 @@
 namespace tumble::scenarios {
 
 /// Returns the first and last time of IMU samples and sweeps; a sweep lasts one period. Throws BadInput if there are
-/// neither.
+/// neither IMU samples nor sweeps.
 std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
 
 /// StampSpan is the first and last stamp of a recording or trajectory.

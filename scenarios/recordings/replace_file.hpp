@@ -13,11 +13,11 @@
 /// regular files are replaced.
 namespace tumble::scenarios {
 
-/// OutputFile is a temporary output file next to its final path. If it is not moved to the final path, it is removed,
-/// even if a signal ends the program (unfinished.hpp). After SIGKILL, it remains until the next process writes to the
-/// folder. OutputFile follows symbolic links. An existing target must be a writable regular file; its mode and owner
-/// are kept. Throws BadInput with the path and the system's reason (missing folder, no permission, disk full, a device,
-/// a pipe).
+/// OutputFile is a temporary output file next to its final path. A temporary file that is not moved to the final path
+/// is removed, even if a signal ends the program (unfinished.hpp). After SIGKILL, it remains until the next process
+/// writes to the folder. OutputFile follows symbolic links. An existing target must be a writable regular file; its
+/// mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no permission, disk
+/// full, a device, a pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);

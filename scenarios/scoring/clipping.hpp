@@ -40,8 +40,8 @@ class ClippingTruth {
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
   /// Returns the true rate and the clipped axes at `time_ns`. The rate is interpolated between two samples. The clipped
-  /// axes are those of the sample whose averaging window contains the time. Empty outside the recording, and where the
-  /// rate is unknown. The cost is O(log N).
+  /// axes are those of the sample whose averaging window contains the time. Returns nothing outside the recording, and
+  /// where the rate is unknown. The cost is O(log N).
   std::optional<Sample> at(std::int64_t time_ns) const;
 
   /// Returns the index of the sample whose averaging window contains `time_ns`; empty outside the recording. The cost
@@ -57,7 +57,7 @@ class ClippingTruth {
   std::size_t known_samples() const;
   /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// Returns the axes of a sample with a cross-axis error; all of them are unclipped.
+  /// Returns the unclipped axes of a sample that have a cross-axis error.
   std::uint8_t cross_axes(std::size_t index) const;
   /// Returns the largest difference, over the axes, between the reading and the unclipped reading (or the reference
   /// rate).

@@ -41,7 +41,8 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
-// Returns the two poses between which the end error is measured. Returns false if the estimate lacks one of them.
+// Returns the two poses between which the end error is measured. Returns false if the estimate lacks one of the two
+// poses.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // trajectory of an external program

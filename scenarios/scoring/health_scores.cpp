@@ -75,7 +75,8 @@ bool are_wrong(const Errors& errors, double gross_limit) {
 }
 
 /// Returns true if the error of the last pose exceeds five standard deviations. The error is that of the metric
-/// `pose_nees`, or the position error if this metric does not apply. Empty for an estimate without covariances.
+/// `pose_nees`, or the position error if this metric does not apply. Returns nothing for an estimate without
+/// covariances.
 std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;
   for (const Metric& metric : metrics()) {

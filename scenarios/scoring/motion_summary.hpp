@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// MotionSummary contains statistics of a simulated motion, to compare a scenario with a published experiment. All of
-/// them come from the truth.
+/// MotionSummary contains statistics of a simulated motion, to compare a scenario with a published experiment. All
+/// statistics come from the truth.
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last time with more than 0.1 m/s or 0.3 rad/s
   double rest_at_end_s = 0.0;       ///< from the last time of motion to the end of the recording

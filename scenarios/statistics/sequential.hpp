@@ -31,8 +31,8 @@ class SequentialSignTest {
   Verdict look(double share, std::int64_t negative, std::int64_t positive);
 
   Verdict verdict() const { return verdict_; }
-  /// Returns the number of pairs of one sign that the last analysis required for a verdict. If it exceeds the number of
-  /// available pairs, no outcome could have been significant.
+  /// Returns the number of pairs of one sign that the last analysis required for a verdict. If this number exceeds the
+  /// number of available pairs, no outcome could have been significant.
   std::int64_t needed() const { return needed_; }
   /// Returns the probability of a false verdict so far, which never exceeds the risk.
   double spent() const { return 2.0 * spent_a_side_; }

@@ -17,7 +17,7 @@ struct Interval {
 /// values rank like finite values, so that failures are worst; the quantile may be infinite. `share` is the probability
 /// of the quantile, in [0, 1].
 double quantile(std::span<const double> values, double share);
-/// Returns the quantile of all values: NaN if a value is not finite, empty if there are no values.
+/// Returns the quantile of all values. Returns NaN if a value is not finite, and nothing if there are no values.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
 /// Writes the quantile of the values to `value`. Returns false, with `value` unchanged, if there are no values.
 bool quantile_of(std::span<const double> values, double share, double& value);

@@ -24,8 +24,8 @@ struct InputWorth {
   std::int64_t broken = 0;             ///< runs that fail only with the true input
   Interval cured_share{};              ///< `cured` / `failed` (Clopper and Pearson, 95 %); NaN if `failed` is 0
   std::int64_t better = 0, worse = 0;  ///< runs with a better or worse metric
-  /// Median decrease of the metric's badness (`how_bad`), with its BCa interval. Runs that are not ok rank worst. NaN
-  /// if no run has the metric.
+  /// Median decrease of the metric's badness (`how_bad`), with its BCa interval. Runs that are not ok rank worst. The
+  /// interval is NaN if no run has the metric.
   Interval improvement{};
   double chance = 1.0;     ///< p-value of the two-sided signed-rank test
   double corrected = 1.0;  ///< `chance` corrected by Holm over all rows

@@ -41,7 +41,8 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-/// Counts the simulated runs on which `own` is better than the baseline. If both failed on a run, neither is better.
+/// Counts the simulated runs on which `own` is better than the baseline. If both methods failed on a run, neither is
+/// better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;

@@ -20,8 +20,8 @@ struct RunKey {
 };
 RunKey key_of(const Outcome& outcome);
 
-/// Returns the key of the note with the path of an external method's description, or of a recording. With these paths,
-/// a run can be repeated.
+/// Returns the key of the note with the path of an external method's description, or of a recording. With the path, a
+/// run can be repeated.
 std::string description_note(const std::string& kind, const std::string& method);
 std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);

@@ -182,7 +182,8 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }
 
-/// Returns the scale of the rates of gyro and truth. Estimated rates are limited to twice the largest of them.
+/// Returns the scale of the rates of gyro and truth. Estimated rates are limited to twice the largest rate of gyro and
+/// truth.
 double rate_scale(const Replay& replay) {
   double largest = 0.0;
   const auto look = [&](const std::vector<Vector3f>& rates) {

@@ -12,7 +12,7 @@ namespace tumble::tools {
 /// Selects at most `most` returns of the first lidar, spread evenly over sweeps and beams. Return i is selected if the
 /// fractional part of i times the golden ratio is below the wanted fraction. "Every tenth return" would always select
 /// the same beams of a 16-beam lidar. Returns from the robot's body are omitted: those that the truth marks, or without
-/// a truth those nearer than 0.5 m. Empty without a lidar. `truth` may be null.
+/// a truth those nearer than 0.5 m. The result is empty without a lidar. `truth` may be null.
 ReplayPoints shown_points(const sim::Sensors& sensors, const sim::Truth* truth, std::size_t most);
 
 /// Returns the transform from body axes of the estimator's calibration to body axes of the true mounting; the identity

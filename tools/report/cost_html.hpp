@@ -15,7 +15,7 @@ struct CostRow {
   std::string scenario, method;  ///< method: KIND/NAME
   double cpu_s = 0.0;            ///< median CPU time of one estimate
   /// Median of recording duration / CPU time over the simulated runs; above 1, the method is faster than real time on
-  /// one processor. NaN if the results contain no durations.
+  /// one processor. The factor is NaN if the results contain no durations.
   double real_time_factor = 0.0;
 };
 

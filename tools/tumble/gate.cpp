@@ -148,7 +148,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Loads the gate. Empty if the gate does not exist and --accept creates it.
+/// Loads the gate. Returns nothing if the gate does not exist and --accept creates it.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);

@@ -58,7 +58,7 @@ scenarios::GyroUnit gyro_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
 /// Returns the file of reference poses: the user's choice, or else a file of norlab's mapper next to the sweeps, or
-/// truth.csv in a folder of tables. The path is empty if there is none.
+/// truth.csv in a folder of tables. The path is empty if there is no such file.
 std::filesystem::path reference_file(const ImportOptions& options, const std::string& format);
 /// If the user names no frame and the recording has a lidar, the poses are assumed to be those of the lidar.
 scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,

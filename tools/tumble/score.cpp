@@ -232,7 +232,7 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   return claim;
 }
 
-/// Builds the true surface, which takes long. Null if there is no map, because only maps need the surface.
+/// Builds the true surface, which takes long. Returns null if there is no map, because only maps need the surface.
 std::unique_ptr<const sim::Surface> surface_of(const Session& session, const ScoreOptions& options,
                                                const Claim& claim) {
   if (claim.kind != scenarios::Kind::slam || claim.foreign || claim.info.situation_yaml.empty()) return nullptr;

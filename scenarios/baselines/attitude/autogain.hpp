@@ -38,8 +38,8 @@ class Autogain {
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
     /// true: the complementary step contains the error of the authors' code of 2021, to reproduce the attitudes in the
-    /// authors' recordings. In that code, the check for gimbal lock is always true. The target attitude therefore keeps
-    /// the current roll, and the filter never corrects roll.
+    /// authors' recordings. In the authors' code, the check for gimbal lock is always true. The target attitude
+    /// therefore keeps the current roll, and the filter never corrects roll.
     bool roll_error_2021 = false;
     /// true: the complementary step is the smallest rotation that corrects the tilt, instead of a step in roll, pitch
     /// and yaw. The `smooth` profile always uses the smallest rotation.

@@ -31,9 +31,9 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// true: contains the error of the authors' code. In that code, the kept fraction refers to all match slots,
-    /// although the sorted distances omit slots without a match. The code therefore reads beyond the end of the sorted
-    /// list. TrimmedIcp stops at the end.
+    /// true: contains the error of the authors' code. In the authors' code, the kept fraction refers to all match
+    /// slots, although the sorted distances omit slots without a match. The code therefore reads beyond the end of the
+    /// sorted list. TrimmedIcp stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged if the mean step over two iterations is below both bounds

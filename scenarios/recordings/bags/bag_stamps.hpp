@@ -21,7 +21,7 @@ class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}
 
-  /// Returns the stamp from the source in the constructor. If it is a record stamp that a header cannot store, throws
+  /// Returns the stamp from the source in the constructor. For a record stamp that a header cannot store, throws
   /// BadInput with a message that starts with `where`.
   std::int64_t chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const;
   /// Stores the two stamps of the next message.

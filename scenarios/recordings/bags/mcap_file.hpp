@@ -63,7 +63,7 @@ class File {
       place += kHeadBytes + record.content.size();
     }
   }
-  /// Decodes the content of a record. If it is damaged, throws BadInput with the offset in the file.
+  /// Decodes the content of a record. If the content is damaged, throws BadInput with the offset in the file.
   template <class Content>
   Content as(const Record& record, std::uint64_t at) const {
     try {

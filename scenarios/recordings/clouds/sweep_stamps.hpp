@@ -20,8 +20,8 @@ std::string stem_of(const std::filesystem::path& file);
 
 /// Returns the time stamps at the end of the file names. A time stamp is seconds and nanoseconds
 /// ("1617333602.223639727", "cloud_1617333602_223639727", fewer decimals after a point), or a number of 13, 16 or 19
-/// digits since 1970 (ms, us, ns). Empty if the names contain only numbers like "000012". Throws BadInput with the file
-/// if only some names contain time stamps.
+/// digits since 1970 (ms, us, ns). Returns nothing if the names contain only numbers like "000012". Throws BadInput
+/// with the file if only some names contain time stamps.
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
 /// Reads time stamps from a text file, one per line; '#' starts a comment. A time stamp is decimal seconds, an integer

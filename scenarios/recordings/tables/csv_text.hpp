@@ -21,7 +21,7 @@ struct CsvLine {
 class CsvText {
  public:
   /// Opens a file. The separator is the comma, semicolon or tab, whichever is most frequent in the first line that is
-  /// no comment. If this line has none of them, blanks are the separator.
+  /// no comment. If this line has no comma, semicolon or tab, blanks are the separator.
   explicit CsvText(const std::filesystem::path& path);
   /// Opens a file. Throws BadInput if the file is missing or empty, or if the last line has no newline and may be
   /// truncated.
@@ -49,8 +49,8 @@ bool is_comment(std::string_view line);
 /// Throws BadInput with the location of the line and the text `what`.
 [[noreturn]] void fail(const CsvLine& line, const std::string& what);
 
-/// Parses field `index` of a line as a finite number. If it is not, throws BadInput with the location and `column`, the
-/// name or number of the column.
+/// Parses field `index` of a line as a finite number. If the field is not a finite number, throws BadInput with the
+/// location and `column`, the name or number of the column.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 
 /// Returns true if the whole field is a number; NaN and infinity are numbers.

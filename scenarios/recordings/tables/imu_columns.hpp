@@ -38,7 +38,8 @@ struct ImuColumns {
 /// with file and line for unknown, repeated or missing columns.
 ImuColumns imu_columns(const LoggedTable& table);
 
-/// Parses the time stamp of a line, in nanoseconds. If it is invalid, throws BadInput with file, line and column.
+/// Parses the time stamp of a line, in nanoseconds. If the time stamp is invalid, throws BadInput with file, line and
+/// column.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
 /// Infers the unit of the time stamps from up to a thousand steps at the start of the table, and returns it as a number

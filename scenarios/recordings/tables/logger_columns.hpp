@@ -18,9 +18,9 @@ namespace tumble::scenarios {
 /// A unit in a column name is used: "time_ms", "#timestamp [ns]", "gx (deg/s)", "w_RS_S_x [rad s^-1]", "ax [g]". Other
 /// columns are ignored and listed in the notes.
 ///
-/// Empty if the table has none of these names. Throws BadInput with file and line if some columns are missing, an axis
-/// is repeated, or a unit is unknown. Throws BadInput if axes have different units, or if names contain several IMU
-/// numbers (gyro1_x, gyro2_x).
+/// Returns nothing if the table has none of these column names. Throws BadInput with file and line if some columns are
+/// missing, an axis is repeated, or a unit is unknown. Throws BadInput if axes have different units, or if names
+/// contain several IMU numbers (gyro1_x, gyro2_x).
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
 /// Finds the columns that the user lists, for example "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column

@@ -49,7 +49,8 @@ class GyroIntegral {
     }
   }
 
-  /// Returns the rotation between two times. Empty outside the readings, across a gap, or if a reading is saturated.
+  /// Returns the rotation between two times. Returns nothing outside the readings, across a gap, or if a reading is
+  /// saturated.
   std::optional<Eigen::Quaterniond> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const std::size_t first = sample_at(from_ns), last = sample_at(to_ns);
     if (last == imu_.time_ns.size() || from_ns < imu_.time_ns.front()) return std::nullopt;
@@ -183,7 +184,7 @@ class TurningComparison {
   }
 
   /// Returns the interpretations in the frame of `fitted` that fit about equally well, for example in a motion about a
-  /// single axis. The file as written is first, if it is one of them.
+  /// single axis. If the file as written fits equally well, this interpretation is first.
   std::vector<TurningFit> alike(const TurningFit& fitted) const {
     std::vector<TurningFit> out;
     for (std::size_t k = 0; k < readings_.size(); ++k) {

@@ -64,7 +64,7 @@ struct TurningCheck {
   bool clock_known = false;  ///< true: a delay of 0.3 s would be detected
   bool order_known = false;  ///< true: another order or direction of the quaternions would be detected
   /// Fit with another quaternion convention that agrees equally well with the gyro, and in which gravity is vertical.
-  /// Empty if gravity is vertical as written.
+  /// The member is empty if gravity is vertical in the written convention.
   std::optional<TurningFit> upright;
 };
 
