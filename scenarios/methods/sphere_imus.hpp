@@ -26,7 +26,7 @@ Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 /// MergedImus contains the merged readings of a sphere's IMUs, computed from the whole recording.
 struct MergedImus {
   MergedRecordings merged;
-  std::vector<std::string> names;  ///< names of the units
+  std::vector<std::string> names;  ///< names of the IMUs
   int beyond_range = 0;            ///< see SphereImus
 };
 

@@ -51,7 +51,7 @@ class Process {
 
   pid_t pid_ = -1;
   int fd_ = -1;
-  int input_fd_ = -1;  ///< our end of the child's input socket
+  int input_fd_ = -1;  ///< this process's end of the child's input socket
   bool own_group_ = false;
 };
 

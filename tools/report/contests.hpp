@@ -43,7 +43,7 @@ std::vector<ContestResult> contests(const scenarios::Summary& summary, const sce
 /// Tally counts contests by result.
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
-  std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval, or on every draw
+  std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval or in every run
   std::string ahead_by;        ///< the method that is ahead in all of these contests; empty if there are several or
                                ///< none
   std::string leader;          ///< the method that wins most contests (first of equals); empty if no contest is won

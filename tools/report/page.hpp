@@ -49,7 +49,7 @@ struct PageContent {
   std::string sensitivity_note;  ///< which runs were used, or why there is no sensitivity
   std::vector<scenarios::Certificate> certificates;
   std::vector<Fact> methods;          ///< name and description of each method
-  std::vector<Fact> versions;         ///< suite, draws, builds, data, date
+  std::vector<Fact> versions;         ///< suite, runs, builds, data, date
   std::vector<Fact> commands;         ///< purpose and command
   std::vector<std::string> warnings;  ///< missing content, and the reason
 };

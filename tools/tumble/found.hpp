@@ -17,7 +17,7 @@ namespace tumble::tools {
 struct FoundItem {
   std::string item;
   std::string found;   ///< value, with its evidence or the effect of an assumption
-  std::string sure;    ///< stated, measured, by name or assumed
+  std::string sure;    ///< certainty: stated, measured, inferred from the name, or assumed
   std::string option;  ///< command-line option that changes the property
 };
 

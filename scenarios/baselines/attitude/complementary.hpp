@@ -16,7 +16,7 @@ namespace tumble::baselines {
 class Complementary {
  public:
   struct Params {
-    double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
+    double tau_s = 0.396;  ///< time constant of the correction: 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
     /// Calls the visitor with each parameter's reference, name, unit and limits.

@@ -29,7 +29,7 @@ namespace tumble::baselines {
 class PublishedChain {
  public:
   struct Params {
-    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
     Eigen::AlignedBox3d own_body_L;  ///< points inside belong to the robot and are removed; empty: removes none
     double skew_sigma_m_s = 0.25;
     TrimmedIcp::Params icp;

@@ -109,7 +109,7 @@ class SweepBuilder {
   bool is_far(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void scale_intensity(std::vector<std::string>& notes);
-  std::int64_t longest_sweep_ns() const;  ///< also the largest time of a point from the stamp of its sweep
+  std::int64_t longest_sweep_ns() const;  ///< also the limit of the time between a point and the stamp
   double range_max_m() const;
   void require_range(const std::string& where) const;
   void note_dropped_points(std::vector<std::string>& notes) const;

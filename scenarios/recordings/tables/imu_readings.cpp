@@ -324,7 +324,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
       left_out.add("a wrong time stamp", where(k) + ": " + (disorder ? disorder(k) : disorder_text(imu.time_ns, k)));
   }
   left_out.require_few(in_order.size());
-  imu.period_ns = median_step_ns(in_order);  // without the gaps of lost readings
+  imu.period_ns = median_step_ns(in_order);  // before lost readings are removed, since these leave gaps
   std::size_t lost = 0;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     if (!kept[k] || !imu.gyro_rad_s[k].isZero(0.0) || !imu.accel_m_s2[k].isZero(0.0)) continue;

@@ -47,7 +47,7 @@ bool is_quaternion(const std::string& name, char axis) {
 struct PoseColumns {
   std::size_t time = 0;
   std::optional<std::size_t> nanoseconds;  ///< second time column, if the stamp is seconds and nanoseconds
-  bool time_in_ns = false;                 ///< unit in the column name
+  bool time_in_ns = false;                 ///< whether the column name states ns
   std::array<std::size_t, 3> position{};
   std::array<std::size_t, 4> quaternion{};  ///< x y z w
 };
