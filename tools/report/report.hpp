@@ -27,8 +27,8 @@ struct ReportOptions {
   std::filesystem::path database;  ///< path of the results; examples are next to it
   std::filesystem::path page;      ///< path of the page; links to replays are relative to it
   std::string version;             ///< version of the program
-  std::string data;     ///< digest of the models and scenarios on this machine; may be empty
-  std::string made_at;  ///< date and time on the page
+  std::string data;                ///< digest of the models and scenarios on this machine; may be empty
+  std::string made_at;             ///< date and time on the page
 };
 
 /// Computes the content of the page from the results, and from the examples that a sweep stored next to them. Nothing
