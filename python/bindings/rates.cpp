@@ -26,7 +26,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Reads lever arm, calibration and ranges, which are not numeric fields of the parameters.
+/// Reads lever arm, calibration and measurement ranges, which are not numeric fields of `Params`.
 void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& rails) {
   model.nominal.lever_arm_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
   const nb::object calibration = keywords.take("calibration");
@@ -34,7 +34,7 @@ void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& 
   read_ranges(keywords, rails);
 }
 
-/// Returns the part of a class's parameters that contains the rate model and the saturation levels.
+/// Returns the member of `params` that contains the rate model and the saturation limits.
 RateSmoother::Params& rate_part(RateSmoother::Params& params) {
   return params;
 }

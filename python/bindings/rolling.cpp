@@ -126,7 +126,7 @@ void bind_filter(nb::module_& m) {
   bind_keeping<RollingFilter>(bound);
 }
 
-/// Returns the names of the parameters that RollingOdometry determines.
+/// Returns the names of the parameters that RollingOdometry sets itself.
 const std::vector<const char*>& derived_rolling_parameters() {
   static const std::vector<const char*> all(RollingOdometry::Params::derived_fields().begin(),
                                             RollingOdometry::Params::derived_fields().end());
@@ -168,7 +168,7 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.uncertain};
 }
 
-/// Returns the samples of all IMUs, from one triple of arrays or from lists with one array per IMU. All IMUs share
+/// Returns the samples of all IMUs. The input is one triple of arrays, or lists with one array per IMU. All IMUs share
 /// `time_ns`.
 std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, const ArrayLike& gyro,
                                                      const ArrayLike& accel, std::size_t units) {

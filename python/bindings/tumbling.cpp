@@ -35,7 +35,7 @@ TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
 using BoundTumblingOdometry = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
-/// Returns the names of the parameters that the data sheets and TumblingOdometry itself determine.
+/// Returns the names of the parameters that TumblingOdometry computes itself or reads from data sheets.
 const std::vector<const char*>& derived_tumbling_parameters() {
   static const std::vector<const char*> all = [] {
     const auto derived = TumblingOdometry::Params::Expert::derived_fields();
@@ -53,7 +53,7 @@ Sheet sheet_of(nb::handle given, const char* field, const char* type) {
   return sheet;
 }
 
-/// Reads pairs (LidarSheet, T_IL) or triples with own_body_L.
+/// Converts pairs (LidarSheet, T_IL) or triples (LidarSheet, T_IL, own_body_L).
 std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
   std::vector<FurtherLidar> out;
   for (const nb::handle each : given) {

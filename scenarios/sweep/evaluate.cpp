@@ -72,7 +72,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Returns an empty estimate for a method that gave no result, with the output of its program.
+/// Returns an empty estimate for a method without result, with the output of its program.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;
@@ -141,7 +141,7 @@ void score_estimate(const Method& method, const SimulatedDraw& draw, const sim::
   }
 }
 
-/// A run counts as diverged if the estimate's health reports a fault that invalidates the estimate.
+/// A run counts as diverged if its health reports a fault that invalidates the estimate.
 void judge_by_health(const Estimate& estimate, Outcome& outcome) {
   for (const HealthFinding& finding : estimate.faults.findings) {
     if (!finding.invalidates_estimate()) continue;
