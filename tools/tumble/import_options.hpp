@@ -31,7 +31,7 @@ struct ImportOptions {
   // These options are properties of the reference.
   std::filesystem::path reference;
   std::string reference_frame;
-  bool sorted = false, align_reference = false;
+  bool sorted = false;
   // These options select topics of a bag.
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;

@@ -154,7 +154,9 @@ RateModelParams assumed_model() {
 /// Returns the readings of the wand's simulated recording between two times.
 sim::Sensors wand(double from_s, double to_s) {
   const auto folder = test::written(test::data_folders("repoimu").front());
-  sim::Sensors out = import_repoimu(folder / test::kStandInWand, false).sensors;
+  sim::Sensors out = import_imu_csv(folder / test::kStandInWand, {}, AccelUnit::m_s2, GyroUnit::rad_s,
+                                    "time=0,gyro=8,9,10,accel=5,6,7")
+                         .sensors;
   sim::ImuRecord& imu = out.imus.front();
   const auto at = [](double t_s) { return static_cast<std::ptrdiff_t>(100.0 * t_s); };
   const auto cut = [&](auto& values) { values = {values.begin() + at(from_s), values.begin() + at(to_s)}; };
