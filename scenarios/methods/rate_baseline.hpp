@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 /// is unknown.
 RailDetector::Params stated_rails(const sim::ImuRecord& record);
 
-/// Runs one model of ClippedBaseline on the primary IMU, with the noise and ranges of the IMU's data sheet.
+/// Runs ClippedBaseline on the primary IMU, with the noise and ranges of the IMU's data sheet.
 Estimate run_clipped_baseline(const Settings<baselines::ClippedBaseline::Params>& settings, const sim::Sensors& sensors,
                               const sim::Values& parameters);
 

@@ -254,8 +254,7 @@ TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
 TEST(RateLearnt, EachMethodTellsTheRailsThatItFound) {
   const sim::Sensors twirled = wand(0.0, 30.0);
   const test::WandRail rail;
-  for (const char* const name :
-       {"rate/tumble", "rate/tumble_lag", "rate/carried", "attitude/tumble", "attitude/tumble_batch"}) {
+  for (const char* const name : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
     const auto health = find_methods(name).front()->run(twirled, {}, {}).health;
     ASSERT_TRUE(health.contains("gyro_rail_samples_x")) << name;
     EXPECT_NEAR(health.at("learnt_gyro_rail_x_rad_s"), rail.distance_rad_s, 0.01) << name;
