@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/diagnosis.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/exchange/imu_notes.hpp"
+#include "scenarios/methods/imu_notes.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "scenarios/exchange/lidar_rotation.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/lidar_rotation.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/exchange/probable_devices.hpp"
+#include "scenarios/methods/probable_devices.hpp"
 
 #include <fmt/format.h>
 

@@ -29,8 +29,8 @@ void require_own_kind(const std::string& format, const std::filesystem::path& ou
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// The function adds estimates to a bag (scenarios/exchange); it may be empty. The points and the truth of the
-  /// sensors that the function receives are on disk.
+  /// The function adds estimates to a bag (scoring/estimate_in_bag.hpp); it may be empty. The points and the truth of
+  /// the sensors that the function receives are on disk.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`: frame of the written true poses, as in true_mounting
 };

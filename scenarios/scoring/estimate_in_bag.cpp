@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/exchange/estimate_in_bag.hpp"
+#include "scenarios/scoring/estimate_in_bag.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/estimate_clock.hpp"
+#include "scenarios/methods/estimate_clock.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
