@@ -58,19 +58,6 @@ BagReading some_bag() {
 void imu_csv(const path& file) {
   import_imu_csv(file, some_imu());
 }
-void repoimu(const path& file) {
-  import_repoimu(file, false);
-  try {
-    import_repoimu(file, true);
-  } catch (const BadInput&) {  // the motion is too small for the alignment
-  }
-}
-void airbrakes(const path& file) {
-  import_airbrakes(file);
-}
-void broad(const path& file) {
-  import_broad(file);
-}
 void ros1_bag(const path& file) {
   import_ros1_bag(file, some_bag());
 }
@@ -198,9 +185,6 @@ void bench_results(const path& file) {
 constexpr std::array kReaders = {
     Reader{"recording", "a.h5", recording},
     Reader{"imu_csv", "a.csv", imu_csv},
-    Reader{"repoimu", "a.csv", repoimu},
-    Reader{"airbrakes", "a.csv", airbrakes},
-    Reader{"broad", "a.hdf5", broad},
     Reader{"ros1_bag", "a.bag", ros1_bag},
     Reader{"ros2_bag", "a.db3", ros2_bag},
     Reader{"ros2_bag_packed", "a.db3.zstd", ros2_bag},
