@@ -32,9 +32,6 @@ class MapLocaliser {
   /// run is not localised.
   Status status() const;
 
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   void propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m);
   bool passes(const FramePose& pose) const;

@@ -115,11 +115,7 @@ class HandHeldStream {
   /// Appends the unreported rates of the samples in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
-
  private:
-  Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
   void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
   void add(const Reading& reading, State& state) const;
   bool reclassify(const ClippedElements& known, State& state) const;

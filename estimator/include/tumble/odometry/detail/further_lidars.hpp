@@ -41,10 +41,6 @@ class FurtherLidars {
   /// Returns the number of points that arrived late, or when the first lidar had no sweep.
   std::size_t unused_points() const { return unused_points_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   std::vector<FurtherLidar> lidars_;
   Eigen::Isometry3d T_LI_first_ = Eigen::Isometry3d::Identity();
