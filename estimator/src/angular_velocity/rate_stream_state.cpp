@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_stream_state.cpp checks and compares states of a RateStream.
-#include <algorithm>
-#include <cmath>
-
+// rate_stream_state.cpp reports faults that the state of a RateStream shows.
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

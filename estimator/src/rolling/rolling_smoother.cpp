@@ -16,7 +16,6 @@ namespace {
 // kPreallocatedMax is the maximum number of preallocated samples and nodes. For a longer lag, the memory grows during
 // the run.
 constexpr std::size_t kPreallocatedMax = 1'000'000;
-constexpr std::size_t kSamplesMaxFactor = 4;  // maximum number of samples, as a multiple of the preallocated number
 
 RollingParams scale_noise(RollingParams params, double share) {
   params.expert.contact.grip_sigma_m_s *= share;
