@@ -25,7 +25,7 @@ RollingOdometry::Params params_off_centre(double lag_s) {
 }
 
 /// Returns the samples of three IMUs whose gyros clip at 10 rad/s without a flag.
-const std::vector<std::vector<ImuSample>>& three_units() {
+const std::vector<std::vector<ImuSample>>& clipped_units() {
   static const std::vector<std::vector<ImuSample>> units = [] {
     std::vector<std::vector<ImuSample>> out;
     for (const Eigen::Vector3d& position_m : kPositions) {
@@ -40,7 +40,7 @@ const std::vector<std::vector<ImuSample>>& three_units() {
 void feed_units(std::size_t from, std::size_t to, RollingOdometry& odometry, TimeNs later_ns = 0) {
   for (std::size_t k = from; k < to; ++k) {
     std::vector<ImuSample> now;
-    for (const std::vector<ImuSample>& unit : three_units()) {
+    for (const std::vector<ImuSample>& unit : clipped_units()) {
       now.push_back(unit[k]);
       now.back().time_ns += later_ns;
     }
@@ -50,7 +50,7 @@ void feed_units(std::size_t from, std::size_t to, RollingOdometry& odometry, Tim
   }
 }
 
-RollingOdometry rolled(double lag_s, std::size_t to = kAtRest) {
+RollingOdometry run_until(double lag_s, std::size_t to = kAtRest) {
   RollingOdometry out(params_off_centre(lag_s));
   feed_units(0, to, out);
   return out;
@@ -59,7 +59,7 @@ RollingOdometry rolled(double lag_s, std::size_t to = kAtRest) {
 TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
   for (const double lag_s : {0.0, 0.3}) {
     SCOPED_TRACE(lag_s);
-    const RollingOdometry before = rolled(lag_s);
+    const RollingOdometry before = run_until(lag_s);
     RollingOdometry rebooted(params_off_centre(lag_s)), fresh(params_off_centre(lag_s));
     std::optional<PoseState> last;
     const Status status = rebooted.load(before.save(), &last);
@@ -68,7 +68,7 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     EXPECT_GT(last->time_ns, 3'500'000'000);
     EXPECT_NEAR(last->p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
 
-    const std::size_t count = three_units()[0].size();
+    const std::size_t count = clipped_units()[0].size();
     feed_units(kAtRest, kAtRest + 10, rebooted);
     feed_units(kAtRest, kAtRest + 10, fresh);
     const RollingOdometry::Pose pose = *rebooted.newest();
@@ -82,7 +82,7 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     EXPECT_LT(fresh.calibration().centre_B_m.norm(), 0.2 * kCentre_m.norm()) << "negative control";
     // rolls the same path again
     feed_units(kAtRest + 10, count, rebooted);
-    const TimeNs later_ns = three_units()[0].back().time_ns;
+    const TimeNs later_ns = clipped_units()[0].back().time_ns;
     feed_units(0, count, rebooted, later_ns);
     EXPECT_NEAR(rebooted.newest()->pose.p_WA_m.x() - last->p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
   }
@@ -90,7 +90,7 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
 
 /// The saturation limits of the IMUs are at the end of the bytes.
 TEST(SavedRollingOdometry, KeepsSaturationLimits) {
-  const Bytes saved = rolled(0.0).save(), unsaturated = rolled(0.0, 300).save();
+  const Bytes saved = run_until(0.0).save(), unsaturated = run_until(0.0, 300).save();
   const auto limits = [](const Bytes& bytes) {
     constexpr std::size_t kUnits = 3 * (6 * sizeof(double) + 6);  // without planes
     return Bytes(bytes.end() - kUnits, bytes.end());
@@ -107,7 +107,7 @@ TEST(SavedRollingOdometry, IsSavedAtAnyStage) {
   for (const double lag_s : {0.0, 0.3, RollingOdometry::kWholeRecording}) {
     for (const std::size_t to : {std::size_t{0}, std::size_t{1}, std::size_t{30}, kMidway}) {
       for (const bool ends : {false, true}) {
-        RollingOdometry odometry = rolled(lag_s, to), other(params_off_centre(lag_s));
+        RollingOdometry odometry = run_until(lag_s, to), other(params_off_centre(lag_s));
         if (ends) (void)odometry.finish();
         const Status status = other.load(odometry.save());
         EXPECT_TRUE(status.ok()) << lag_s << ", " << to << ": " << status.message();
@@ -117,7 +117,7 @@ TEST(SavedRollingOdometry, IsSavedAtAnyStage) {
 }
 
 TEST(SavedRollingOdometry, DamagedBytesAreRefused) {
-  const RollingOdometry odometry = rolled(0.1, kMidway);
+  const RollingOdometry odometry = run_until(0.1, kMidway);
   test::expect_damage_is_refused(odometry.save(), odometry);
 }
 

@@ -20,7 +20,7 @@ using test::ThrownBody;
 
 constexpr TimeNs kReboot_ns = 3'000'000'000;  // the body rests after its flight
 
-ThrownBody body_that_rests() {
+ThrownBody body_that_comes_to_rest() {
   return ThrownBody{.end_s = 5.0};
 }
 
@@ -41,7 +41,7 @@ std::optional<TumblingOdometry::Sweep> feed_until(const ThrownBody& body, TimeNs
   return last;
 }
 
-double error_m(const ThrownBody& body, const PoseState& pose) {
+double truth_distance_m(const ThrownBody& body, const PoseState& pose) {
   return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
 
@@ -53,9 +53,9 @@ TumblingOdometry::Params params_to_estimate(const ThrownBody& body) {
   return params;
 }
 
-const TumblingOdometry& thrown() {
+const TumblingOdometry& saved_run() {
   static const TumblingOdometry odometry = [] {
-    const ThrownBody body = body_that_rests();
+    const ThrownBody body = body_that_comes_to_rest();
     TumblingOdometry out(params_to_estimate(body));
     feed_until(body, 0, kReboot_ns, out);
     return out;
@@ -64,43 +64,44 @@ const TumblingOdometry& thrown() {
 }
 
 TEST(SavedTumblingOdometry, LocalisesAtTheSavedPoseInTheSavedMap) {
-  const ThrownBody body = body_that_rests();
+  const ThrownBody body = body_that_comes_to_rest();
   TumblingOdometry rebooted(params_to_estimate(body)), fresh(params_to_estimate(body));
   std::optional<PoseState> last;
-  const Status status = rebooted.load(thrown().save(), &last);
+  const Status status = rebooted.load(saved_run().save(), &last);
   ASSERT_TRUE(status.ok()) << status.message();
   ASSERT_TRUE(last);
-  EXPECT_EQ(last->time_ns, *thrown().newest_ns());
+  EXPECT_EQ(last->time_ns, *saved_run().newest_ns());
   EXPECT_GT(body.T_WI(3.0).translation().norm(), 1.0) << "else the saved pose is the origin";
-  EXPECT_LT(error_m(body, *last), 0.05);
+  EXPECT_LT(truth_distance_m(body, *last), 0.05);
   EXPECT_FALSE(rebooted.health().ok()) << "not localised yet";
 
   const auto sweep = feed_until(body, kReboot_ns, 5'000'000'000, rebooted);
   ASSERT_TRUE(sweep);
   EXPECT_TRUE(sweep->report.in_prior_map);
   EXPECT_TRUE(rebooted.health().ok()) << rebooted.health().message();
-  EXPECT_LT(error_m(body, sweep->report.pose), 0.05);
-  EXPECT_GE(rebooted.mapper().map().size(), thrown().mapper().map().size());
+  EXPECT_LT(truth_distance_m(body, sweep->report.pose), 0.05);
+  EXPECT_GE(rebooted.mapper().map().size(), saved_run().mapper().map().size());
   const auto lost = feed_until(body, kReboot_ns, 5'000'000'000, fresh);
-  EXPECT_GT(error_m(body, lost->report.pose), 1.0) << "negative control: without load()";
+  EXPECT_GT(truth_distance_m(body, lost->report.pose), 1.0) << "negative control: without load()";
 }
 
 TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
-  const ThrownBody body = body_that_rests();
+  const ThrownBody body = body_that_comes_to_rest();
   TumblingOdometry rebooted(params_to_estimate(body));
-  ASSERT_TRUE(rebooted.load(thrown().save()).ok());
-  const RigConstants before = thrown().rig().constants;
+  ASSERT_TRUE(rebooted.load(saved_run().save()).ok());
+  const RigConstants before = saved_run().rig().constants;
   EXPECT_LT((before.lever_arm_m - body.lever_arm_I_m).norm(), 0.005) << "else the run estimated nothing";
   EXPECT_EQ(rebooted.rig().constants, before);
-  EXPECT_TRUE(
-      rebooted.rig().covariance.topLeftCorner<3, 3>().isApprox(thrown().rig().covariance.topLeftCorner<3, 3>(), 1e-9));
-  EXPECT_GT(rebooted.rig().covariance(3, 3), thrown().rig().covariance(3, 3)) << "biases change at a switch-on";
+  const Eigen::Matrix3d kept = rebooted.rig().covariance.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d found = saved_run().rig().covariance.topLeftCorner<3, 3>();
+  EXPECT_TRUE(kept.isApprox(found, 1e-9));
+  EXPECT_GT(rebooted.rig().covariance(3, 3), saved_run().rig().covariance(3, 3)) << "biases change at a switch-on";
   const SweepCalibration lidar = rebooted.mapper().calibration();
-  EXPECT_EQ(lidar.T_IL.matrix(), thrown().mapper().calibration().T_IL.matrix());
-  EXPECT_EQ(rebooted.rails().planes, thrown().rails().planes);
+  EXPECT_EQ(lidar.T_IL.matrix(), saved_run().mapper().calibration().T_IL.matrix());
+  EXPECT_EQ(rebooted.rails().planes, saved_run().rails().planes);
   bool any = rebooted.rails().planes.any();
   for (std::size_t c = 0; c < 6; ++c) {
-    const double limit = thrown().rails().axis_aligned_rails.channels[c].rail;
+    const double limit = saved_run().rails().axis_aligned_rails.channels[c].rail;
     EXPECT_EQ(rebooted.rails().axis_aligned_rails.channels[c].rail, limit) << c;
     any = any || limit > 0.0;
   }
@@ -112,14 +113,14 @@ TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
   ASSERT_TRUE(again.load(rebooted.save()).ok());
   EXPECT_EQ(again.rig().constants, before);
   EXPECT_EQ(again.mapper().calibration().T_IL.matrix(), lidar.T_IL.matrix());
-  EXPECT_EQ(again.mapper().prior_map()->points.size(), thrown().mapper().map().size());
+  EXPECT_EQ(again.mapper().prior_map()->points.size(), saved_run().mapper().map().size());
 }
 
 /// The first throw of a rebooted robot needs no calibration flight.
 TEST(SavedTumblingOdometry, TheNextFlightStartsFromTheCalibration) {
   const ThrownBody body;
   TumblingOdometry rebooted(params_to_estimate(body)), fresh(params_to_estimate(body));
-  ASSERT_TRUE(rebooted.load(thrown().save()).ok());
+  ASSERT_TRUE(rebooted.load(saved_run().save()).ok());
   rebooted.reset(body.T_WI(0.0));
   const auto rate_error = [&](TumblingOdometry& odometry) {
     double sum = 0.0;
@@ -135,7 +136,7 @@ TEST(SavedTumblingOdometry, TheNextFlightStartsFromTheCalibration) {
 }
 
 TEST(SavedTumblingOdometry, IsSavedAtAnyStage) {
-  const ThrownBody body = body_that_rests();
+  const ThrownBody body = body_that_comes_to_rest();
   TumblingOdometry odometry(params_to_estimate(body));
   TimeNs from_ns = 0;
   for (const TimeNs to_ns : {0l, 50'000'000l, 600'000'000l, 1'700'000'000l, 2'200'000'000l}) {
@@ -147,7 +148,7 @@ TEST(SavedTumblingOdometry, IsSavedAtAnyStage) {
     ASSERT_TRUE(status.ok()) << to_ns << ": " << status.message();
     EXPECT_EQ(last.has_value(), to_ns > 500'000'000) << to_ns;
     if (last) {
-      EXPECT_LT(error_m(body, *last), 0.1) << to_ns;
+      EXPECT_LT(truth_distance_m(body, *last), 0.1) << to_ns;
     }
   }
 }

@@ -18,7 +18,7 @@ namespace tumble {
 /// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
 /// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
 /// so that each step also relinearises nodes older than the lag. The function start() allocates all memory of the
-/// stream. A run that is continued from a saved State gives bit-identical results.
+/// stream. A run that continues from a copy of the State gives bit-identical results.
 ///
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
 /// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
