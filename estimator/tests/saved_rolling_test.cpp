@@ -24,23 +24,22 @@ RollingOdometry::Params params_off_centre(double lag_s) {
   return params;
 }
 
-/// Returns the samples of three IMUs whose gyros clip at 10 rad/s without a flag.
-const std::vector<std::vector<ImuSample>>& clipped_units() {
-  static const std::vector<std::vector<ImuSample>> units = [] {
-    std::vector<std::vector<ImuSample>> out;
-    for (const Eigen::Vector3d& position_m : kPositions) {
-      for (ImuSample& sample : out.emplace_back(unit_at(position_m)))
-        sample.angular_velocity_rad_s.y() = std::min(sample.angular_velocity_rad_s.y(), 10.0);
+/// Returns the samples of three IMUs. If `clips` is true, the gyros clip at 10 rad/s without a flag.
+std::vector<std::vector<ImuSample>> three_imus(bool clips) {
+  std::vector<std::vector<ImuSample>> out;
+  for (const Eigen::Vector3d& position_m : kPositions) {
+    for (ImuSample& sample : out.emplace_back(unit_at(position_m))) {
+      if (clips) sample.angular_velocity_rad_s.y() = std::min(sample.angular_velocity_rad_s.y(), 10.0);
     }
-    return out;
-  }();
-  return units;
+  }
+  return out;
 }
 
-void feed_units(std::size_t from, std::size_t to, RollingOdometry& odometry, TimeNs later_ns = 0) {
+void feed_units(std::size_t from, std::size_t to, RollingOdometry& odometry, bool clips = false, TimeNs later_ns = 0) {
+  const std::vector<std::vector<ImuSample>> units = three_imus(clips);
   for (std::size_t k = from; k < to; ++k) {
     std::vector<ImuSample> now;
-    for (const std::vector<ImuSample>& unit : clipped_units()) {
+    for (const std::vector<ImuSample>& unit : units) {
       now.push_back(unit[k]);
       now.back().time_ns += later_ns;
     }
@@ -50,9 +49,9 @@ void feed_units(std::size_t from, std::size_t to, RollingOdometry& odometry, Tim
   }
 }
 
-RollingOdometry run_until(double lag_s, std::size_t to = kAtRest) {
+RollingOdometry run_until(double lag_s, std::size_t to = kAtRest, bool clips = false) {
   RollingOdometry out(params_off_centre(lag_s));
-  feed_units(0, to, out);
+  feed_units(0, to, out, clips);
   return out;
 }
 
@@ -68,7 +67,7 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     EXPECT_GT(last->time_ns, 3'500'000'000);
     EXPECT_NEAR(last->p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
 
-    const std::size_t count = clipped_units()[0].size();
+    const std::size_t count = three_imus(false)[0].size();
     feed_units(kAtRest, kAtRest + 10, rebooted);
     feed_units(kAtRest, kAtRest + 10, fresh);
     const RollingOdometry::Pose pose = *rebooted.newest();
@@ -82,15 +81,15 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     EXPECT_LT(fresh.calibration().centre_B_m.norm(), 0.2 * kCentre_m.norm()) << "negative control";
     // rolls the same path again
     feed_units(kAtRest + 10, count, rebooted);
-    const TimeNs later_ns = clipped_units()[0].back().time_ns;
-    feed_units(0, count, rebooted, later_ns);
+    const TimeNs later_ns = three_imus(false)[0].back().time_ns;
+    feed_units(0, count, rebooted, false, later_ns);
     EXPECT_NEAR(rebooted.newest()->pose.p_WA_m.x() - last->p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
   }
 }
 
 /// The saturation limits of the IMUs are at the end of the bytes.
 TEST(SavedRollingOdometry, KeepsSaturationLimits) {
-  const Bytes saved = run_until(0.0).save(), unsaturated = run_until(0.0, 300).save();
+  const Bytes saved = run_until(0.0, kAtRest, true).save(), unsaturated = run_until(0.0).save();
   const auto limits = [](const Bytes& bytes) {
     constexpr std::size_t kUnits = 3 * (6 * sizeof(double) + 6);  // without planes
     return Bytes(bytes.end() - kUnits, bytes.end());
