@@ -19,6 +19,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/export.hpp"
+#include "tests/fuzz/saved_runs.hpp"
 #include "tests/scenarios/recordings/fixture_recording.hpp"
 #include "tests/scenarios/recordings/mcap_file.hpp"
 #include "tests/tree.hpp"
@@ -129,23 +130,7 @@ void write_texts(const path& folder) {
   put_text(in(folder, "pcd_cloud") / "text",
            "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
            "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1 2 3 0.5\n4 5 6 1\n");
-  const auto edits = [](char kind, std::initializer_list<unsigned char> bytes) {
-    return kind + std::string(bytes.begin(), bytes.end());
-  };
-  put_text(in(folder, "saved_states") / "tumbling", edits('T', {1, 0, 0, 0, 0, 0, 1, 0x88, 0x13, 0, 0, 0}));
-  put_text(in(folder, "saved_states") / "rolling", edits('R', {1, 0x28, 0x23, 0, 0, 0}));
-  put_text(in(folder, "saved_states") / "refused_of_other_parameters", edits('T', {2, 0, 0, 0, 0, 8}));
-  put_text(in(folder, "saved_states") / "refused_cut", edits('R', {3, 0x20, 0x4e, 0, 0, 3}));
-  put_text(in(folder, "saved_states") / "tumbling_as_told", edits('t', {1, 0x88, 0x13, 0, 0, 0}));
-  put_text(in(folder, "saved_states") / "rolling_as_told", edits('r', {1, 0x28, 0x23, 0, 0, 0}));
-  for (const auto& [letter, name] : {std::pair{'R', "rate"}, std::pair{'G', "regime"}, std::pair{'C', "carried"},
-                                     std::pair{'L', "live"}, std::pair{'F', "filter"}, std::pair{'S', "smoother"}}) {
-    const path place = in(folder, "saved_streams");
-    put_text(place / name, edits(letter, {1, 0x88, 0x13, 0, 0, 0, 1, 0x28, 0x23, 0, 0, 0}));
-    const char small = static_cast<char>(letter - 'A' + 'a');
-    put_text(place / (name + std::string("_as_told")), edits(small, {1, 0x88, 0x13, 0, 0, 0}));
-    put_text(place / ("refused_" + std::string(name) + "_cut"), edits(letter, {3, 0x88, 0x13, 0, 0, 3}));
-  }
+  for (const auto& [name, bytes] : saved_run_seeds()) put_text(in(folder, "saved_run") / name, bytes);
   put_text(in(folder, "vtk_cloud") / "small",
            "# vtk DataFile Version 3.0\nFile created by libpointmatcher\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
            "1 2 3\n4 5 6\n7 8 9\nVERTICES 3 6\n1 0\n1 1\n1 2\nPOINT_DATA 3\nSCALARS intensity float\n"

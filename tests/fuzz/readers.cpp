@@ -24,7 +24,7 @@
 #include "scenarios/sweep/gate.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters.hpp"
-#include "tests/fuzz/saved_states.hpp"
+#include "tests/fuzz/saved_runs.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::fuzz {
@@ -208,8 +208,7 @@ constexpr std::array kReaders = {
     Reader{"estimate_tum", "a.tum", estimate_tum},
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},
-    Reader{"saved_states", "edits", saved_states},
-    Reader{"saved_streams", "edits", saved_streams},
+    Reader{"saved_run", "run", saved_run},
     Reader{"description", "a.yaml", description},
     Reader{"bench_results", "a.jsonl", bench_results},
 };
