@@ -39,18 +39,15 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// Compares the recovered rates with the direction of gravity at the standstills of the body. The check uses the input
-/// of the attitude smoother, because the smoother's output always agrees with gravity at standstills.
-void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, const RecoveredRates& recovered,
-                    Estimate& estimate) {
-  std::vector<RateState> read(recovered.sources.size());
-  for (std::size_t k = 0; k < read.size(); ++k) {
-    read[k].time_ns = recovered.samples[k].time_ns;
-    read[k].w_WI_I_rad_s = recovered.samples[k].angular_velocity_rad_s;
-    read[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
-    read[k].source = recovered.sources[k];
+std::vector<RateState> rates_of(const RecoveredRates& recovered) {
+  std::vector<RateState> out(recovered.sources.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].time_ns = recovered.samples[k].time_ns;
+    out[k].w_WI_I_rad_s = recovered.samples[k].angular_velocity_rad_s;
+    out[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
+    out[k].source = recovered.sources[k];
   }
-  report_findings(check_rests(checked_imu(sensors), samples, read), sensors, estimate);
+  return out;
 }
 
 Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -58,15 +55,10 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
-  const CheckedImu imu = checked_imu(sensors);
-  report_findings(check_frozen(imu, samples), sensors, estimate);
   RecoveredRates recovered;
   recovered.samples = samples;
   if (sensors.sphere_radius_m <= 0.0)
     recovered = recovered_readings(sensors, samples, ReplacedReadings::clipped, estimate);
-  if (sensors.sphere_radius_m <= 0.0)
-    report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, estimate);
   std::vector<RateState> rates;
   if (recovered.estimated && recovered.report.hand_held_probability_max < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, rates, estimate);
@@ -75,8 +67,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  check_at_rests(sensors, samples, recovered, estimate);
-  report_findings(check_pivots(imu, samples, rates), sensors, estimate);
+  // The checks use the input of the attitude smoother, because its output always agrees with gravity at rest.
+  (void)check_imu_with_rates(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
   return estimate;
 }
 

@@ -127,9 +127,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   if (estimate.status.ok()) {
     // The method only reports the findings, because the rates are already final.
-    const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
-    report_findings(findings, sensors, estimate);
-    report_stamps(sensors, estimate);
+    (void)check_imu_with_rates(sensors, samples, estimate.rates, carried_share, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

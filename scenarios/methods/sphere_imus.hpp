@@ -31,7 +31,7 @@ struct MergedImus {
 };
 
 /// Adds the number of dropped readings beyond the range of the device to the estimate's health.
-void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate);
+void report_beyond_range(int readings, Estimate& estimate);
 
 /// Merges the readings of all IMUs of a sphere by merge_recordings().
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);

@@ -13,7 +13,6 @@ void members(Self& s, Visitor& visit) {
   visit("frozen.repeated_s", s.repeated_s);
   visit("frozen.flagged", s.device_flagged);
   visit("frozen.frozen", s.frozen);
-  visit("frozen.ever_frozen", s.ever_frozen);
   visit("frozen.longest_s", s.longest_s);
   visit("frozen.moved_s", s.changing_duration_s);
   visit("frozen.quantum", s.smallest_change);
@@ -23,8 +22,6 @@ void members(Self& s, Visitor& visit) {
   visit("frozen.other_high", s.others_max);
   visit("frozen.other_changes", s.others_changes);
   visit("frozen.samples", s.samples);
-  visit("frozen.stationary_s", s.stationary_s);
-  visit("frozen.stationary_reference", s.stationary_reference);
 }
 
 template <StateOf<FrozenAxes::State> Self, class Visitor>

@@ -27,15 +27,11 @@ void members(Self& s, Visitor& visit) {
   visit("plausibility.window_started", s.window_started);
   visit("plausibility.force_is_constant", s.force_is_constant);
   visit("plausibility.in_range", s.in_range);
-  visit("plausibility.force_sum_m_s2", s.force_sum_m_s2);
-  visit("plausibility.windows", s.windows);
   visit("plausibility.non_rest_force_s", s.non_rest_force_s);
   visit("plausibility.unexplained_rad2", s.unexplained_rad2);
   visit("plausibility.force_rotation_rad2", s.force_rotation_rad2);
   visit("plausibility.gyro_rotation_rad2", s.gyro_rotation_rad2);
   visit("plausibility.rotated_windows", s.rotated_windows);
-  visit("plausibility.total_force_rotation_rad2", s.total_force_rotation_rad2);
-  visit("plausibility.total_gyro_rotation_rad2", s.total_gyro_rotation_rad2);
   visit("plausibility.last_time_ns", s.last_time_ns);
   visit("plausibility.started", s.started);
 }

@@ -91,16 +91,7 @@ const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& othe
   static const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>> all = {
       {" that a sign error of the accelerometer explains", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
       {" that a sign error of accelerometer axis x explains", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
-      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
-      {" that exchanged accelerometer axes x and y explain",
-       [](ImuSample& s) { std::swap(s.specific_force_m_s2.x(), s.specific_force_m_s2.y()); }},
-      {" that exchanged accelerometer axes z and x explain",
-       [](ImuSample& s) { std::swap(s.specific_force_m_s2.z(), s.specific_force_m_s2.x()); }},
-      {" that a sign error of gyro axis y explains", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
-      {" that exchanged gyro axes y and z explain",
-       [](ImuSample& s) { std::swap(s.angular_velocity_rad_s.y(), s.angular_velocity_rad_s.z()); }},
-      {" that a gyro with half the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
-      {" that a gyro with twice the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
+      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }}};
   return all;
 }
 
@@ -118,11 +109,8 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
     clipped += (sample.angular_velocity_rad_s.array().abs() > kRange_rad_s).count() == 1 ? 1 : 0;
   ASSERT_GT(clipped, 30U) << "nothing clips";
   EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, [](ImuSample&) {}), "");
-  for (const auto& [name, harm] : other_senses()) {
-    if (name.find("gyro") == std::string::npos) {
-      EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, harm), name);
-    }
-  }
+  for (const auto& [name, harm] : other_senses())
+    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, harm), name);
 }
 
 // A body that is swung about a point on the other side of the mass centre feels what a mirrored sensor would feel in
