@@ -24,10 +24,10 @@ class CsvText {
   /// Opens a file; the separator is the comma, semicolon or tab that is most frequent in the first line that is no
   /// comment. If the line contains no comma, semicolon or tab, blanks separate the fields.
   explicit CsvText(const std::filesystem::path& path);
-  /// Opens a file; throws BadInput if the file is missing or empty, or if the last line has no newline and may be
-  /// truncated.
+  /// Opens a file; throws BadInput if the file is missing or empty.
   CsvText(const std::filesystem::path& path, char separator);
-  /// Reads the next line; returns false at the end of the file.
+  /// Reads the next line; returns false at the end of the file. Throws BadInput for a last line without newline, which
+  /// may be truncated. A reader can then continue.
   bool next(CsvLine& line);
   /// Place is a position between two lines. The function `back_to` moves the reader to a stored place.
   struct Place {
@@ -41,6 +41,7 @@ class CsvText {
  private:
   std::string name_, text_;
   char separator_;
+  bool unended_ = false;  ///< the last line has no newline
   Place at_;
 };
 

@@ -12,11 +12,11 @@
 /// The class LoggedTable reads text tables of loggers: IMU readings and poses.
 namespace tumble::scenarios {
 
-/// LoggedTable is a table of samples with an optional header line. LoggedTable skips comments (csv_text.hpp), and an
-/// empty field after the last separator of a line. The header is the first line that is no comment and contains fewer
-/// numbers than other texts. If the samples directly follow comments, the last comment is the header if it has as many
-/// fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is added to the
-/// column names, in brackets.
+/// LoggedTable is a table of samples with an optional header line. LoggedTable skips empty lines, comments
+/// (csv_text.hpp), and an empty field after the last separator of a line. The header is the first line that is no
+/// comment and contains fewer numbers than other texts. If the samples directly follow comments, the last comment is
+/// the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below
+/// the header is added to the column names, in brackets.
 class LoggedTable {
  public:
   /// Opens a table; throws BadInput like CsvText.
@@ -29,8 +29,10 @@ class LoggedTable {
   bool has_header() const { return has_header_; }
 
   /// Reads the next sample; returns false at the end of the table. Throws BadInput with file and line for a wrong
-  /// number of fields.
+  /// number of fields, or for a last line without newline. The caller can then continue with the next sample.
   bool next(CsvLine& line);
+  /// Reads the next sample without such a fault; returns false at the end of the table.
+  bool next_sound(CsvLine& line);
   /// Moves the reader back to the first sample.
   void restart() { text_.back_to(samples_); }
   /// After this call, `next` returns only samples with the text `value` in the column.

@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 /// Finds the IMU columns of a table by common names, in any order. Case, blanks, points and underscores are ignored.
 /// The function accepts the following column names.
-/// - The time column has the name t, time, timestamp, stamp, ts or TimeUS. A column T (temperature) or seconds_elapsed
-///   counts as time only if there is no other time column.
+/// - The time column has the name t, time, timestamp, stamp, ts, TimeUS or SampleTimeFine. A column T (temperature) or
+///   seconds_elapsed counts as time only if there is no other time column.
 /// - The rate columns have names such as gx, gyro_x, gyr_x, wx, omega_x, angular_velocity_x, w_RS_S_x, gyro_rad[0].
 /// - The specific force columns have names such as ax, acc_x, accel_x, fx, linear_acceleration_x, a_RS_S_x,
 ///   accelerometer_m_s2[0].
